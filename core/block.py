@@ -7,6 +7,7 @@ oracle.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Self
@@ -104,7 +105,7 @@ class Oscillator:
         """Undamped natural frequency, rad/ms; what counts as 1 in time of a transfer function."""
         if self.time_unit_ms > 0.0:
             return 1.0 / self.time_unit_ms
-        return float((self.stiffness / self.mass) ** 0.5)
+        return float(math.sqrt(self.stiffness / self.mass))
 
     @property
     def in_air(self) -> bool:
@@ -114,7 +115,7 @@ class Oscillator:
     @property
     def damping_ratio(self) -> float:
         """Damping ratio."""
-        return float(self.damping / (2.0 * (self.stiffness * self.mass) ** 0.5))
+        return float(self.damping / (2.0 * math.sqrt(self.stiffness * self.mass)))
 
 
 @dataclass(frozen=True)

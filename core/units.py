@@ -63,7 +63,7 @@ def thermal_force_un(temperature_k: float, dt_ms: float) -> float:
     """
     per_si_damping: float = 2.0 * BOLTZMANN * temperature_k / (dt_ms / MS_PER_S)
     in_newton_squared_per_internal = per_si_damping / UN_MS_UM_PER_NS_M
-    return float(UN_PER_N * in_newton_squared_per_internal**0.5)
+    return float(UN_PER_N * math.sqrt(in_newton_squared_per_internal))
 
 
 def um_of_pm(pm: float) -> float:
@@ -73,7 +73,7 @@ def um_of_pm(pm: float) -> float:
 
 def noise_of_sample(density: float, dt_ms: float) -> float:
     """Return the standard deviation of a sample of noise that is white up to half the sample rate; unit per rtHz."""
-    return float(density * (0.5 * MS_PER_S / dt_ms) ** 0.5)
+    return float(density * math.sqrt(0.5 * MS_PER_S / dt_ms))
 
 
 def thermal_density_un(temperature_k: float) -> float:

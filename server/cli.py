@@ -23,6 +23,7 @@ from scenarios.report.traces import TraceFile
 from scenarios.run import run as run_scenario
 from scenarios.samples import temporary_folder
 from scenarios.seeds import parse_seeds
+from server.benchmarking import benchmark
 from server.blocks import blocks
 from server.exporting import fmu
 from server.lessons import lectures, sheets
@@ -49,6 +50,7 @@ class OneLine(TyperGroup):
 
 
 app = typer.Typer(cls=OneLine, no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
+app.command()(benchmark)
 app.command()(lectures)
 app.command()(sheets)
 app.command()(check)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import Self
 
+import numpy as np
 from pydantic import model_validator
 
 from core.block import BlockParams, Context, parameter
@@ -111,12 +112,13 @@ class Geometry(BlockParams):
             \frac{L_t^2+14\alpha L_tL+36\alpha^2L^2}{4L_t^2+41\alpha L_tL+36\alpha^2L^2}
         """
         length, segment = self.beam_length_um, self.truss_segment_um
-        alpha = (self.truss_um / self.beam_um) ** 3
-        stiff = 36.0 * alpha**2 * length**2
-        fraction = (segment**2 + 14.0 * alpha * segment * length + stiff) / (
-            4.0 * segment**2 + 41.0 * alpha * segment * length + stiff
+        ratio, slender = self.truss_um / self.beam_um, self.beam_um / length
+        alpha = ratio * ratio * ratio
+        stiff = 36.0 * alpha * alpha * length * length
+        fraction = (segment * segment + 14.0 * alpha * segment * length + stiff) / (
+            4.0 * segment * segment + 41.0 * alpha * segment * length + stiff
         )
-        base = 2.0 * self.youngs_modulus_gpa * 1e9 * self.thickness_um * 1e-6 * (self.beam_um / length) ** 3
+        base = 2.0 * self.youngs_modulus_gpa * 1e9 * self.thickness_um * 1e-6 * slender * slender * slender
         return base * fraction
 
     @property
@@ -132,7 +134,7 @@ class Geometry(BlockParams):
             +\tfrac{A_c}{g}\right],\quad \delta=\sqrt{2\mu/(\rho_{gas}\omega_0)}
         """
         plan, film, combs, gap = self.film
-        root: float = (self.stiffness_n_m() / self.mass_kg()) ** 0.25  # of the angular frequency
+        root: float = np.sqrt(np.sqrt(self.stiffness_n_m() / self.mass_kg()))  # of the angular frequency
         delta = penetration_depth_um(ATMOSPHERE_PA, temperature_k, 1.0) / root
         per_um = plan * (1.0 / film + 1.0 / delta) + combs / gap
         return viscosity(temperature_k) * 1e-6 * per_um

@@ -201,17 +201,19 @@ class ArxBank(Bank):
         White sensor noise of variance :math:`\sigma^2` makes an equation error of
         :math:`\sigma^2(1+a_1^2+a_2^2)`; behind the filter 1/A it is white again, and as large as the noise.
         """
-        variance = (params.sensor_noise_um or assumed_noise(context)) ** 2 * params.assumed_noise_scale
+        noise_um = params.sensor_noise_um or assumed_noise(context)
+        variance = noise_um * noise_um * params.assumed_noise_scale
         filtered = cls.filters_signals(params)
         _, _, a1, a2 = coefficients(context.device, context.dt_ms)
         p.count = len(params.hypotheses)
         p.every = context.every
         p.filter_a1, p.filter_a2 = (a1, a2) if filtered else (0.0, 0.0)
         p.memory = shuttle_memory(context)
-        p.least_power = params.least_drive_v**2
+        p.least_power = params.least_drive_v * params.least_drive_v
         p.interval = interval_of(context)
         for i, theta in enumerate(coefficients_of(params, context)):
-            error = variance if filtered else variance * (1.0 + theta[2] ** 2 + theta[3] ** 2)
+            _, _, a1, a2 = theta
+            error = variance if filtered else variance * (1.0 + a1 * a1 + a2 * a2)
             p.b0[i], p.b1[i], p.a1[i], p.a2[i] = theta
             p.variance[i], p.half_log[i] = error, 0.5 * log(error)
 

@@ -88,8 +88,9 @@ class KalmanBank(Bank):
         """Pack the filters of a bank, with steady gains from the Riccati equation if it offers them."""
         hypotheses = hypotheses or params.hypotheses
         scale = params.assumed_noise_scale
-        q = params.process_noise_v**2 * scale
-        r = (params.sensor_noise_um or assumed_noise(context)) ** 2 * scale
+        noise_um = params.sensor_noise_um or assumed_noise(context)
+        q = params.process_noise_v * params.process_noise_v * scale
+        r = noise_um * noise_um * scale
         steady, printed = cls.takes_steady_gains(params), cls.leaves_sensor_noise_out(params)
         devices = [hypothesis.oscillator(context.device) for hypothesis in hypotheses]
         h, n = context.dt_ms / context.every, len(devices)
@@ -116,14 +117,15 @@ class KalmanBank(Bank):
         p.every = context.every
         p.taken = _taken(params, context)
         p.memory = shuttle_memory(context)
-        p.least_drive = params.least_drive_v**2
+        p.least_drive = params.least_drive_v * params.least_drive_v
         return p
 
     @classmethod
     def at_rest(cls, s: S, params: Any, context: Context) -> S:
         """Put all filters at rest, with the initial uncertainty of the parameters."""
-        s.p11[:] = params.initial_std_um**2
-        s.p22[:] = (params.initial_std_um * context.device.natural_frequency) ** 2
+        std, speed = params.initial_std_um, params.initial_std_um * context.device.natural_frequency
+        s.p11[:] = std * std
+        s.p22[:] = speed * speed
         return s
 
     @classmethod

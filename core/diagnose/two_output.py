@@ -98,7 +98,7 @@ class TwoOutput(KalmanBank):
         velocity = max(params.velocity_noise_um_ms or known, 1e-3)
         p = cls.filters(cls.Packed.blank(), params, context)
         p.probability_floor, p.log_floor = floored(params.probability_floor)
-        p.velocity_noise = velocity**2 * params.assumed_noise_scale
+        p.velocity_noise = velocity * velocity * params.assumed_noise_scale
         return p
 
     @classmethod

@@ -46,7 +46,8 @@ def amplitudes(pitch: float, spot: float, opening: float) -> tuple[float, ...]:
     """Return the amplitudes a of the harmonics that are large enough to matter."""
     harmonics = []
     for m in range(1, HARMONICS + 1):
-        smooth = exp(-0.5 * (math.pi * m * spot / pitch) ** 2)
+        blur = math.pi * m * spot / pitch
+        smooth = exp(-0.5 * blur * blur)
         harmonics.append(2.0 / (math.pi * m) * sin(math.pi * m * opening) * smooth)
     while len(harmonics) > 1 and abs(harmonics[-1]) <= NEGLIGIBLE * abs(harmonics[0]):
         harmonics.pop()

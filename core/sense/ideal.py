@@ -42,7 +42,7 @@ class Ideal(Block):
     @classmethod
     def noise_um(cls, params: Any, context: Context) -> float:
         r"""Return the noise of a sample, :math:`\sqrt{\sigma^2+q^2/12}`: rounding spreads evenly over a step."""
-        return math.sqrt(params.noise_um**2 + params.quantum_um**2 / 12.0)
+        return math.sqrt(params.noise_um * params.noise_um + params.quantum_um * params.quantum_um / 12.0)
 
     @classmethod
     def ambiguity_um(cls, params: Any, context: Context) -> float:

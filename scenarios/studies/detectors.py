@@ -60,7 +60,7 @@ class Detectors(Study):
         for column, signal in enumerate(params.signals):
             calm = [record[:, column] for record in quiet]
             faulty = [record[:, column] for record in loud]
-            threshold = _threshold(calm, params.false_alarms_per_sample)
+            threshold = threshold_at(calm, params.false_alarms_per_sample)
             delays = [_first(values, threshold) for values in faulty]
             seen = [delay for delay in delays if delay is not None]
             figures[f"detectors.{signal}.threshold"] = threshold
@@ -88,7 +88,7 @@ def _record(board: Board, seed: int, samples: int, columns: list[int], *, health
     return traces[: fresh.tick]
 
 
-def _threshold(records: list[FloatArray], rate: float) -> float:
+def threshold_at(records: list[FloatArray], rate: float) -> float:
     """Return the threshold that a signal crosses from below at a given rate."""
     allowed = rate * sum(len(record) for record in records)
     # a rise from a to b crosses every level from a up to, but not including, b

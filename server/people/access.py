@@ -65,6 +65,8 @@ _DOORS = {
         GET {API}/recordings/{{recording_id}}/trace
         GET {API}/gallery  *
         GET {API}/gallery/{{scenario_id}}/figure  *
+        GET {API}/benchmarks  *
+        GET {API}/benchmarks/{{benchmark_id}}  *
         GET {API}/sheets  *
         GET {API}/sheets/{{sheet_id}}  *
         GET {API}/sheets/{{sheet_id}}/report  *

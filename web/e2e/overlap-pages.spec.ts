@@ -41,6 +41,8 @@ test("no page overlaps or is cut, on any screen", async ({ page, server }) => {
   await expectFits(page, "a campaign");
   await show(`page=runs&compare=${run},${other}`, result.getByRole("table"));
   await expectFits(page, "a comparison");
+  await show("page=benchmark", page.getByRole("region", { name: "Curves" }));
+  await expectFits(page, "the benchmark");
   await show("page=designer", page.getByRole("img", { name: /^Bode diagram/ }));
   await expectFits(page, "the designer");
   await page.getByRole("combobox", { name: "Device" }).selectOption("gyro-a");

@@ -71,12 +71,17 @@ class Slots:
 
 
 class Doubles(ast.NodeTransformer):
-    """Makes every constant a double of numpy's, which divides by 0 as a processor does, where Python stops."""
+    """Makes constants and results doubles of numpy's, which divides by 0 as a processor does, where Python stops."""
 
     def visit_Constant(self, node: ast.Constant) -> ast.expr:
         if not isinstance(node.value, float):
             return node
         return ast.Call(ast.Name("double", ast.Load()), [node], [])
+
+    def visit_Call(self, node: ast.Call) -> ast.expr:
+        self.generic_visit(node)
+        is_number = isinstance(node.func, ast.Name) and node.func.id not in ("range", "_put")
+        return ast.Call(ast.Name("double", ast.Load()), [node], []) if is_number else node
 
 
 def oracle(block: type[Block]) -> Any:

@@ -21,7 +21,7 @@ from scenarios.studies import detectors
 def test_threshold_is_where_so_many_episodes_begin():
     rng = np.random.default_rng(1)
     records = [rng.normal(size=20_000) for _ in range(30)]
-    threshold = detectors._threshold(records, 1e-3)
+    threshold = detectors.threshold_at(records, 1e-3)
     above = [record > threshold for record in records]
     episodes = sum(int(np.sum(one[1:] & ~one[:-1])) for one in above)
     assert episodes == pytest.approx(600, abs=1)

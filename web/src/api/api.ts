@@ -67,6 +67,8 @@ export const api = {
   devices: async () => (await data(client.GET("/api/v1/devices"))).devices,
   scenarios: async () => (await data(client.GET("/api/v1/scenarios"))).scenarios,
   gallery: () => data(client.GET("/api/v1/gallery")),
+  benchmark: (benchmark_id: string) =>
+    data(client.GET("/api/v1/benchmarks/{benchmark_id}", { params: { path: { benchmark_id } } })),
   runs: async (query: RunFilter) => (await data(client.GET("/api/v1/runs", { params: { query } }))).runs,
   renameRun: (id: string, label: string) =>
     data(client.PATCH("/api/v1/runs/{run_id}", { ...run(id), body: { label } })),

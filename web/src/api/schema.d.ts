@@ -1285,6 +1285,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/benchmarks": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Benchmarks
+         * @description List the benchmarks.
+         */
+        get: operations["list_benchmarks_api_v1_benchmarks_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benchmarks/{benchmark_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Benchmark
+         * @description Return a benchmark: tracks, and the table of the diagnosers of the library on the public seeds.
+         */
+        get: operations["get_benchmark_api_v1_benchmarks__benchmark_id__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/theory/positive-real": {
         parameters: {
             query?: never;
@@ -2934,6 +2974,91 @@ export interface components {
             benches: components["schemas"]["Bench"][];
         };
         /**
+         * BenchmarkCard
+         * @description A benchmark among others.
+         */
+        BenchmarkCard: {
+            /** Id */
+            id: string;
+            /** Title */
+            title: string;
+            /** Tracks */
+            tracks: string[];
+            /**
+             * Command
+             * @description What computes its table anew
+             */
+            command: string;
+        };
+        /**
+         * BenchmarkDetail
+         * @description A benchmark with the table of the diagnosers of the library.
+         */
+        BenchmarkDetail: {
+            /** Id */
+            id: string;
+            /** Title */
+            title: string;
+            /** Tracks */
+            tracks: string[];
+            /**
+             * Command
+             * @description What computes its table anew
+             */
+            command: string;
+            /**
+             * Version
+             * @description Of the code the table was computed with
+             */
+            version: string;
+            /** Seeds */
+            seeds: string;
+            /**
+             * Cases
+             * @description Of each track
+             */
+            cases: number;
+            /**
+             * Commitment
+             * @description SHA-256 of the hidden seeds
+             */
+            commitment: string;
+            /**
+             * False Alarm Samples
+             * @description Mean samples between false alarms that thresholds are set for
+             */
+            false_alarm_samples: number;
+            /**
+             * Within Samples
+             * @description Delays of `found_within`
+             */
+            within_samples: number[];
+            /** Results */
+            results: components["schemas"]["TrackResults"][];
+            /** Left Out */
+            left_out: components["schemas"]["LeftOut"][];
+        };
+        /**
+         * BenchmarkList
+         * @description The benchmarks.
+         */
+        BenchmarkList: {
+            /** Benchmarks */
+            benchmarks: components["schemas"]["BenchmarkCard"][];
+        };
+        /**
+         * Bin
+         * @description A bin of a reliability curve: samples, the mean probability said, and the share that was right.
+         */
+        Bin: {
+            /** Samples */
+            samples: number;
+            /** Said */
+            said: number;
+            /** Right */
+            right: number;
+        };
+        /**
          * BlindClass
          * @description The hidden faults of the students of a class, and their answers.
          */
@@ -3086,6 +3211,18 @@ export interface components {
             share: number;
             /** Loads */
             loads: components["schemas"]["Load"][];
+        };
+        /**
+         * CaseDigest
+         * @description A case and what the diagnoser said in it: seed, hash of the scenario, hash of the bits of the outputs.
+         */
+        CaseDigest: {
+            /** Seed */
+            seed: string;
+            /** Scenario */
+            scenario: string;
+            /** Digest */
+            digest: string;
         };
         /**
          * Catalogue
@@ -3584,6 +3721,18 @@ export interface components {
             printed: string | null;
             /** Why */
             why: string | null;
+        };
+        /**
+         * Estimate
+         * @description A mean over cases and its standard error; cases do not depend on one another, samples of one case do.
+         */
+        Estimate: {
+            /** Mean */
+            mean: number;
+            /** Error */
+            error: number;
+            /** Cases */
+            cases: number;
         };
         /**
          * Evaluation
@@ -4406,6 +4555,18 @@ export interface components {
         LectureList: {
             /** Lectures */
             lectures: components["schemas"]["LectureCard"][];
+        };
+        /**
+         * LeftOut
+         * @description A diagnoser that a track cannot score, and why.
+         */
+        LeftOut: {
+            /** Unit */
+            unit: string;
+            /** Track */
+            track: string;
+            /** Reason */
+            reason: string;
         };
         /**
          * Line
@@ -5702,6 +5863,61 @@ export interface components {
             area: number;
         };
         /**
+         * Row
+         * @description One diagnoser on one track; figures of probabilities are missing of one that says none.
+         *
+         *     Attributes
+         *     ----------
+         *     threshold : float
+         *         Evidence above which the alarm is on.
+         *     calibration_alarms, calibration_samples : int
+         *         False alarms of the healthy runs by which it was set, and their length.
+         *     false_alarms, healthy_samples : int
+         *         False alarms of the cases, and their samples before the fault.
+         *     found_within : list of float
+         *         Share of the cases that have a delay in which it is at most each of `WITHIN_SAMPLES`.
+         *     scenario, digest : str
+         *         SHA-256 over those of the cases, in order.
+         */
+        Row: {
+            /** Unit */
+            unit: string;
+            /** Track */
+            track: string;
+            /** Threshold */
+            threshold: number;
+            /** Calibration Alarms */
+            calibration_alarms: number;
+            /** Calibration Samples */
+            calibration_samples: number;
+            /** False Alarms */
+            false_alarms: number;
+            /** Healthy Samples */
+            healthy_samples: number;
+            log_score: components["schemas"]["Estimate"] | null;
+            brier: components["schemas"]["Estimate"] | null;
+            delay_samples: components["schemas"]["Estimate"] | null;
+            missed: components["schemas"]["Estimate"] | null;
+            detection: components["schemas"]["Estimate"] | null;
+            false_alarm: components["schemas"]["Estimate"] | null;
+            isolation: components["schemas"]["Estimate"] | null;
+            truth_probability: components["schemas"]["Estimate"] | null;
+            false_switches: components["schemas"]["Estimate"] | null;
+            /** Reliability */
+            reliability: components["schemas"]["Bin"][];
+            /** Found Within */
+            found_within: number[];
+            /** Scenario */
+            scenario: string;
+            /** Digest */
+            digest: string;
+            /**
+             * Cases
+             * @default []
+             */
+            cases?: components["schemas"]["CaseDigest"][];
+        };
+        /**
          * Run
          * @description A headless run as the API shows it.
          */
@@ -6676,6 +6892,24 @@ export interface components {
             signals: {
                 [key: string]: components["schemas"]["Extremes"];
             };
+        };
+        /**
+         * TrackResults
+         * @description A track, and the diagnosers it scores, best first; those that say no probabilities are last.
+         */
+        TrackResults: {
+            /** Id */
+            id: string;
+            /** Title */
+            title: string;
+            /** Question */
+            question: string;
+            /** Note */
+            note: string;
+            /** Classes */
+            classes: string[];
+            /** Rows */
+            rows: components["schemas"]["Row"][];
         };
         /**
          * TransferFunctionSource
@@ -9935,6 +10169,66 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Gallery"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_benchmarks_api_v1_benchmarks_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BenchmarkList"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_benchmark_api_v1_benchmarks__benchmark_id__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                benchmark_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BenchmarkDetail"];
                 };
             };
             /** @description Refused or failed */

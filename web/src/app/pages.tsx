@@ -1,6 +1,7 @@
 import {
   IconChartHistogram,
   IconLayoutDashboard,
+  IconListNumbers,
   IconMathFunction,
   IconPhoto,
   IconRulerMeasure,
@@ -10,6 +11,7 @@ import type { ComponentType, ReactNode } from "react";
 import { may, type Right } from "../api/me";
 import type { Me } from "../api/types";
 import type { PageName } from "../bench/view-store";
+import { BenchmarkPage } from "../benchmark/benchmark-page";
 import { ClassPage } from "../class/class-page";
 import { Designer } from "../designer/designer";
 import { GalleryPage } from "../gallery/gallery-page";
@@ -61,6 +63,13 @@ export const PAGES: Record<PageName, PageKind> = {
     key: "u",
     needs: "teach",
     component: RunsPage,
+  },
+  benchmark: {
+    name: "Scores",
+    title: "Benchmark: how soon and how honestly diagnosers notice a fault",
+    icon: <IconListNumbers size={ICON} />,
+    key: "j",
+    component: BenchmarkPage,
   },
   designer: {
     name: "Design",

@@ -10,7 +10,7 @@ const CHOSEN = "combbench.layout.chosen";
 export type CardId = string;
 
 /** What the page shows: the live bench, or what is done around it. */
-const PAGE_NAMES = ["bench", "class", "gallery", "runs", "designer", "theory"] as const;
+const PAGE_NAMES = ["bench", "class", "gallery", "runs", "benchmark", "designer", "theory"] as const;
 
 export type PageName = (typeof PAGE_NAMES)[number];
 

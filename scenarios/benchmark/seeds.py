@@ -1,0 +1,123 @@
+"""Seeds of the benchmark: 128 bits for each case, in lists that anyone can work out, and one that is hidden."""
+
+from __future__ import annotations
+
+import hashlib
+import secrets
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated
+
+import tomlkit
+from pydantic import StringConstraints, ValidationError
+
+from core.errors import InputError, from_validation
+from core.nesting import read_toml
+from core.table import Table
+
+BENCHMARK = "mems-diag-1"
+SEED_BYTES, SALT_BYTES = 16, 32
+COMMITMENT = "06351733832aa5069f783bec7aa3bc104478f0fc851551f695092756e65bd44e"
+"""SHA-256 of the hidden list, published before anybody is measured by it."""
+CASES, CALIBRATIONS = "cases", "calibration"
+
+
+@dataclass(frozen=True)
+class SeedList:
+    """A list of seeds.
+
+    Attributes
+    ----------
+    name : str
+        What it is called.
+    cases : mapping
+        The seeds of the cases of each track.
+    calibrations : int
+        Healthy runs of each track by which thresholds are set; their seeds are never those of cases.
+    """
+
+    name: str
+    cases: Mapping[str, tuple[str, ...]]
+    calibrations: int
+
+    def calibration(self, track: str) -> tuple[str, ...]:
+        """Return the seeds of the healthy runs of a track."""
+        return derived(CALIBRATIONS, track, self.calibrations)
+
+
+def derived(name: str, track: str, count: int) -> tuple[str, ...]:
+    r"""Return seeds that nobody has chosen: 128 bits of :math:`\text{SHA-256}(\text{benchmark name track number})`."""
+    texts = (f"{BENCHMARK} {name} {track} {number}" for number in range(1, count + 1))
+    return tuple(hashlib.sha256(text.encode()).digest()[:SEED_BYTES].hex() for text in texts)
+
+
+LISTS = {"public": (100, 200), "demonstration": (3, 4)}
+"""Cases and healthy runs of each track, by the name of the list."""
+
+
+def seed_list(name: str, tracks: tuple[str, ...]) -> SeedList:
+    """Return a list that anyone can work out."""
+    cases, calibrations = LISTS[name]
+    return SeedList(name, {track: derived(f"{name} {CASES}", track, cases) for track in tracks}, calibrations)
+
+
+Seed = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{32}$")]
+Salt = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
+
+
+class Hidden(Table):
+    """A list of seeds that is kept to itself until it is revealed, and a salt so that nobody can guess it."""
+
+    salt: Salt
+    cases: dict[str, list[Seed]]
+
+    def commitment(self) -> str:
+        r"""Return the hash by which the list is committed, :math:`\text{SHA-256}(\text{salt}\,\Vert\,\text{seeds})`.
+
+        Tracks come in the order of their names, each as its name, a line end and its seeds.
+        """
+        digest = hashlib.sha256(bytes.fromhex(self.salt))
+        for track in sorted(self.cases):
+            digest.update(f"{track}\n".encode())
+            digest.update(bytes.fromhex("".join(self.cases[track])))
+        return digest.hexdigest()
+
+
+def draw_hidden(tracks: tuple[str, ...]) -> Hidden:
+    """Return a new list from the operating system's source of chance, as long as the public one."""
+    count, _ = LISTS["public"]
+    cases = {track: [secrets.token_hex(SEED_BYTES) for _ in range(count)] for track in tracks}
+    return Hidden(salt=secrets.token_hex(SALT_BYTES), cases=cases)
+
+
+def hidden_list(text: str, tracks: tuple[str, ...]) -> SeedList:
+    """Read a hidden list and verify it.
+
+    Raises
+    ------
+    InputError
+        When it is malformed, lacks a track, or is not the list that was committed.
+    """
+    try:
+        hidden = Hidden.model_validate(read_toml(text, "--seeds"))
+    except ValidationError as error:
+        raise from_validation(error, {"": [*Hidden.model_fields]}).under("--seeds") from None
+    if {*hidden.cases} != {*tracks}:
+        raise InputError(f"needs seeds for each track and no other: {', '.join(tracks)}", "--seeds")
+    if (found := hidden.commitment()) != COMMITMENT:
+        raise InputError(f"is not the list that was committed: {found[:16]} instead of {COMMITMENT[:16]}", "--seeds")
+    return SeedList("hidden", {track: tuple(seeds) for track, seeds in hidden.cases.items()}, LISTS["public"][1])
+
+
+def main() -> None:
+    """Print a new hidden list: ``python -m scenarios.benchmark.seeds > hidden.toml``, and what commits it."""
+    from scenarios.benchmark.track import tracks
+
+    hidden = draw_hidden(tuple(tracks()))
+    sys.stdout.write(tomlkit.dumps(hidden.model_dump()))
+    sys.stderr.write(f"commitment: {hidden.commitment()}\n")
+
+
+if __name__ == "__main__":
+    main()

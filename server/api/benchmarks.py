@@ -1,0 +1,102 @@
+"""Benchmarks of diagnosers: their tracks, and the table that comes with this version."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from scenarios.benchmark import results
+from scenarios.benchmark.results import LeftOut, Row
+from scenarios.benchmark.seeds import BENCHMARK, COMMITMENT, LISTS
+from scenarios.benchmark.track import tracks
+from server.api.bodies import StrictRoute
+from server.errors import not_found
+
+router = APIRouter(prefix="/benchmarks", tags=["benchmarks"], route_class=StrictRoute)
+TITLE = "How soon and how honestly a fault is noticed and named"
+
+
+class BenchmarkCard(BaseModel):
+    """A benchmark among others."""
+
+    id: str
+    title: str
+    tracks: list[str]
+    command: str = Field(description="What computes its table anew")
+
+
+class BenchmarkList(BaseModel):
+    """The benchmarks."""
+
+    benchmarks: list[BenchmarkCard]
+
+
+class TrackResults(BaseModel):
+    """A track, and the diagnosers it scores, best first; those that say no probabilities are last."""
+
+    id: str
+    title: str
+    question: str
+    note: str
+    classes: list[str]
+    rows: list[Row]
+
+
+class BenchmarkDetail(BenchmarkCard):
+    """A benchmark with the table of the diagnosers of the library."""
+
+    version: str = Field(description="Of the code the table was computed with")
+    seeds: str
+    cases: int = Field(description="Of each track")
+    commitment: str = Field(description="SHA-256 of the hidden seeds")
+    false_alarm_samples: int = Field(description="Mean samples between false alarms that thresholds are set for")
+    within_samples: list[int] = Field(description="Delays of `found_within`")
+    results: list[TrackResults]
+    left_out: list[LeftOut]
+
+
+@router.get("")
+def list_benchmarks() -> BenchmarkList:
+    """List the benchmarks."""
+    return BenchmarkList(benchmarks=[_card()])
+
+
+@router.get("/{benchmark_id}")
+def get_benchmark(benchmark_id: str) -> BenchmarkDetail:
+    """Return a benchmark: tracks, and the table of the diagnosers of the library on the public seeds."""
+    if benchmark_id != BENCHMARK:
+        raise not_found("benchmark", benchmark_id, f"there is: {BENCHMARK}")
+    return _detail()
+
+
+def _card() -> BenchmarkCard:
+    return BenchmarkCard(id=BENCHMARK, title=TITLE, tracks=[*tracks()], command="combbench benchmark")
+
+
+@cache
+def _detail() -> BenchmarkDetail:
+    kept = results.kept()
+    cases, _ = LISTS[kept.seeds]
+    return BenchmarkDetail(
+        **_card().model_dump(),
+        version=kept.version,
+        seeds=kept.seeds,
+        cases=cases,
+        commitment=COMMITMENT,
+        false_alarm_samples=kept.false_alarm_samples,
+        within_samples=[*results.WITHIN_SAMPLES],
+        results=[
+            TrackResults(
+                id=name,
+                title=one.title,
+                question=one.question,
+                note=one.note,
+                classes=[*one.classes],
+                rows=kept.ranked(name),
+            )
+            for name, one in tracks().items()
+        ],
+        left_out=kept.left_out,
+    )

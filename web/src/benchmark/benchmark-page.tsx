@@ -1,0 +1,96 @@
+import { MultiSelect, NativeSelect } from "@mantine/core";
+import { useState } from "react";
+import { api } from "../api/api";
+import { useAnswer } from "../api/queries";
+import type { Benchmark } from "../api/types";
+import { LineChart } from "../picture/line-chart";
+import { EmptyState } from "../ui/empty-state";
+import { formatNumber } from "../ui/format";
+import { Stale } from "../ui/stale";
+import styles from "./benchmark.module.css";
+import { delayLines, reliabilityLines } from "./curves";
+import { ResultsTable } from "./results-table";
+
+const SHARE: [number, number] = [0, 1];
+/** Diagnosers that are drawn at first: the best. */
+const DRAWN = 4;
+const ID = "mems-diag-1";
+
+/** How soon diagnosers notice a fault, what they take for its cause, and whether their probabilities can be believed. */
+export function BenchmarkPage() {
+  const { value, error, since, again } = useAnswer(["benchmark"], () => api.benchmark(ID));
+  const [track, setTrack] = useState("known");
+  const chosen = value?.results.find((one) => one.id === track);
+  return (
+    <main className={styles.page}>
+      <header className={styles.top}>
+        <h1>Benchmark</h1>
+        {value && (
+          <NativeSelect
+            size="xs"
+            aria-label="Track"
+            value={track}
+            data={value.results.map(({ id, title }) => ({ value: id, label: title }))}
+            onChange={(e) => setTrack(e.currentTarget.value)}
+          />
+        )}
+        <Stale error={error} since={since} onRetry={again} />
+      </header>
+      {value && chosen ? (
+        <Track key={chosen.id} track={chosen} benchmark={value} />
+      ) : (
+        !error && <EmptyState title="Opening the benchmark">The table comes from the server.</EmptyState>
+      )}
+    </main>
+  );
+}
+
+/** The question of a track, its table and its curves. */
+function Track({ track, benchmark }: { track: Benchmark["results"][number]; benchmark: Benchmark }) {
+  const [units, setUnits] = useState(track.rows.slice(0, DRAWN).map((row) => row.unit));
+  const drawn = track.rows.filter((row) => units.includes(row.unit));
+  const out = benchmark.left_out.filter((one) => one.track === track.id);
+  return (
+    <>
+      <section className={styles.card} aria-label={track.title}>
+        <h2>{track.question}</h2>
+        <p>{track.note}</p>
+        <ResultsTable rows={track.rows} label={`Results of ${track.title}`} />
+        <p>
+          {formatNumber(benchmark.cases, 0)} cases from public seeds; thresholds give one false alarm in{" "}
+          {formatNumber(benchmark.false_alarm_samples, 0)} healthy samples on average. The rank is that of the log
+          score, then of the Brier score. Diagnosers without probabilities have no rank.
+          {out.map((one) => ` ${one.unit} is not scored: it ${one.reason}.`)} <code>{benchmark.command}</code> computes
+          the table again, to the bit.
+        </p>
+      </section>
+      <section className={styles.card} aria-label="Curves">
+        <MultiSelect
+          size="xs"
+          label="Diagnosers drawn"
+          value={units}
+          data={track.rows.map((row) => row.unit)}
+          onChange={setUnits}
+          maw={640}
+        />
+        <div className={styles.charts}>
+          <LineChart
+            title="Reliability: below the diagonal, a diagnoser is surer than right"
+            xLabel="probability said"
+            yLabel="share that was right"
+            xRange={SHARE}
+            yRange={SHARE}
+            lines={reliabilityLines(drawn)}
+          />
+          <LineChart
+            title="Faults found"
+            xLabel="samples since the fault"
+            yLabel="share found by then"
+            yRange={SHARE}
+            lines={delayLines(drawn, benchmark.within_samples)}
+          />
+        </div>
+      </section>
+    </>
+  );
+}

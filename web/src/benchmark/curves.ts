@@ -1,0 +1,23 @@
+import type { BenchmarkRow } from "../api/types";
+import type { ChartLine } from "../picture/paint-lines";
+
+/** A bin with fewer samples says little of how often it is right. */
+const LEAST_SAMPLES = 100;
+/** What a calibrated diagnoser would draw. */
+const DIAGONAL: ChartLine = { name: "as often right as said", x: [0, 1], y: [0, 1] };
+
+/** How often diagnosers are right, over the probability they say; those that say none have no line. */
+export function reliabilityLines(rows: readonly BenchmarkRow[]): ChartLine[] {
+  const lines = rows.flatMap((row) => {
+    const bins = row.reliability.filter((bin) => bin.samples >= LEAST_SAMPLES);
+    return bins.length > 0 ? [{ name: row.unit, x: bins.map((b) => b.said), y: bins.map((b) => b.right) }] : [];
+  });
+  return [DIAGONAL, ...lines];
+}
+
+/** The share of faults found over the samples since the fault. */
+export function delayLines(rows: readonly BenchmarkRow[], within: readonly number[]): ChartLine[] {
+  return rows.flatMap((row) =>
+    row.found_within.length > 0 ? [{ name: row.unit, x: [0, ...within], y: [0, ...row.found_within] }] : [],
+  );
+}
