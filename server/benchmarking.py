@@ -10,7 +10,9 @@ import typer
 
 from core import registry
 from core.errors import InputError
+from scenarios.own import with_units
 from server.terminal import JsonOption, plainly, read_text, say
+from server.units import UnitOption
 
 
 @plainly
@@ -23,6 +25,7 @@ def benchmark(
     check: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Recompute these results and compare them.")
     ] = None,
+    units: UnitOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Measure diagnosers by mems-diag-1: 0 done, 1 results that were checked differ, 2 invalid input."""
@@ -33,8 +36,9 @@ def benchmark(
     from scenarios.benchmark.track import tracks
     from scenarios.report.benchmark import benchmark_text
 
-    if check is not None and (unit is not None or track is not None):
+    if check is not None and (unit is not None or track is not None or units):
         raise InputError("recomputes what the file has; give neither a unit nor a track", "--check")
+    own = with_units({}, units or ()).get("units", {})
     if track is not None:
         one_track(track)
     names = tuple(tracks())
@@ -47,10 +51,10 @@ def benchmark(
     if check is None:
         from scenarios.speed.diagnosers import diagnoser_costs
 
-        units = [unit] if unit is not None else [*registry.blocks("diagnose")]
-        found = measure(units, [track] if track is not None else names, chosen, told)
-        found = found.model_copy(update={"costs": diagnoser_costs({row.unit: None for row in found.rows})})
-        if unit is None:
+        named = [unit] if unit is not None else [*own] or [*registry.blocks("diagnose")]
+        found = measure(named, [track] if track is not None else names, chosen, told, own)
+        found = found.model_copy(update={"costs": diagnoser_costs({row.unit: None for row in found.rows}, own)})
+        if unit is None and not own:
             found = found.without_cases()  # a megabyte
         say(benchmark_results.write(found).rstrip() if as_json else benchmark_text(found, tracks()))
         return
@@ -59,7 +63,7 @@ def benchmark(
         raise InputError(f"has results of the list {given.seeds}; name that list, or its file", "--seeds")
     if not given.rows:
         raise InputError("has no rows", "--check")
-    found = measure([*given.sources], [*{row.track: None for row in given.rows}], chosen, told)
+    found = measure([*given.sources], [*{row.track: None for row in given.rows}], chosen, told, given.units)
     differences = given.differences(found)
     if differences and given.version != found.version:
         differences.append(f"they were computed by version {given.version}, these by {found.version}")

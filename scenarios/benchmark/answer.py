@@ -65,7 +65,7 @@ class Answer:
     digest: str
 
 
-def answers(track: Track, case: Case, diagnosers: Mapping[str, Document]) -> dict[str, Answer]:
+def answers(track: Track, case: Case, diagnosers: Mapping[str, Document], units: Document) -> dict[str, Answer]:
     """Run a case with diagnosers side by side on the same samples; return what each said.
 
     Parameters
@@ -76,13 +76,15 @@ def answers(track: Track, case: Case, diagnosers: Mapping[str, Document]) -> dic
         The case.
     diagnosers : mapping
         The section of each by its name on the bench.
+    units : dict
+        The units of one's own among them, as a scenario carries them.
 
     Raises
     ------
     InputError
         When the board stops, which no case of a track may do.
     """
-    result = run(case.scenario(diagnosers), figures_only=True)
+    result = run(case.scenario(diagnosers, units), figures_only=True)
     if result.trip is not None:
         raise InputError(f"stopped in case {case.seed} at sample {result.trip.tick}: {result.trip.reason}")
     return {name: _answer(track, result.trace, name, result.board.diagnosers[name].block) for name in diagnosers}

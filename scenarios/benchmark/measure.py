@@ -8,9 +8,9 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from core import registry
 from core.block import Block, FloatArray
 from core.board.document import Document
+from core.board.library import library_of
 from scenarios.benchmark.answer import Answer, answers, section, unscored
 from scenarios.benchmark.figures import (
     BINS,
@@ -49,7 +49,11 @@ Told = Callable[[str, int, int], None]
 
 
 def measure(
-    units: Sequence[str], chosen: Sequence[str], seeds: SeedList, told: Told = lambda _track, _done, _all: None
+    units: Sequence[str],
+    chosen: Sequence[str],
+    seeds: SeedList,
+    told: Told = lambda _track, _done, _all: None,
+    own: Document | None = None,
 ) -> Results:
     """Measure diagnosers on tracks.
 
@@ -61,20 +65,24 @@ def measure(
         Which cases.
     told : callable
         Called after each run.
+    own : dict, optional
+        Units of one's own, as a scenario carries them.
 
     Raises
     ------
     InputError
         For an unknown name.
     """
-    blocks = {unit: registry.block("diagnose", unit, "UNIT") for unit in units}
+    own = own or {}
+    library = library_of({"units": own})
+    blocks = {unit: library.block("diagnose", unit, "UNIT") for unit in units}
     reasons = {unit: unscored(block) for unit, block in blocks.items()}
     scored = {unit: block for unit, block in blocks.items() if not reasons[unit]}
     rows = []
     for name in chosen if scored else ():
         track = tracks()[name]
         sections = {unit: section(block, track) for unit, block in scored.items()}
-        rows += _rows(name, track, sections, seeds, told)
+        rows += _rows(name, track, sections, own, seeds, told)
     return Results(
         benchmark=BENCHMARK,
         version=code_version(),
@@ -82,27 +90,32 @@ def measure(
         false_alarm_samples=FALSE_ALARM_SAMPLES,
         sources={unit: _source(block) for unit, block in blocks.items()},
         rows=rows,
+        own={unit: own[unit]["source"] for unit in units if unit in own},
         left_out=[LeftOut(unit=u, track=name, reason=why) for u, why in reasons.items() if why for name in chosen],
     )
 
 
 def _source(block: type[Block]) -> str:
-    """Return a hash of the file a diagnoser is in."""
+    """Return a hash of the file a diagnoser is in, or of the text of a unit of one's own."""
+    if block.text:
+        return hashlib.sha256(block.text.encode()).hexdigest()
     return hashlib.sha256(inspect.getsource(inspect.getmodule(block) or block).encode()).hexdigest()
 
 
-def _rows(name: str, track: Track, sections: Mapping[str, Document], seeds: SeedList, told: Told) -> list[Row]:
+def _rows(
+    name: str, track: Track, sections: Mapping[str, Document], own: Document, seeds: SeedList, told: Told
+) -> list[Row]:
     """Measure diagnosers on one track, all of them side by side."""
     healthy, cases = seeds.calibration(name), seeds.cases[name]
     calm: dict[str, list[FloatArray]] = {unit: [] for unit in sections}
     for number, seed in enumerate(healthy, 1):
-        for unit, answer in answers(track, track.healthy(seed), sections).items():
+        for unit, answer in answers(track, track.healthy(seed), sections, own).items():
             calm[unit].append(answer.evidence[WARM:])
         told(name, number, len(healthy) + len(cases))
     judges = {unit: Judge(unit, name, records) for unit, records in calm.items()}
     for number, seed in enumerate(cases, len(healthy) + 1):
         case = track.case(seed)
-        for unit, answer in answers(track, case, sections).items():
+        for unit, answer in answers(track, case, sections, own).items():
             judges[unit].take(case, answer)
         told(name, number, len(healthy) + len(cases))
     return [judge.row() for judge in judges.values()]

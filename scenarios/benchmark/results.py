@@ -10,6 +10,7 @@ from pathlib import Path
 
 from pydantic import Field, ValidationError
 
+from core.board.document import Document
 from core.errors import InputError, from_validation
 from core.table import Table
 from scenarios.benchmark.figures import BINS, Estimate
@@ -102,6 +103,8 @@ class Results(Table):
         Mean number of samples between false alarms that thresholds are set for.
     sources : dict
         SHA-256 of the source of each diagnoser.
+    own : dict
+        The text of each unit that is not of the library, so that the results can be recomputed from their file.
     costs : dict
         Of each diagnoser, measured beside the Kalman bank ``mmae`` in the same run.
     """
@@ -113,7 +116,13 @@ class Results(Table):
     sources: dict[str, str]
     rows: list[Row]
     left_out: list[LeftOut]
+    own: dict[str, str] = Field({})
     costs: dict[str, Cost] = Field({})
+
+    @property
+    def units(self) -> Document:
+        """The units that are not of the library, as a scenario carries them."""
+        return {name: {"source": text} for name, text in self.own.items()}
 
     def ranked(self, track: str) -> list[Row]:
         """Return the rows of a track, best first: by log score, then by Brier's; those without probabilities last."""

@@ -18,7 +18,7 @@ from core.table import Table
 
 BENCHMARK = "mems-diag-1"
 SEED_BYTES, SALT_BYTES = 16, 32
-COMMITMENT = "06351733832aa5069f783bec7aa3bc104478f0fc851551f695092756e65bd44e"
+COMMITMENT = "1a1c59d3199ea7a0fe191b7578b036b4770669f3cff4f36711ed19e3a52eef75"
 """SHA-256 of the hidden list, published before anybody is measured by it."""
 CASES, CALIBRATIONS = "cases", "calibration"
 
@@ -84,11 +84,14 @@ class Hidden(Table):
         return digest.hexdigest()
 
 
-def draw_hidden(tracks: tuple[str, ...]) -> Hidden:
-    """Return a new list from the operating system's source of chance, as long as the public one."""
+def hidden_of(salt: str, tracks: tuple[str, ...]) -> Hidden:
+    r"""Return the list of a salt, of 128 bits each of :math:`\text{SHA-256}(\text{salt track number})`."""
     count, _ = LISTS["public"]
-    cases = {track: [secrets.token_hex(SEED_BYTES) for _ in range(count)] for track in tracks}
-    return Hidden(salt=secrets.token_hex(SALT_BYTES), cases=cases)
+
+    def seed(track: str, number: int) -> str:
+        return hashlib.sha256(f"{salt} {track} {number}".encode()).digest()[:SEED_BYTES].hex()
+
+    return Hidden(salt=salt, cases={track: [seed(track, 1 + i) for i in range(count)] for track in tracks})
 
 
 def hidden_list(text: str, tracks: tuple[str, ...]) -> SeedList:
@@ -111,10 +114,11 @@ def hidden_list(text: str, tracks: tuple[str, ...]) -> SeedList:
 
 
 def main() -> None:
-    """Print a new hidden list: ``python -m scenarios.benchmark.seeds > hidden.toml``, and what commits it."""
+    """Print a new hidden list, or that of a salt: ``python -m scenarios.benchmark.seeds [SALT] > hidden.toml``."""
     from scenarios.benchmark.track import tracks
 
-    hidden = draw_hidden(tuple(tracks()))
+    salt = sys.argv[1] if len(sys.argv) > 1 else secrets.token_hex(SALT_BYTES)
+    hidden = hidden_of(salt, tuple(tracks()))
     sys.stdout.write(tomlkit.dumps(hidden.model_dump()))
     sys.stderr.write(f"commitment: {hidden.commitment()}\n")
 

@@ -97,9 +97,9 @@ class Case:
         """Hash of the scenario."""
         return content_hash(self.document)
 
-    def scenario(self, diagnosers: Mapping[str, Document]) -> Scenario:
-        """Return the scenario with diagnosers."""
-        return Scenario.load({**self.document, "diagnosers": dict(diagnosers)})
+    def scenario(self, diagnosers: Mapping[str, Document], units: Document) -> Scenario:
+        """Return the scenario with diagnosers, and the units of their own among them."""
+        return Scenario.load({**self.document, "diagnosers": dict(diagnosers), "units": units})
 
 
 def share(seed: str, name: str) -> float:

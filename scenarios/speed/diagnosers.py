@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from core.board.document import Document
 from scenarios.benchmark.results import Cost
 from scenarios.speed.boards import seven_step_bench
 from scenarios.speed.timing import block_costs
@@ -11,8 +12,9 @@ from scenarios.speed.timing import block_costs
 PEER = "mmae"
 
 
-def diagnoser_costs(units: Iterable[str]) -> dict[str, Cost]:
+def diagnoser_costs(units: Iterable[str], own: Document) -> dict[str, Cost]:
     """Return what a sample costs on the bench of the seven steps, in ns and over the Kalman bank of six models."""
     names = list(dict.fromkeys([PEER, *units]))
-    ns = block_costs(seven_step_bench({"diagnosers": {name: {"kind": name} for name in names}}), *names)
+    board = seven_step_bench({"diagnosers": {name: {"kind": name} for name in names}, "units": own})
+    ns = block_costs(board, *names)
     return {name: Cost(ns_per_sample=ns[name], over_mmae=ns[name] / ns[PEER]) for name in units}

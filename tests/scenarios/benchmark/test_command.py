@@ -91,3 +91,18 @@ def test_the_document_has_the_kept_table():
     assert seeds.COMMITMENT in document
     for name in tracks():
         assert "\n".join(line.rstrip() for line in track_table(results.kept(), name)) in document, name
+
+
+def test_a_unit_from_a_file_is_measured_and_its_results_hold_its_text(call, tmp_path):
+    text = (ROOT / "docs" / "own-units.md").read_text().split("```python\n")[2].partition("```")[0]
+    (tmp_path / "leaky.py").write_text(text)
+    done = call("--unit", "leaky.py", "--track", "known", *DEMONSTRATION, "--json")
+    assert done.exit_code == 0, done.stderr
+    document = json.loads(done.stdout)
+    assert [row["unit"] for row in document["rows"]] == ["leaky"] and document["own"] == {"leaky": text}
+    (tmp_path / "leaky.py").unlink()
+    (tmp_path / "leaky.json").write_text(done.stdout)
+    again = call("--check", "leaky.json", *DEMONSTRATION)
+    assert again.exit_code == 0 and "1 rows are the same to the bit" in again.stdout
+    wrong = call("--unit", "leaky.json", *DEMONSTRATION)
+    assert wrong.exit_code == 2 and "line 1" in wrong.stderr

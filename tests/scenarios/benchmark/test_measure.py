@@ -64,7 +64,7 @@ def test_truth_is_what_the_board_knows() -> None:
     """Where the fault is one of the hypotheses, the class that is true is the one the board's own score names."""
     for name in ("known", "closed_loop", "sensor"):
         case = track(name).case(DEMONSTRATION.cases[name][0])
-        truth = run(case.scenario({"kalman": section(Mmae, track(name))}), figures_only=True).trace["kalman.truth"]
+        truth = run(case.scenario({"kalman": section(Mmae, track(name))}, {}), figures_only=True).trace["kalman.truth"]
         assert not truth[: case.onset].any()
         assert (truth[case.onset + 1 :] == case.truth).all()
 
@@ -89,7 +89,7 @@ def judged(name: str, sharpen: float) -> results.Row:
     chosen, unit = track(name), {"mmae": section(Mmae, track(name))}
 
     def answer(case: Case) -> Answer:
-        found = answers(chosen, case, unit)["mmae"]
+        found = answers(chosen, case, unit, {})["mmae"]
         p = found.classes**sharpen
         return Answer(found.evidence, p / p.sum(axis=0), found.digest)
 
@@ -137,7 +137,7 @@ def test_a_case_in_which_the_board_stops_is_refused() -> None:
     case = chosen.case(DEMONSTRATION.cases["known"][0])
     case.document["guard"] = {"travel_um": 0.5}
     with pytest.raises(Exception, match="stopped in case"):
-        answers(chosen, case, {"mmae": section(Mmae, chosen)})
+        answers(chosen, case, {"mmae": section(Mmae, chosen)}, {})
 
 
 @pytest.mark.slow

@@ -33,7 +33,7 @@ def test_no_two_seeds_are_the_same() -> None:
 
 
 def test_a_hidden_list_is_read_if_it_is_the_committed_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    hidden = seeds.draw_hidden(NAMES)
+    hidden = seeds.hidden_of("5a" * 32, NAMES)
     text = tomlkit.dumps(hidden.model_dump())
     with pytest.raises(InputError, match="not the list that was committed"):
         seeds.hidden_list(text, NAMES)
@@ -51,7 +51,7 @@ def test_the_commitment_is_the_hash_that_the_document_gives() -> None:
 
 @pytest.mark.parametrize("change", ["salt", "seed", "order"])
 def test_any_change_of_a_hidden_list_shows(change: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    hidden = seeds.draw_hidden(NAMES)
+    hidden = seeds.hidden_of("5a" * 32, NAMES)
     monkeypatch.setattr(seeds, "COMMITMENT", hidden.commitment())
     document = hidden.model_dump()
     listed = document["cases"]["drift"]
