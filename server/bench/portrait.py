@@ -9,6 +9,7 @@ from typing import Any, Protocol
 from core.board.spec import Section
 from core.board.words import describe
 from core.faults.fault import FaultParams
+from core.registry import card
 from scenarios.schema import Scenario
 from server.bench.changes import Changes
 from server.bench.commands import MAX_PENDING
@@ -128,6 +129,7 @@ def bench_of(bench: ShownBench, around: dict[str, Any], view3d: str | None) -> B
             )
             for name, section in bench.board.diagnosers.items()
         },
+        units=[card(one.block) for one in spec.library.units],
         parameters=document_now(bench),
         view3d=view3d,
         replay_of=bench.replay_of or None,

@@ -10,6 +10,7 @@ from pydantic import BaseModel, Field
 from core.board.commands import Trip
 from core.board.document import Document
 from core.loop.score import Scores
+from core.registry import BlockCard
 from core.signals import Signal
 from server.bench.blind import Question
 
@@ -141,6 +142,7 @@ class Bench(BenchStatus):
     signals: list[Signal]
     controllers: list[str]
     diagnosers: dict[str, DiagnoserInfo]
+    units: list[BlockCard] = Field([], description="Its units that are not of the library, as the catalogue has them")
     parameters: dict[str, Any] = Field(description="The scenario as it is now, every live change in it")
     view3d: str | None = Field(description="Path of the 3D page, if there is one")
     replay_of: str | None = Field(None, description="The recording it plays; such a bench takes no changes")

@@ -2928,6 +2928,12 @@ export interface components {
                 [key: string]: components["schemas"]["DiagnoserInfo"];
             };
             /**
+             * Units
+             * @description Its units that are not of the library, as the catalogue has them
+             * @default []
+             */
+            units?: components["schemas"]["BlockCard"][];
+            /**
              * Parameters
              * @description The scenario as it is now, every live change in it
              */

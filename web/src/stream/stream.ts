@@ -1,5 +1,6 @@
 import { benchExists } from "../api/api";
 import type { Bench, LogEntry, Score } from "../api/types";
+import { setUnits } from "../api/use-catalog";
 import { type Connection, mergeStatus, useBench } from "./bench-store";
 import { DrawLoop } from "./draw-loop";
 import { appendEvent } from "./event-log";
@@ -60,6 +61,7 @@ function receive(message: ServerMessage): void {
       // back after a break, in which the page may have missed that it was called
       if (known.bench) useBench.setState((s) => ({ called: s.called + 1 }));
       known = { bench: message.bench, scores: turned ? {} : known.scores };
+      setUnits(message.bench.units);
       tell();
       const last = useBench.getState().events.at(-1)?.seq ?? 0;
       if (message.last_event > last) client.send({ type: "resume", after: last });
