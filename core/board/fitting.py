@@ -36,10 +36,11 @@ def refuse_what_does_not_fit(doc: Document, plant: type[Block]) -> None:
         if key in doc:
             inputs = ", ".join(plant.generators) or "reference"
             raise InputError(f"{plant.name} has no {key}; it has {inputs}", key, "leave it out")
-    for key, family in PARKED.values():
+    for one, (key, family) in PARKED.items():
         for name in doc.get(key, {}):
             if reason := misfit(library_of(doc).block(family, name, key), plant):
-                raise InputError(f"{name} {reason}", f"{key}.{name}", "leave it out")
+                field = f"{one}.kind" if doc[one].get("kind") == name else f"{key}.{name}"
+                raise InputError(f"{name} {reason}", field, "leave it out")
 
 
 def driving(doc: Document, plant: type[Block]) -> dict[str, str]:
@@ -85,7 +86,7 @@ def suited(spec: Spec) -> Spec:
         reason = (misfit(block, plant) if block is not plant else "") or block.unsuited(*pair)
         if reason:
             raise InputError(f"{block.name}: {reason}", path)
-    present = faults_of(spec.library, spec.axes)
+    present = faults_of(spec.axes, spec.library)
     for name in spec.faults:
         if name not in present:
             raise InputError(f"{name} {misfit(spec.library.block('faults', name), plant)}", f"faults.{name}")

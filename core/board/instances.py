@@ -6,13 +6,15 @@ from functools import cache
 from typing import Any, NamedTuple, cast
 
 from core.block import Block, BlockParams, Context, FloatArray
-from core.board.library import Library
+from core.board.library import PLAIN, Library
 from core.board.spec import Section, Spec
 from core.diagnose.hypothesis import ModelList
 from core.errors import InputError
+from core.identify.estimator import Estimator
 from core.loop.axes_score import AxesScore
 from core.loop.axis_measurement import AxisMeasurement
 from core.loop.effects import Effects
+from core.loop.estimate_score import EstimateScore
 from core.loop.measurement import Measurement
 from core.loop.score import Score
 
@@ -42,7 +44,7 @@ class Instance(NamedTuple):
 
 
 @cache
-def faults_of(library: Library, axes: tuple[str, ...]) -> dict[str, type[Block]]:
+def faults_of(axes: tuple[str, ...], library: Library = PLAIN) -> dict[str, type[Block]]:
     """Return the faults that a plant with these axes may have, by name."""
     return {name: block for name, block in library.blocks("faults").items() if block.fits(axes)}
 
@@ -52,7 +54,7 @@ def _absent_faults(library: Library, axes: tuple[str, ...]) -> dict[str, Instanc
     """Return the faults that a plant with these axes may have, as they are while they are not there."""
     return {
         name: Instance(f"faults.{name}", f"faults.{name}", block, usual_params(block))
-        for name, block in faults_of(library, axes).items()
+        for name, block in faults_of(axes, library).items()
     }
 
 
@@ -68,7 +70,10 @@ def instances(spec: Spec) -> list[Instance]:
     for name, absent in _absent_faults(spec.library, spec.axes).items():
         order.append(absent._replace(params=spec.faults[name]) if name in spec.faults else absent)
     order += _measured(spec)
-    order += [_waiting(spec, name, section) for name, section in spec.identifiers.items()]
+    for name, section in spec.identifiers.items():
+        order.append(_waiting(spec, name, section))
+        if issubclass(section.block, Estimator):
+            order.append(Instance(f"{name}.score", name, EstimateScore, EstimateScore.Params(), spec.turns(section)))
     for name, section in spec.diagnosers.items():
         order.append(_waiting(spec, name, section))
         if scored(section.block):

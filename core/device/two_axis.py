@@ -80,12 +80,13 @@ class TwoAxis(Oscillator):
         r"""Return frequency (rad/ms) and quality factor of the damped modes that ring, the lowest first.
 
         They are :math:`|\lambda|` and :math:`-|\lambda|/2\,\mathrm{Re}\,\lambda` of the eigenvalues of
-        :math:`\begin{bmatrix}0&1\\-M^{-1}K&-M^{-1}D\end{bmatrix}` at rest; a mode beyond critical damping has none.
+        :math:`\begin{bmatrix}0&1\\-M^{-1}K&-M^{-1}D\end{bmatrix}` at rest; a mode beyond critical damping has none, and
+        the quality factor of one without damping is infinite.
         """
         inverse = 1.0 / np.diag(self.masses)[:, None]
         system = np.block([[np.zeros((2, 2)), np.eye(2)], [-inverse * self.stiffnesses, -inverse * self.dampings]])
         rates = [complex(rate) for rate in np.linalg.eigvals(system) if rate.imag > 0.0]
-        return sorted((abs(rate), -0.5 * abs(rate) / rate.real) for rate in rates)
+        return sorted((abs(rate), -0.5 * abs(rate) / rate.real if rate.real < 0.0 else math.inf) for rate in rates)
 
     @property
     def fastest(self) -> float:

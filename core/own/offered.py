@@ -42,6 +42,8 @@ OFFERED: dict[str, tuple[str, ...]] = {
     "core.diagnose.hypothesis": DIAGNOSE,
     "core.diagnose.judge": ("Judge",),
     "core.diagnose.lanes": ("LANE",),
+    "core.identify.estimator": ("Estimator",),
+    "core.identify.identifier": ("PHYSICAL",),
     "core.device.oscillator": ("held", "transition"),
     "core.device.ranges": ("Sized",),
 }

@@ -23,6 +23,7 @@ PUBLIC: dict[str, tuple[str, ...]] = {
     "reference": (),
     "control": (*REFERENCE, "model.displacement", "model.velocity", *MEASURED, *DRIVEN, "@engaged"),
     "diagnose": (*MEASURED, *DRIVEN, *REFERENCE),
+    "identify": (*MEASURED, *DRIVEN, *REFERENCE),
     "sense": ("plant.displacement", "plant.velocity", *MEASURED),
     "faults": (*(f"effects.{port.name}" for port in Effects.outputs), *DRIVEN),
 }
@@ -32,6 +33,7 @@ FIRST_OUTPUTS = {
     "control": ("voltage",),
     "sense": ("displacement",),
     "diagnose": ("probability",),
+    "identify": ("estimate",),
     "faults": ("severity",),
 }
 """Outputs that a unit of a family must have, for others read them."""

@@ -20,6 +20,7 @@ from core.diagnose.hypothesis import BankParams
 from core.diagnose.judge import Judge
 from core.errors import InputError
 from core.faults.fault import Fault
+from core.identify.estimator import Estimator
 from core.kernel import kernel
 from core.own.declare import Declaration
 from core.own.evaluate import Evaluator
@@ -37,6 +38,7 @@ BASES: tuple[tuple[type[Block], str], ...] = (
     (Fault, "faults"),
     (Sensor, "sense"),
     (Judge, "diagnose"),
+    (Estimator, "identify"),
 )
 """What a unit is, by its base; one on ``Block`` with the ports of a controller is a controller."""
 

@@ -21,6 +21,8 @@ from scenarios.measure.sensing import sensing_metrics
 from scenarios.measure.stretch import Stretch
 from scenarios.measure.verdicts import verdict_metrics
 
+EXCITED = ("excitation", "excitation_relative", "identifiable")
+"""Signals of an identifier that judge the input."""
 IDENTIFIED_PCT = 10.0
 """Error of the worst coefficient within which an identifier counts as settled."""
 SETTLED = 0.02
@@ -152,11 +154,8 @@ def identify_metrics(board: Board, name: str, error: FloatArray | None, stretch:
     estimates at the end.
     """
     prefix = f"identify.{name}"
-    last = {
-        "excitation": board.value(f"{name}.excitation"),
-        "excitation_relative": board.value(f"{name}.excitation_relative"),
-        "identifiable": board.value(f"{name}.identifiable"),
-    }
+    known = set(board.signals.names)  # an identifier of one's own need not judge the input
+    last = {port: board.value(f"{name}.{port}") for port in EXCITED if f"{name}.{port}" in known}
     if error is not None:
         counted = error[stretch.start(len(error), board.dt_ms) :]
         last["settling_ms"] = last_where(lambda values: values > IDENTIFIED_PCT, counted) * board.dt_ms

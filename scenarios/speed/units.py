@@ -14,6 +14,7 @@ WHERE = {
     "reference": ({"reference.kind": "{name}"}, "reference"),
     "sense": ({"sensor.kind": "{name}"}, "{name}"),
     "diagnose": ({"diagnosers.{name}.kind": "{name}"}, "{name}"),
+    "identify": ({"identifiers.{name}.kind": "{name}"}, "{name}"),
     "faults": ({}, "faults.{name}"),
 }
 """Values of a bench that has a unit of each family in use, and the block to measure."""

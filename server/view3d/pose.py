@@ -123,7 +123,7 @@ class Observer:
 
     def __init__(self, session: Session, layout: Layout) -> None:
         self._session, self._layout = session, layout
-        self._faults: dict[str, type[Any]] = faults_of(session.board.spec.library, session.board.spec.axes)
+        self._faults: dict[str, type[Any]] = faults_of(session.board.spec.axes, session.board.spec.library)
         self._bank = _bank(session)
         names = (*SIGNALS, *(f"faults.{name}" for name in self._faults), *self._bank)
         self._indices = session.indices(names)

@@ -235,7 +235,7 @@ def test_benches_of_students_trip_too_and_their_checkpoints_say_so(live: Live) -
     until(lambda: (found := kept()) is not None and found.stored.document["trip"] is not None)
     found = kept()
     assert revived(found.stored).trip == session.board.trip and not found.head.running
-    assert [event.kind for event in found.events][-1] in ("make_safe", "recording_started", "recording_stopped")
+    assert "make_safe" in {event.kind for event in found.events}
     (recording,) = recordings(live, 1)
     assert recording["bench_id"] == ada.bench
 

@@ -72,7 +72,7 @@ class GyroscopeObserver:
     def __init__(self, session: Session) -> None:
         self._session = session
         axes = session.board.spec.axes
-        self._faults: dict[str, type[Any]] = faults_of(session.board.spec.library, axes)
+        self._faults: dict[str, type[Any]] = faults_of(axes, session.board.spec.library)
         moved = [f"plant.{axis}" for axis in axes]
         self._indices = session.indices([*moved, "rate.rate", f"drive.{axes[1]}.force"])
         self._severities = session.indices([f"faults.{name}" for name in self._faults])
