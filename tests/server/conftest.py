@@ -174,7 +174,7 @@ def serving(folder: Path, **fields: Any) -> Iterator[Live]:
     finally:
         live.http.close()
         server.should_exit = True
-        thread.join(15)
+        thread.join(90)
         assert not thread.is_alive(), "the server did not stop"
 
 

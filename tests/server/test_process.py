@@ -176,7 +176,7 @@ def test_it_says_where_it_is_and_says_goodbye(tmp_path: Path) -> None:
                     last.append(message if isinstance(message, str) else "")
             assert caught.value.rcvd is not None and caught.value.rcvd.code == 1001
             assert any('"code":"shutdown"' in message for message in last[-3:])
-            assert running.wait(10) == 0
+            assert running.wait(90) == 0
             assert time.monotonic() - began < 8
     table = pq.read_table(tmp_path / "data" / "recordings" / f"{recording['id']}.parquet")
     assert table.num_rows > 100

@@ -20,7 +20,7 @@ from scenarios.library import get
 from scenarios.run import build, run
 from scenarios.schema import Scenario
 from scenarios.seeds import parse_seeds
-from tests.core.own.texts import PI, ROOT, odd
+from tests.core.own.texts import FIT, PI, ROOT, odd
 
 BASE = "ch3-mrac-mass-x10"
 COPIED = (
@@ -43,7 +43,7 @@ def source_of(family: str, name: str) -> str:
     return (ROOT / "core" / family / f"{name}.py").read_text("utf-8")
 
 
-FAMILIES = ("control", "reference", "faults", "sense", "diagnose")
+FAMILIES = ("control", "reference", "faults", "sense", "diagnose", "identify")
 LIBRARY = [(family, name) for family in FAMILIES for name in registry.blocks(family)]
 
 
@@ -201,5 +201,15 @@ def test_the_document_lists_what_is_offered_and_what_is_public() -> None:
 def test_no_public_source_carries_the_truth() -> None:
     """Of what controllers and diagnosers may read, a fault moves only what it would move in a laboratory."""
     hidden = ("effects.", "plant.", "faults.", "environment.", "guard.", "score", "truth")
-    for family in ("control", "diagnose", "reference"):
+    for family in ("control", "diagnose", "identify", "reference"):
         assert not [source for source in PUBLIC[family] if source.startswith(hidden) or "truth" in source]
+
+
+def test_the_board_scores_an_identifier_and_it_never_sees_the_truth() -> None:
+    """error = max |estimate/truth - 1|, with 5 % of mass added after 300 samples."""
+    values = {"identifiers.mine.kind": "fit", "events": [{"at_sample": 300, "fault": "added_mass", "severity": 0.05}]}
+    result = run(with_unit("fit", FIT, {**values, "samples": 400}, "first-look"), taps=True)
+    estimate, truth = (result.signal(f"mine.{port}.mass") for port in ("estimate", "truth"))
+    np.testing.assert_allclose(truth, np.where(np.arange(400) < 300, 1.0, 1.05), rtol=1e-12)
+    np.testing.assert_allclose(result.signal("mine.error_pct"), 100.0 * np.abs(estimate / truth - 1.0), atol=1e-9)
+    assert result.summary()["metrics"]["identify.mine.error_pct"] == pytest.approx(0.0, abs=1e-9)

@@ -128,3 +128,43 @@ def odd(place: str = "step", text: str = "", **more: str) -> str:
             for name, indent in PLACES.items()
         }
     )
+
+
+FIT = '''from core.block import BlockParams, parameter
+from core.identify.estimator import Estimator
+from core.record import Record
+
+
+class Fit(Estimator):
+    """An estimate that is known beforehand."""
+
+    title = "Fit"
+
+    class Params(BlockParams):
+        """Nothing that matters."""
+
+        forgetting: float = parameter(0.999, "share of the past kept", ge=0.5, le=1)
+
+    class Packed(Record):
+        """Forgetting."""
+
+        forgetting: float
+
+    class State(Record):
+        """Samples so far."""
+
+        count: float
+
+    @classmethod
+    def pack(cls, params, context):
+        """Pack the forgetting."""
+        return cls.Packed.blank()
+
+    @staticmethod
+    def step(p, s, x):
+        """Let the mass grow by a thousandth in each sample, up to five percent."""
+        s.count += 1.0
+        x.estimate[0] = 1.0 + min(0.05, 0.001 * s.count)
+        x.estimate[1] = 1.0
+        x.estimate[2] = 1.0
+'''
