@@ -103,6 +103,24 @@ def test_lqg_has_the_gains_of_the_riccati_equations_and_the_error_they_predict()
     assert covariance[0, 0] < 0.3 * open_loop[0, 0]
 
 
+def test_lqg_moves_a_device_as_another_model_moves() -> None:
+    """u = (m a + b v + k y) / F about the model, whose a is its own; without noise the estimate is exact."""
+    values = {"kind": "transfer_function", "numerator": [0.2], "denominator": [1.0, 1.4, 2.0]}
+    scenario = bench("lqg", AGED, {"controller.kind": "lqg", "model": values, "events": []})
+    spec, z = scenario.spec, turn(scenario)
+    device, model = spec.nominal, spec.context(1).model
+    assert model.stiffness / model.mass == pytest.approx(2.0 * device.stiffness / device.mass)
+    own = packed("lqg", scenario)
+    gains = np.array([own.k1, own.k2])
+    motion, wanted = phasors(sampled(device, spec.dt_ms), z), phasors(sampled(model, spec.dt_ms), z)
+    y, v = wanted
+    a = (model.force - model.damping * v - model.stiffness * y) / model.mass
+    asked = (device.mass * a + device.damping * v + device.stiffness * y) / device.force
+    error = 10.0 * abs(motion[0] * (asked + gains @ wanted) / (1.0 + gains @ motion) - wanted[0]) / np.sqrt(2.0)
+    assert tail_error(run(scenario)) == pytest.approx(error, rel=5e-3)
+    assert error < 0.05 * 10.0 * abs(motion[0] - wanted[0]) / np.sqrt(2.0), "open loop"
+
+
 # ---------------------------------------------------------------- Page's test
 
 
