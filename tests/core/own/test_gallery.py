@@ -158,6 +158,7 @@ def test_page_adds_up_the_ratios_and_alarms_in_time() -> None:
     variance = np.cumsum((said[1] - said[0])[fault] ** 2) / 0.05**2
     latest = int(np.argmax(mean - 4.0 * np.sqrt(variance) > 10.0))
     alarm = result.signal("mine.alarm")
+    np.testing.assert_array_equal(alarm > 0.0, got.max(axis=1) > 10.0)
     assert not alarm[:2001].any(), "e^h samples to a false alarm are ten times the healthy stretch"
     assert 0 < int(np.argmax(alarm[fault] > 0.0)) <= latest < 60
     assert result.summary()["metrics"]["diagnosis.mine.correct_fraction"] > 0.95
@@ -253,6 +254,22 @@ def test_sliding_observer_is_wrong_by_the_sample_and_its_square() -> None:
     velocity, displacement = np.array(worst).T
     np.testing.assert_allclose(velocity[:-1] / velocity[1:], 2.0, rtol=0.25)
     np.testing.assert_allclose(displacement[:-1] / displacement[1:], 4.0, rtol=0.25)
+
+
+def test_sliding_observer_is_the_super_twisting_recursion() -> None:
+    scenario = bench("sliding_observer", HEAVY, {**SLIDING, "duration_ms": 2.0})
+    result = run(scenario, taps=True)
+    device, dt = scenario.spec.nominal, scenario.spec.dt_ms
+    measured, applied = result.signal("sensor.displacement"), result.signal("drive.voltage")
+    y, v, wanted = measured[0], 0.0, [(measured[0], 0.0)]
+    for now, later, volt in zip(measured[:-1], measured[1:], applied[:-1], strict=True):
+        force = device.force * volt - device.damping * v - device.stiffness * (now + later) / 2.0
+        rise = dt * (force / device.mass + 1.1 * 100.0 * np.sign(now - y))
+        y += dt * (v + rise / 2.0 + 1.5 * np.sqrt(100.0 * abs(now - y)) * np.sign(now - y))
+        v += rise
+        wanted.append((y, v))
+    got = np.column_stack([result.signal(f"sliding_observer.{name}") for name in ("estimate", "velocity")])
+    np.testing.assert_allclose(got, wanted, atol=1e-6)
 
 
 def test_sliding_observer_feeds_back_as_the_true_velocity_would() -> None:
