@@ -1,0 +1,290 @@
+"""The units of ``docs/units``: each against an oracle of its own, and doing what it claims on a library scenario."""
+
+from __future__ import annotations
+
+import runpy
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.linalg import solve_discrete_are, solve_discrete_lyapunov
+from scipy.signal import cont2discrete
+
+from core.block import FloatArray, Oscillator
+from core.own.unit import unit
+from scenarios.run import Result, run
+from scenarios.schema import Scenario
+from tests.core.own.test_own_units import with_unit
+from tests.core.own.texts import ROOT
+
+UNITS = ROOT / "docs" / "units"
+AGED, HEAVY = "ch3-case1-aged-mass", "ch3-stvsc-mass"
+
+
+def source(name: str) -> str:
+    return (UNITS / f"{name}.py").read_text("utf-8")
+
+
+def bench(name: str, base: str, values: dict[str, Any] | None = None) -> Scenario:
+    return with_unit(name, source(name), values or {}, base)
+
+
+def packed(name: str, scenario: Scenario) -> Any:
+    block = unit(name, source(name)).block
+    return block.Packed(block.packed(block.Params(), scenario.spec.context(1)))
+
+
+def sampled(device: Oscillator, dt_ms: float) -> tuple[FloatArray, FloatArray]:
+    """Return displacement and velocity of a device over a sample under a held voltage, by scipy."""
+    a = np.array([[0.0, 1.0], [-device.stiffness / device.mass, -device.damping / device.mass]])
+    b = np.array([[0.0], [device.force / device.mass]])
+    over, push, *_ = cont2discrete((a, b, np.eye(2), np.zeros((2, 1))), dt_ms)
+    return over, push
+
+
+def true_device(result: Result) -> Oscillator:
+    """Return the device as the faults have left it."""
+    nominal = result.board.spec.nominal
+    mass, stiffness, damping = (result.signal(f"effects.{name}_scale")[-1] for name in ("mass", "stiffness", "damping"))
+    return Oscillator(nominal.mass * mass, nominal.damping * damping, nominal.stiffness * stiffness, nominal.force)
+
+
+def phasors(device: tuple[FloatArray, FloatArray], z: complex) -> Any:
+    """Return displacement and velocity of a sampled device under a voltage of one at a frequency."""
+    over, push = device
+    return np.linalg.solve(z * np.eye(2) - over, push)[:, 0]
+
+
+def turn(scenario: Scenario) -> complex:
+    """Return how the reference turns in a sample."""
+    return complex(np.exp(2j * np.pi * scenario.document["reference"]["frequency_hz"] * 1e-3 * scenario.spec.dt_ms))
+
+
+def tail_error(result: Result) -> float:
+    return float(result.summary()["metrics"]["control.tail_rms_error_um"])
+
+
+def test_the_page_lists_every_unit_and_the_command_line_accepts_it() -> None:
+    text = (ROOT / "docs" / "own-units.md").read_text("utf-8")
+    programs = {"design_h_infinity", "train_neural_net"}
+    names = {path.stem for path in UNITS.glob("*.py")} - programs
+    assert names == {"lqg", "h_infinity", "page", "neural_net", "sliding_observer"}
+    for name in names:
+        assert f"[`{name}.py`](units/{name}.py)" in text
+        assert unit(name, source(name)).family == ("diagnose" if name == "page" else "control")
+
+
+# ---------------------------------------------------------------- LQG
+
+
+NOISY = {"controller.kind": "lqg", "plant.drive_noise_v": 1.0, "plant.thermal_noise": False, "duration_ms": 500.0}
+
+
+def test_lqg_has_the_gains_of_the_riccati_equations_and_the_error_they_predict() -> None:
+    scenario = bench("lqg", "first-look", NOISY)
+    a, b = sampled(scenario.spec.nominal, scenario.spec.dt_ms)
+    cost, drift, noise = 0.03**2, 1.0**2, 0.05**2
+    c = np.array([[1.0, 0.0]])
+    p = solve_discrete_are(a, b, c.T @ c, np.array([[cost]]))
+    k = np.linalg.solve(cost + b.T @ p @ b, b.T @ p @ a)
+    q = solve_discrete_are(a.T, c.T, drift * b @ b.T, np.array([[noise]]))
+    gain = q @ c.T / (c @ q @ c.T + noise)
+    own = packed("lqg", scenario)
+    np.testing.assert_allclose([own.k1, own.k2, own.l1, own.l2], [*k[0], *gain[:, 0]], rtol=1e-7)
+
+    # tracking error d and error of the estimate: d' = (A - BK) d + BK eps + Bw, eps' = (I - LC)(A eps + Bw) - Lv
+    keep = np.eye(2) - gain @ c
+    loop = np.block([[a - b @ k, b @ k], [np.zeros((2, 2)), keep @ a]])
+    enters = np.block([[b, np.zeros((2, 1))], [keep @ b, -gain]])
+    covariance = solve_discrete_lyapunov(loop, enters @ np.diag([drift, noise]) @ enters.T)
+    result = run(scenario)
+    assert tail_error(result) == pytest.approx(np.sqrt(covariance[0, 0]), rel=0.05)
+    open_loop = solve_discrete_lyapunov(a, drift * b @ b.T)
+    assert covariance[0, 0] < 0.3 * open_loop[0, 0]
+
+
+def test_lqg_moves_a_device_as_another_model_moves() -> None:
+    """u = (m a + b v + k y) / F about the model, whose a is its own; without noise the estimate is exact."""
+    values = {"kind": "transfer_function", "numerator": [0.2], "denominator": [1.0, 1.4, 2.0]}
+    scenario = bench("lqg", AGED, {"controller.kind": "lqg", "model": values, "events": []})
+    spec, z = scenario.spec, turn(scenario)
+    device, model = spec.nominal, spec.context(1).model
+    assert model.stiffness / model.mass == pytest.approx(2.0 * device.stiffness / device.mass)
+    own = packed("lqg", scenario)
+    gains = np.array([own.k1, own.k2])
+    motion, wanted = phasors(sampled(device, spec.dt_ms), z), phasors(sampled(model, spec.dt_ms), z)
+    y, v = wanted
+    a = (model.force - model.damping * v - model.stiffness * y) / model.mass
+    asked = (device.mass * a + device.damping * v + device.stiffness * y) / device.force
+    error = 10.0 * abs(motion[0] * (asked + gains @ wanted) / (1.0 + gains @ motion) - wanted[0]) / np.sqrt(2.0)
+    assert tail_error(run(scenario)) == pytest.approx(error, rel=5e-3)
+    assert error < 0.05 * 10.0 * abs(motion[0] - wanted[0]) / np.sqrt(2.0), "open loop"
+
+
+# ---------------------------------------------------------------- Page's test
+
+
+def test_page_adds_up_the_ratios_and_alarms_in_time() -> None:
+    result = run(bench("page", "ch5-seven-step", {"diagnosers.mine.kind": "page"}), taps=True)
+    spec = result.board.spec
+    applied, measured = result.signal("drive.voltage"), result.signal("sensor.displacement")
+    factors = [{}, {"m": 1.05}, {"m": 1.10}, {"k": 1.05}, {"k": 1.10}, {"b": 1.30}]
+    names = ["healthy", "m+5", "m+10", "k+5", "k+10", "b+30"]
+    models = []
+    for factor in factors:
+        nominal = spec.nominal
+        mass, damping = nominal.mass * factor.get("m", 1.0), nominal.damping * factor.get("b", 1.0)
+        over, push = sampled(
+            Oscillator(mass, damping, nominal.stiffness * factor.get("k", 1.0), nominal.force), spec.dt_ms
+        )
+        state, seen = np.zeros(2), [0.0]
+        for volt in applied[:-1]:
+            state = over @ state + push[:, 0] * volt
+            seen.append(state[0])
+        models.append(seen)
+    said = np.array(models)
+    squares = ((measured - said) / 0.05) ** 2
+    sums, wanted = np.zeros(6), []
+    for tick in range(len(measured)):
+        sums = np.maximum(0.0, sums + 0.5 * (squares[0, tick] - squares[:, tick]))
+        sums = np.maximum(0.0, sums - max(0.0, sums.max() - 20.0))
+        wanted.append(sums)
+    got = np.column_stack([result.signal(f"mine.sum.{name}") for name in names])
+    np.testing.assert_allclose(got, np.array(wanted), atol=1e-5)
+
+    # the sum is at least that of the ratios since the fault; its mean and variance follow from the motion without noise
+    motion, fault = result.signal("plant.displacement"), slice(2001, 2200)
+    mean = np.cumsum(((motion - said[0]) ** 2 - (motion - said[1]) ** 2)[fault]) / (2.0 * 0.05**2)
+    variance = np.cumsum((said[1] - said[0])[fault] ** 2) / 0.05**2
+    latest = int(np.argmax(mean - 4.0 * np.sqrt(variance) > 10.0))
+    alarm = result.signal("mine.alarm")
+    np.testing.assert_array_equal(alarm > 0.0, got.max(axis=1) > 10.0)
+    assert not alarm[:2001].any(), "e^h samples to a false alarm are ten times the healthy stretch"
+    assert 0 < int(np.argmax(alarm[fault] > 0.0)) <= latest < 60
+    assert result.summary()["metrics"]["diagnosis.mine.correct_fraction"] > 0.95
+
+
+# ---------------------------------------------------------------- H-infinity
+
+
+def test_h_infinity_has_the_constants_and_the_norm_of_its_design() -> None:
+    text = runpy.run_path(str(UNITS / "design_h_infinity.py"))
+    bound, numerator, denominator = text["design"]()
+    own = runpy.run_path(str(UNITS / "h_infinity.py"))
+    np.testing.assert_allclose(own["NUMERATOR"], numerator, rtol=1e-6)
+    np.testing.assert_allclose(own["DENOMINATOR"], denominator[1:], rtol=1e-6)
+    assert own["BOUND"] == pytest.approx(bound, rel=1e-5)
+    a, b, c = text["device"]()
+    s = 1j * np.logspace(-3, 3, 4001)
+    g = np.array([(c @ np.linalg.solve(at * np.eye(2) - a, b))[0, 0] for at in s])
+    k = np.polyval(numerator, s) / np.polyval(denominator, s) / text["WEIGHT"]
+    norm = np.sqrt((1.0 + abs(k) ** 2) * (1.0 + abs(g) ** 2)) / abs(1.0 + g * k)  # of rank one: the product of lengths
+    assert bound / text["ABOVE_LEAST"] <= norm.max() <= bound
+
+
+def test_h_infinity_leaves_the_error_that_its_loop_predicts() -> None:
+    """e = (Gm - G) r / (1 + G C), all sampled, C by its poles and a held error."""
+    scenario = bench("h_infinity", AGED, {"controller.kind": "h_infinity"})
+    result = run(scenario)
+    dt, z, nominal = scenario.spec.dt_ms, turn(scenario), scenario.spec.nominal
+    own = runpy.run_path(str(UNITS / "h_infinity.py"))
+    volts = nominal.stiffness / nominal.force
+    law = Oscillator(1.0, own["DENOMINATOR"][0], own["DENOMINATOR"][1], 1.0)
+    state, rate = phasors(sampled(law, dt * nominal.natural_frequency), z)
+    controller = volts * (own["NUMERATOR"][0] * rate + own["NUMERATOR"][1] * state)
+    model, device = phasors(sampled(nominal, dt), z)[0], phasors(sampled(true_device(result), dt), z)[0]
+    error = 10.0 * abs((model - device) / (1.0 + device * controller)) / np.sqrt(2.0)
+    assert tail_error(result) == pytest.approx(error, rel=2e-3)
+    assert error < 0.4 * 10.0 * abs(model - device) / np.sqrt(2.0), "open loop"
+
+
+# ---------------------------------------------------------------- a network
+
+
+def test_neural_net_has_the_weights_of_its_training() -> None:
+    training = runpy.run_path(str(UNITS / "train_neural_net.py"))
+    weights, missed = training["train"]()
+    own = runpy.run_path(str(UNITS / "neural_net.py"))
+    np.testing.assert_allclose([own["OF_ERROR"], own["OF_RATE"], own["OUT"]], weights, rtol=1e-3)
+    assert missed < 0.07
+
+
+def test_neural_net_computes_its_forward_pass_and_leaves_the_error_of_the_same_loop_in_numpy() -> None:
+    scenario = bench("neural_net", AGED, {"controller.kind": "neural_net"})
+    result = run(scenario, taps=True)
+    own = runpy.run_path(str(UNITS / "neural_net.py"))
+    nominal, dt = scenario.spec.nominal, scenario.spec.dt_ms
+    (a, b), (am, bm) = sampled(true_device(result), dt), sampled(nominal, dt)
+    reference, before = result.signal("reference.voltage"), 0.0
+    x, m, errors, corrections = np.zeros(2), np.zeros(2), [], []
+    for tick, volt in enumerate(reference):
+        e = m[0] - x[0]
+        rate = (e - before) / (nominal.natural_frequency * dt) if tick else 0.0
+        before = e
+        net = np.tanh(np.array(own["OF_ERROR"]) * e + np.array(own["OF_RATE"]) * rate) @ np.array(own["OUT"])
+        corrections.append(10.0 * np.sign(nominal.force) * net)
+        errors.append(e)
+        x = a @ x + b[:, 0] * (volt + corrections[-1])
+        m = am @ m + bm[:, 0] * volt
+    np.testing.assert_allclose(result.signal("neural_net.correction"), corrections, atol=1e-3)
+    tail = np.array(errors)[-len(errors) // 4 :]
+    assert tail_error(result) == pytest.approx(np.sqrt(np.mean(tail**2)), rel=1e-3)
+    assert tail_error(result) < 0.4 * tail_error(run(bench("neural_net", AGED, {"controller.kind": "open_loop"})))
+
+
+# ---------------------------------------------------------------- a sliding observer
+
+
+SLIDING = {"controller.kind": "sliding_observer", "duration_ms": 40.0}
+
+
+def test_sliding_observer_is_wrong_by_the_sample_and_its_square() -> None:
+    """Levant 1998: homogeneity makes the error of the velocity O(h), that of the displacement O(h^2)."""
+    worst = []
+    for rate_khz in (100, 200, 400):
+        values = {**SLIDING, "sample_rate_khz": rate_khz}
+        result = run(bench("sliding_observer", HEAVY, values), taps=True)
+        half = len(result.signal("plant.velocity")) // 2
+        worst.append(
+            [
+                np.abs(result.signal(f"sliding_observer.{own}") - result.signal(f"plant.{true}"))[half:].max()
+                for own, true in (("velocity", "velocity"), ("estimate", "displacement"))
+            ]
+        )
+    velocity, displacement = np.array(worst).T
+    np.testing.assert_allclose(velocity[:-1] / velocity[1:], 2.0, rtol=0.25)
+    np.testing.assert_allclose(displacement[:-1] / displacement[1:], 4.0, rtol=0.25)
+
+
+def test_sliding_observer_is_the_super_twisting_recursion() -> None:
+    scenario = bench("sliding_observer", HEAVY, {**SLIDING, "duration_ms": 2.0})
+    result = run(scenario, taps=True)
+    device, dt = scenario.spec.nominal, scenario.spec.dt_ms
+    measured, applied = result.signal("sensor.displacement"), result.signal("drive.voltage")
+    y, v, wanted = measured[0], 0.0, [(measured[0], 0.0)]
+    for now, later, volt in zip(measured[:-1], measured[1:], applied[:-1], strict=True):
+        force = device.force * volt - device.damping * v - device.stiffness * (now + later) / 2.0
+        rise = dt * (force / device.mass + 1.1 * 100.0 * np.sign(now - y))
+        y += dt * (v + rise / 2.0 + 1.5 * np.sqrt(100.0 * abs(now - y)) * np.sign(now - y))
+        v += rise
+        wanted.append((y, v))
+    got = np.column_stack([result.signal(f"sliding_observer.{name}") for name in ("estimate", "velocity")])
+    np.testing.assert_allclose(got, wanted, atol=1e-6)
+
+
+def test_sliding_observer_feeds_back_as_the_true_velocity_would() -> None:
+    """The loop with the true velocity leaves a phasor; the estimate moves it by no more than its error can."""
+    scenario = bench("sliding_observer", HEAVY, {**SLIDING, "sample_rate_khz": 400})
+    result = run(scenario, taps=True)
+    dt, z = scenario.spec.dt_ms, turn(scenario)
+    nominal, device = sampled(scenario.spec.nominal, dt), sampled(true_device(result), dt)
+    gains = np.array([-10.0, -1.0])
+    motion, wanted = phasors(device, z), phasors(nominal, z)
+    driven = (1.0 + gains @ wanted) / (1.0 + gains @ motion)
+    error = 10.0 * abs(wanted[0] - motion[0] * driven) / np.sqrt(2.0)
+    around = np.exp(1j * np.linspace(1e-3, np.pi, 2000))
+    reach = max(abs(one[0] / (1.0 + gains @ one)) for one in (phasors(device, at) for at in around))
+    off = result.signal("sliding_observer.velocity") - result.signal("plant.velocity")
+    moved = reach * abs(gains[1]) * float(np.sqrt(np.mean(off[len(off) // 2 :] ** 2)))
+    assert abs(tail_error(result) - error) <= moved < error
+    assert error < 0.4 * 10.0 * abs(wanted[0] - motion[0]) / np.sqrt(2.0), "open loop"
