@@ -5,14 +5,14 @@ from __future__ import annotations
 import importlib
 import pkgutil
 from functools import cache
-from importlib.metadata import entry_points
+from importlib.metadata import EntryPoint, entry_points
 from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from core.block import LOOP, Block, BlockParams, Equation
-from core.errors import unknown
+from core.errors import InputError, unknown
 from core.ports import Port
 
 FAMILIES = ("reference", "rate", "plant", "sense", "control", "identify", "diagnose", "readout", "faults", LOOP)
@@ -111,12 +111,31 @@ def _all(family: str) -> dict[str, type[Block]]:
             ):
                 found[value.name] = value
     for entry in entry_points(group=f"combbench.{family}"):
-        loaded: type[Block] = entry.load()
+        loaded = _installed(entry)
         loaded.name, loaded.family = entry.name, family
         found[entry.name] = loaded
     for loaded in found.values():
         _check_lengths(loaded)
     return dict(sorted(found.items()))
+
+
+def _installed(entry: EntryPoint) -> type[Block]:
+    """Return the block that an installed package names.
+
+    Raises
+    ------
+    InputError
+        When it cannot be loaded, or is no block.
+    """
+    package = entry.dist.name if entry.dist is not None else "an installed package"
+    try:
+        found = entry.load()
+    except Exception as error:
+        text = f"{package} names {entry.value}, which cannot be loaded: {error}"
+        raise InputError(text, f"{entry.group}.{entry.name}") from None
+    if not (isinstance(found, type) and issubclass(found, Block)):
+        raise InputError(f"{package} names {entry.value}, which is no Block", f"{entry.group}.{entry.name}")
+    return found
 
 
 def _check_lengths(entry: type[Block]) -> None:

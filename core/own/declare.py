@@ -51,12 +51,12 @@ class Declaration:
         self.inner: dict[str, Any] = {}
         self.values: dict[str, Any] = {}
         self.methods: dict[str, ast.FunctionDef] = {}
-        for position, node in enumerate(tree.body):
-            self._top(node, position)
+        for node in tree.body:
+            self._top(node)
         if self.node is None:
             raise UnitError("declares no unit: a class on Block, or on another base of the library", 1, 1)
 
-    def _top(self, node: ast.stmt, position: int) -> None:
+    def _top(self, node: ast.stmt) -> None:
         """Read one statement of the file."""
         if isinstance(node, ast.ImportFrom):
             self._import(node)
@@ -78,7 +78,7 @@ class Declaration:
             self.names[node.name] = node
         elif isinstance(node, ast.ClassDef):
             self._class(node)
-        elif not (position == 0 and _is_text(node)):
+        elif not _is_text(node):
             refuse(node, f"a unit has no statement {type(node).__name__} outside its class")
 
     def _import(self, node: ast.ImportFrom) -> None:
@@ -134,7 +134,7 @@ class Declaration:
     def _unit(self, node: ast.ClassDef) -> None:
         """Read the class of the unit."""
         outer = dict(self.names)
-        for position, part in enumerate(node.body):
+        for part in node.body:
             if isinstance(part, ast.ClassDef):
                 if part.name in self.inner:
                     refuse(part, f"{part.name} is declared already")
@@ -147,7 +147,7 @@ class Declaration:
             elif isinstance(part, ast.Assign | ast.AnnAssign) and part.value is not None:
                 for target in part.targets if isinstance(part, ast.Assign) else [part.target]:
                     self._value(target, part.value)
-            elif not (position == 0 and _is_text(part)) and not isinstance(part, ast.Pass):
+            elif not _is_text(part) and not isinstance(part, ast.Pass):
                 refuse(part, f"a unit has no statement {type(part).__name__} in its class")
         self.values["__doc__"] = _text(node)
         self.names.clear()
@@ -169,7 +169,7 @@ class Declaration:
         """Read a class of parameters, of a record or of ports."""
         hints: dict[str, Any] = {}
         values: dict[str, Any] = {}
-        for position, part in enumerate(node.body):
+        for part in node.body:
             if isinstance(part, ast.AnnAssign) and isinstance(part.target, ast.Name):
                 name = part.target.id
                 if (
@@ -181,7 +181,7 @@ class Declaration:
                 hints[name] = self._type(part.annotation)
                 if part.value is not None:
                     values[name] = self._evaluator.constant(part.value)
-            elif not (position == 0 and _is_text(part)) and not isinstance(part, ast.Pass):
+            elif not _is_text(part) and not isinstance(part, ast.Pass):
                 refuse(part, "declares fields only: name: kind = ...")
         if len(hints) > MOST_FIELDS:
             refuse(node, f"has more than {MOST_FIELDS} fields")

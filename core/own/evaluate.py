@@ -21,6 +21,7 @@ from core.record import RECORD, SCALAR, Record, Records
 
 MOST_OPERATIONS = 200_000
 MOST_ITEMS = 10_000
+DEEPEST_CALLS = 10
 
 
 class Evaluator:
@@ -34,7 +35,7 @@ class Evaluator:
 
     def __init__(self, names: dict[str, Any]) -> None:
         self.names = names
-        self._left = MOST_OPERATIONS
+        self._left, self._deep = MOST_OPERATIONS, 0
 
     def constant(self, node: ast.expr) -> Any:
         """Return the value of an expression of a declaration."""
@@ -204,6 +205,8 @@ class Evaluator:
             refuse(node, "passes on a list of arguments")
         arguments = [self.value(argument, local) for argument in node.args]
         named = {str(keyword.arg): self.value(keyword.value, local) for keyword in node.keywords}
+        if isinstance(function, ast.FunctionDef) and not named:
+            return self._own(node, function, arguments)
         if not callable(function) or (isinstance(function, type) and function not in MADE):
             refuse(node, "is called and is no function")
         if function is range and len(range(*arguments)) > MOST_ITEMS:
@@ -212,6 +215,16 @@ class Evaluator:
         if isinstance(result, int) and not isinstance(result, bool):
             return whole(node, result)
         return list(self._items(result, node)) if isinstance(result, zip | enumerate | range) else result
+
+    def _own(self, node: ast.Call, function: ast.FunctionDef, arguments: Sequence[Any]) -> Any:
+        """Call a function of the unit."""
+        if len(arguments) != len(function.args.args) or self._deep >= DEEPEST_CALLS:
+            refuse(node, f"{function.name} is given {len(arguments)} arguments, or calls too deeply")
+        self._deep += 1
+        local = {argument.arg: value for argument, value in zip(function.args.args, arguments, strict=True)}
+        _, result = self._run(function.body, local)
+        self._deep -= 1
+        return result
 
     def _items(self, value: Any, node: ast.AST) -> Sequence[Any]:
         if not isinstance(value, list | tuple | range | zip | enumerate):

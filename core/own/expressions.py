@@ -188,11 +188,23 @@ class Expressions:
         return inner, kind, owner, index, is_known
 
     def _subscript(self, node: ast.Subscript) -> Checked:
+        if isinstance(node.value, ast.Name) and isinstance(numbers := self.names.get(node.value.id), tuple):
+            return self._item_of(node, numbers)
         kind, vector, owner, index, is_known = self.item(node)
         if is_known:
             return kind, ast.Subscript(owner, index, ast.Load())
         self.used[ITEM] = item
         return kind, called(ITEM, owner, ast.Constant(float(vector.count)), index)
+
+    def _item_of(self, node: ast.Subscript, numbers: tuple[Any, ...]) -> Checked:
+        """Check an item of a tuple that is a constant of the file; the step gets the number itself."""
+        bounds, _ = self.value(node.slice)
+        if not isinstance(bounds, Whole) or bounds.low != bounds.high or not 0 <= bounds.low < len(numbers):
+            refuse(node, "a tuple is read at a constant index; copy it into a Vector of Packed to count through it")
+        number = numbers[bounds.low]
+        if isinstance(number, bool) or not isinstance(number, int | float) or not math.isfinite(number):
+            refuse(node, "is no number that a step can have")
+        return NUMBER, ast.Constant(float(number))
 
     def _binop(self, node: ast.BinOp) -> Checked:
         first, second = self.value(node.left), self.value(node.right)

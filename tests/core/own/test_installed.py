@@ -62,3 +62,14 @@ def test_the_test_of_the_template_passes_where_it_is_installed(told: Told) -> No
     done = told("-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir", str(TEMPLATE), str(TEMPLATE))
     assert done.returncode == 0, done.stdout
     assert "2 passed" in done.stdout
+
+
+def test_a_package_that_cannot_be_loaded_is_named_in_one_line(told: Told, tmp_path: Path) -> None:
+    info = tmp_path / "broken-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: broken\nVersion: 1.0\n", "utf-8")
+    (info / "entry_points.txt").write_text("[combbench.control]\nnone = no_such_module:None\n", "utf-8")
+    done = told("-m", "server.cli", "catalog", "control")
+    assert done.returncode == 2 and done.stdout == ""
+    (line,) = done.stderr.strip().split("\n")
+    assert line.startswith("combbench: combbench.control.none: broken names no_such_module:None")

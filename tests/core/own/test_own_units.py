@@ -27,7 +27,7 @@ COPIED = (
     *("open_loop", "pid"),
     *("constant", "prbs", "sine", "square", "step"),
     *("added_mass", "damping", "drive_gain", "sensor_bias", "sensor_dropout", "sensor_hum", "sensor_noise"),
-    *("sensor_quantisation", "stiffness", "vacuum_loss"),
+    *("sensor_quantisation", "shock", "stiffness", "vacuum_loss"),
     "ideal",
 )
 """Units of the library whose file is a unit of one's own as it is."""
@@ -213,3 +213,17 @@ def test_the_board_scores_an_identifier_and_it_never_sees_the_truth() -> None:
     np.testing.assert_allclose(truth, np.where(np.arange(400) < 300, 1.0, 1.05), rtol=1e-12)
     np.testing.assert_allclose(result.signal("mine.error_pct"), 100.0 * np.abs(estimate / truth - 1.0), atol=1e-9)
     assert result.summary()["metrics"]["identify.mine.error_pct"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_pack_may_call_functions_of_the_file_and_a_step_read_constants_of_it() -> None:
+    top = "SHARES = (0.25, 3)\n'''What of the error is seen.'''\n@kernel\ndef twice(a):\n    return 2.0 * a"
+    text = odd("step", "x.seen = SHARES[0] * twice(e) + SHARES[1]", top=top, pack="p.gain = twice(params.gain)")
+    board = build(with_unit("odd", text.replace("SHARES[1]", "SHARES[1] * p.gain")))
+    board.advance(50)
+    error = board.value("model.displacement") - board.value("sensor.displacement")
+    assert board.value("odd.seen") == 0.5 * error + 6.0
+    for wrong in ("x.seen = SHARES[2]", "for i in range(2):\n    x.seen = SHARES[i]", "x.seen = SHARES"):
+        with pytest.raises(InputError, match=r"tuple|no value"):
+            unit("odd", odd("step", wrong, top=top))
+    with pytest.raises(InputError, match="too deeply"):
+        build(with_unit("odd", odd("pack", "p.gain = again(1.0)", top="def again(a):\n    return again(a)")))
