@@ -10,6 +10,7 @@ from typing import Any
 from sqlalchemy import select
 
 from core.board.board import Board
+from core.own.admission import kept
 from server.bench.benches import Benches
 from server.bench.blind import Blind
 from server.bench.checkpoints import Checkpoints
@@ -84,7 +85,8 @@ class StudentBenches:
             wanted = await self._database.run(lambda session: session.scalar(query))
             if wanted is None:
                 raise not_found("class", person.class_id, "it may have ended")
-            return await self._make(person, wanted, None)
+            with kept():
+                return await self._make(person, wanted, None)
 
     async def replace(
         self,
@@ -134,11 +136,11 @@ class StudentBenches:
 
     async def _revived(self, bench_id: str) -> Session | None:
         """Return a bench that goes on from its checkpoint, if it has one that this version can read."""
-        kept = await self._checkpoints.load(bench_id) if bench_id else None
-        if kept is None:
+        found = await self._checkpoints.load(bench_id) if bench_id else None
+        if found is None:
             return None
         try:
-            return await self._benches.revive(kept, self.on_revived)
+            return await self._benches.revive(found, self.on_revived)
         except Exception:
             log.exception("bench %s cannot go on from what was kept", bench_id)
             return None

@@ -119,6 +119,8 @@ def test_the_teacher_begins_a_scenario_with_a_unit_on_all_benches(live: Any) -> 
         assert answer.status_code == 200, answer.text
         (member,) = live.http.get(f"/api/v1/classes/{group['id']}/members").json()["members"]
         assert "pi.voltage" in {signal["name"] for signal in live.get(member["bench"])["signals"]}
+        late = join(live, group, "Bob")
+        assert "pi.voltage" in {signal["name"] for signal in live.get(late.bench)["signals"]}
         reset = ada.ask("POST", f"/api/v1/benches/{member['bench']}/commands", json={"kind": "reset"})
         assert reset.status_code == 200, reset.text
         path = f"/api/v1/benches/{member['bench']}/commands"
