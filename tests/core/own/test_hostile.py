@@ -5,17 +5,21 @@ from __future__ import annotations
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from core.board.commands import Set
 from core.errors import InputError
 from core.own.unit import unit
+from scenarios import own
 from scenarios.library import get
 from scenarios.run import build
 from scenarios.schema import Scenario
 from tests.core.own.hostile import corpus
-from tests.core.own.texts import odd
+from tests.core.own.texts import ROOT, odd
 
 CORPUS = corpus()
 LOOK = get("first-look").document
@@ -60,3 +64,38 @@ def test_a_step_that_is_slow_to_compile_is_given_up(monkeypatch: pytest.MonkeyPa
     )
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, timeout=100)
     assert ended.returncode != 0
+
+
+def test_how_many_hypotheses_there_are_is_not_the_units_to_say() -> None:
+    text = (ROOT / "docs" / "own-units.md").read_text("utf-8").split("```python\n")[2].partition("```")[0]
+    lying = text.replace("p = cls.Packed.blank()", "p = cls.Packed.blank()\n        p.count = 1e6")
+    scenario = Scenario.load(
+        {**LOOK, "units": {"judge": {"source": lying}}, "diagnosers": {"mine": {"kind": "judge"}}, "expect": []}
+    )
+    board = build(scenario)
+    assert board.wiring.parameters("mine").count == 6.0
+    board.advance(200)
+    assert board.trip is None
+
+
+def test_a_fault_of_ones_own_cannot_come_while_the_board_runs() -> None:
+    board = build(Scenario.load(LOOK))
+    source = (ROOT / "core" / "faults" / "stiffness.py").read_text("utf-8")
+    with pytest.raises(InputError) as raised:
+        board.apply(Set(set={"units.softer.source": source}), "test")
+    assert (raised.value.field, raised.value.code) == ("units", "not_live")
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"), [("MOST_WAIT_S", 0.001, "is not compiled after"), ("sys", None, "cannot be compiled")]
+)
+def test_a_unit_that_is_not_compiled_apart_is_refused(
+    name: str, value: Any, said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if name == "sys":
+        value = SimpleNamespace(executable="/bin/false", stdin=sys.stdin, platform=sys.platform)
+    monkeypatch.setattr(own, name, value)
+    monkeypatch.setattr(own, "folder", lambda: Path("."))
+    monkeypatch.setattr(own, "get", lambda _: None)
+    with pytest.raises(InputError, match=said):
+        own.compile_apart("odd", odd())
