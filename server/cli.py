@@ -237,12 +237,13 @@ def serve(
         bool, typer.Option("--classroom", help="Serve a class on this network: students join by a code, without TLS.")
     ] = False,
     open_page: Annotated[bool, typer.Option("--open", help="Open the page in a browser.")] = False,
+    units: UnitOption = None,
 ) -> None:
     """Serve the dashboard."""
     from server.serve import serve as start
     from server.settings import load_settings
 
-    flags = {"classroom": classroom or None, "open_page": open_page or None}
+    flags = {"classroom": classroom or None, "open_page": open_page or None, "unit_files": units or None}
     start(load_settings(host=host, port=port, data=data, **flags))
 
 

@@ -57,6 +57,7 @@ class Settings(BaseSettings):
         "teacher",
         description="Whose scenarios may carry units of their own: nobody's, those of the teacher, or everyone's.",
     )
+    unit_files: list[Path] = Field([], description="Units of one's own, a file each, that every new bench has.")
     metrics_open: bool = Field(False, description="Serve /metrics without a token.")
     open_page: bool = Field(False, description="Open the page in a browser once the service answers.")
 

@@ -7,6 +7,8 @@ from pathlib import Path
 
 from core.board.board import Board
 from core.board.history import History
+from core.board.library import library_of
+from scenarios.own import with_units
 from scenarios.schema import Scenario
 from server.bench.commands import MAX_SCALE, MIN_SCALE
 from server.bench.replay import Replay, played
@@ -32,6 +34,9 @@ class Maker:
 
     def __init__(self, settings: Settings, metrics: Metrics, clock: Callable[[], float]) -> None:
         self._settings, self._metrics, self._clock = settings, metrics, clock
+        self.units = with_units({}, settings.unit_files, "unit_files").get("units", {})
+        """Units that every new bench has beside the library's."""
+        library_of({"units": self.units})
 
     def around(self, scenario: Scenario, board: Board, time_scale: float | None, class_id: str = "") -> Session:
         """Put a bench around a board; one for a student of a class has less room for its history."""

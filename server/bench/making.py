@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from core.board.board import Board
+from core.board.document import Document
+from core.own.admission import kept
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import build
@@ -16,9 +18,15 @@ AXES_SCALE = 0.1
 """Device seconds per wall second of a plant with axes."""
 
 
-def prepare(source: str | dict[str, Any], values: dict[str, Any], seed: int | None) -> tuple[Scenario, Board]:
-    """Read a scenario, write values over it, wire its board."""
+def prepare(
+    source: str | dict[str, Any], values: dict[str, Any], seed: int | None, units: Document | None = None
+) -> tuple[Scenario, Board]:
+    """Read a scenario, write values over it, give it the units of this server that it has not, wire its board."""
     scenario = with_values(read_scenario(source), values)
+    if units:
+        with kept():
+            own = {**units, **scenario.document.get("units", {})}
+            scenario = Scenario.load({**scenario.document, "units": own}, like=scenario)
     return scenario, build(scenario, seed)
 
 

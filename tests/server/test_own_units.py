@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import copy
 import json
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +20,7 @@ from scenarios.schema import Scenario
 from server.cli import app
 from server.serve import check_binding
 from server.settings import Settings
-from tests.core.own.texts import PI, odd
+from tests.core.own.texts import PI, ROOT, odd
 from tests.server.people.group import join, open_class
 
 LOOK = get("first-look").document
@@ -178,3 +180,26 @@ def test_a_campaign_with_a_unit_from_a_file(tmp_path: Path) -> None:
         gain = row["controllers.pi.proportional_v_um"]
         one = with_values(Scenario.load(base), {"controller.kind": "pi", "controllers.pi.proportional_v_um": gain})
         assert run(one, row["seed"]).digest == row["digest"]
+
+
+def test_every_new_bench_of_a_server_has_its_units(serve: Any, tmp_path: Path) -> None:
+    (tmp_path / "pi.py").write_text(PI, "utf-8")
+    with serve(unit_files=[tmp_path / "pi.py"]) as live:
+        bench = live.bench("first-look")
+        assert "pi.voltage" in {signal["name"] for signal in bench["signals"]}
+        assert [card["title"] for card in bench["units"]] == ["PI"]
+        other = PI.replace('title = "PI"', 'title = "Other"')
+        (card,) = live.bench(document(units={"pi": {"source": other}}))["units"]
+        assert card["title"] == "Other", "what a scenario carries stays"
+        student = join(live, open_class(live), "Ada")
+        assert "pi.voltage" in {signal["name"] for signal in live.get(student.bench)["signals"]}
+
+
+def test_a_server_does_not_start_with_a_wrong_unit(tmp_path: Path) -> None:
+    (tmp_path / "bad.py").write_text("import os", "utf-8")
+    told = [sys.executable, "-m", "server.cli", "serve", "--port", "0"]
+    where = ["--data", str(tmp_path / "data"), "--unit", str(tmp_path / "bad.py")]
+    ended = subprocess.run([*told, *where], cwd=ROOT, capture_output=True, text=True, check=False, timeout=110)
+    assert ended.returncode == 2 and ended.stdout == ""
+    (line,) = ended.stderr.strip().split("\n")
+    assert "units.bad.source.line 1, column 1" in line
