@@ -18,6 +18,7 @@ from core.board.wiring import wire
 from core.device.catalogue import device
 from core.errors import InputError
 from tests.core.fence import run_behind_fences
+from tests.core.own.texts import FIT
 from tests.lab import AXES_RICH, AXES_STORY, RICH, STORY, do, document, inner_digest, make, play, run_digest
 
 TICKS = 120
@@ -78,6 +79,8 @@ def chosen(entry: type[Block]) -> dict[str, Any]:
         if "hypotheses" not in entry.Params.model_fields:
             return {"diagnosers": {"kalman": {"kind": entry.name}, "slow": {"kind": entry.name, "every": 2}}}
         return {"diagnosers.kalman.kind": entry.name, "diagnosers.slow.kind": entry.name}
+    if entry.name == "estimate_score":  # it stands beside an identifier of one's own
+        return {"units.fit.source": FIT, "identifiers.fit.kind": "fit"}
     return {}
 
 
