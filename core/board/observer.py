@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -97,6 +98,12 @@ class Observer:
                 text = self._text(spec, name, port, value, i, column)
                 found.append({"kind": port, "text": f"{name}: {text}", "tick": first_tick + i, "new": text})
         return sorted(found, key=lambda finding: int(finding["tick"]))
+
+    def __deepcopy__(self, _memo: dict[int, Any]) -> Observer:
+        """Return one that goes on by itself from what this one saw."""
+        other = copy.copy(self)
+        other._last, other._found, other._cautions = self._last.copy(), self._found.copy(), set(self._cautions)
+        return other
 
     def seen(self) -> tuple[FloatArray, list[str]]:
         """Return what it saw last and what it has warned of; by both another goes on."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, TypeVar
 
@@ -54,6 +54,15 @@ class Wiring:
     """Row by row, the places of its signals, as far as they were asked for."""
     is_changed: bool = True
     """Whether other rows may have to run than before, or at other ticks."""
+
+    def __deepcopy__(self, _memo: dict[int, Any]) -> Wiring:
+        """Return a wiring of its own for a copy of the board; both share what never changes in place."""
+        return replace(
+            self,
+            instances=[*self.instances],
+            **{name: getattr(self, name).copy() for name in ("table", "p", "s", "w", "io", "unread", "absent")},
+            **{name: getattr(self, name).copy() for name in ("left_out", "resting", "places")},
+        )
 
     @property
     def trip(self) -> int:
