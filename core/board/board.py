@@ -31,6 +31,8 @@ CHUNK = 512
 
 
 COPIED = ("pending", "trip", "wiring", "folds", "used", "observer")
+LISTS = 150
+"""Bytes that a checkpoint takes for each block beside its numbers."""
 SHARED = ("spec", "base", "compiled", "tick")
 """What of a board is its own in every copy, and what never changes in place."""
 
@@ -98,6 +100,13 @@ class Board:
     def diagnosers(self) -> dict[str, Section]:
         """Every diagnoser by its id."""
         return self.spec.diagnosers
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that a checkpoint takes."""
+        wiring = self.wiring
+        numbers = sum(part.nbytes for part in (wiring.p, wiring.s, wiring.w, wiring.io, wiring.table, self.folds))
+        return numbers + LISTS * len(wiring.instances)
 
     def value(self, signal: str) -> float:
         """Return the value of a signal after the last tick."""

@@ -150,6 +150,11 @@ class Ensemble(Board):
         """Table of the traced signals of all."""
         return self._signals
 
+    @property
+    def nbytes(self) -> int:
+        """Memory that a checkpoint of all takes."""
+        return super().nbytes + sum(twin.nbytes for twin in self.twins.values())
+
     def digest(self) -> str:
         """Return the SHA-256 of the digests of all."""
         parts = [super().digest(), *(twin.digest() for twin in self.twins.values())]

@@ -97,7 +97,21 @@ class Digest(BaseModel):
 class ForkFrom(StrictBody):
     """The start of a fork."""
 
-    snapshot: str | None = Field(None, description="A snapshot of the bench; null: this moment")
+    snapshot: str | None = Field(None, description="A snapshot of the bench; null: this moment, or the tick")
+    tick: int | None = Field(None, ge=0, le=2**53, description="A tick of the past, computed again; null: the snapshot")
+    before: bool = Field(False, description="Leave out what was done at that very tick")
+    window_ticks: int = Field(
+        20_000, ge=0, le=1_000_000, description="Ticks before it that are computed too, for its panels"
+    )
+    paused: bool = Field(False, description="It waits, and may seek other ticks until something is done on it")
+
+    @model_validator(mode="after")
+    def _has_one_moment(self) -> Self:
+        if self.tick is not None and self.snapshot is not None:
+            raise ValueError("give a snapshot or a tick, not both")
+        if self.tick is None and self.before:
+            raise ValueError("before needs a tick")
+        return self
 
 
 class Variant(StrictBody):
@@ -204,8 +218,12 @@ async def get_digest(session: SessionDep, service: ServiceDep) -> Digest:
 async def fork_bench(
     body: ForkFrom, session: SessionDep, service: ServiceDep, person: PersonDep, response: Response
 ) -> Bench:
-    """Make a second bench that goes on from this moment or a snapshot, bit for bit."""
-    twin = await service.benches.fork(session, body.snapshot)
+    """Make a second bench that goes on from this moment, a snapshot or a tick of the past, bit for bit."""
+    forks = service.benches.forks
+    if body.tick is None:
+        twin = await forks.now(session, body.snapshot, paused=body.paused)
+    else:
+        twin = await forks.at(session, body.tick, body.window_ticks, is_before=body.before, paused=body.paused)
     response.headers["Location"] = f"/api/v1/benches/{twin.id}"
     return await service.views.opened(twin, person)
 
@@ -215,6 +233,6 @@ async def vary_bench(
     body: Variant, session: SessionDep, service: ServiceDep, person: PersonDep, response: Response
 ) -> Bench:
     """Make a second bench from tick 0, set as this one is now but for some values; other signals are allowed."""
-    made = await service.benches.variant(session, body.set)
+    made = await service.benches.forks.variant(session, body.set)
     response.headers["Location"] = f"/api/v1/benches/{made.id}"
     return await service.views.opened(made, person)

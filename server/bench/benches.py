@@ -21,10 +21,10 @@ from server.bench.earlier import as_written
 from server.bench.engine import Engine
 from server.bench.events import Event
 from server.bench.experiment import Experiment, rebuilt, repeat
+from server.bench.forks import Forks
 from server.bench.hiding import STOPPED
 from server.bench.maker import Maker
 from server.bench.making import prepare, usual_scale
-from server.bench.portrait import design_of
 from server.bench.recorder import Recorder
 from server.bench.room import Room
 from server.bench.session import Session
@@ -62,6 +62,7 @@ class Benches:
         self._engine, self._settings, self._metrics, self._witness = engine, settings, metrics, witness
         self.maker = Maker(settings, metrics, engine.clock)
         self._sessions: dict[str, Session] = {}
+        self.forks = Forks(self, engine)
         self._room = Room(settings, lambda: sum(not session.class_id for session in self.all()))
 
     def __len__(self) -> int:
@@ -121,24 +122,6 @@ class Benches:
             return session
 
         return await self.admit(asyncio.to_thread(made), not paused, is_counted=not class_id)
-
-    async def fork(self, session: Session, snapshot_id: str | None) -> Session:
-        """Make a second bench that goes on from a moment of another."""
-        return await self.admit(self._engine.call(session.fork, snapshot_id), session.is_started)
-
-    async def variant(self, session: Session, values: dict[str, Any]) -> Session:
-        """Make a second bench that begins as this one is set now, with values written over it.
-
-        Raises
-        ------
-        InputError
-            If the values do not fit.
-        ApiError
-            If there are too many benches.
-        """
-        document = await self._engine.call(design_of, session)
-        paused, scale = not session.is_started, session.pacer.scale
-        return await self.create(document, values, session.board.spec.seed, paused, scale)
 
     async def replay(self, recording: RecordingDetail, path: Path, speed: float, paused: bool) -> Session:
         """Make a bench that plays a recording, at a multiple of the pace it was recorded at.
@@ -256,6 +239,8 @@ class Benches:
                     raise InputError(REFUSAL, "values", "run its scenario to change something", "conflict")
                 tick = session.board.first if command.before_tick is None else command.before_tick
                 event = await self._engine.call(session.execute, Seek(tick=tick), actor)
+            elif isinstance(command, Seek) and session.origin is not None:
+                event = await self.forks.seek(session, command.tick, actor)
             elif isinstance(command, Reset):
                 seed = session.board.spec.seed
                 values = {"seed": seed, **command.values}

@@ -9,6 +9,7 @@ from typing import Protocol
 from core.board.commands import Command, ResetTrip, Set
 from core.board.inverse import inverse
 from core.board.pending import Pending
+from core.board.track import Deed
 from core.errors import InputError
 from server.bench.events import Event
 from server.bench.live_bench import LiveBench
@@ -29,6 +30,9 @@ class ChangingBench(LiveBench, Protocol):
 
     def go_to(self, moment: Moment) -> None:
         """Be what the bench was."""
+
+    def done(self, deed: Deed) -> None:
+        """Note for the past what was done to the board."""
 
 
 Way = list[Command | Pending | Moment]
@@ -136,6 +140,7 @@ class Changes:
             if step not in bench.board.pending:
                 raise InputError("it waits no more")
             bench.board.pending.remove(step)
+            bench.done(Deed(bench.board.tick, None, actor, step.number))
             return [step.command]
         return self._carry_out(step, actor)[1]
 
@@ -147,6 +152,7 @@ class Changes:
         if isinstance(command, ResetTrip) and board.trip is not None:
             tripped = self._bench.moment(with_past=True)
         event = board.apply(command, actor)
+        self._bench.done(Deed(board.tick, command, actor))
         assert isinstance(event, Event)
         if event.kind == "scheduled":
             return event, [max(board.pending, key=lambda entry: entry.number)]

@@ -94,7 +94,7 @@ class TimeScale(RunCommand):
 
 
 class Seek(RunCommand):
-    """Go to a tick of the recording that is played."""
+    """Go to a tick of the recording that is played, or of the past that is shown."""
 
     kind: Literal["seek"] = "seek"
     tick: int = Field(ge=0, le=2**53)

@@ -96,4 +96,5 @@ def repeat(session: Session, experiment: Experiment) -> bool:
         pass
     if isinstance(board, Board) and board.tick == experiment.tick:
         board.apply_due()
+        session.done_otherwise()
     return board.tick == experiment.tick and board.digest() == experiment.digest

@@ -39,6 +39,9 @@ class HidingBench(ShownBench, Protocol):
 
     class_id: str
 
+    def done_otherwise(self) -> None:
+        """Note for the past that the board has become another in a way that no command says."""
+
 
 class Hiding:
     """The hidden fault of a bench, if it has one.
@@ -80,11 +83,13 @@ class Hiding:
         bench.recordings.close("a fault was hidden")
         bench.board.pending.clear()
         bench.board.apply(Heal(heal="all"), ACTOR)
+        bench.done_otherwise()
 
     def inject(self, actor: str) -> None:
         """Let the fault wait for its moment (a job of the engine)."""
         assert self.blind is not None
         self.blind.inject(self._bench.board)
+        self._bench.done_otherwise()
         self._bench.note(actor, "blind", "a fault was hidden, or none")
         self._bench.refresh_status()
 

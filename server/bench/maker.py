@@ -12,8 +12,9 @@ from scenarios.own import with_units
 from scenarios.schema import Scenario
 from server.bench.commands import MAX_SCALE, MIN_SCALE
 from server.bench.replay import Replay, played
-from server.bench.session import Session
+from server.bench.session import STUDENT_TRACK_BYTES, Session
 from server.bench.tick_source import TickSource
+from server.bench.timeline import TRACK_BYTES
 from server.metrics import Metrics
 from server.settings import Settings
 from server.store.recordings import RecordingDetail
@@ -40,7 +41,10 @@ class Maker:
 
     def around(self, scenario: Scenario, board: Board, time_scale: float | None, class_id: str = "") -> Session:
         """Put a bench around a board; one for a student of a class has less room for its history."""
-        kept = self._kept(board, self._settings.student_history_mb if class_id else self._settings.history_mb)
+        if class_id:
+            kept = self._kept(board, self._settings.student_history_mb, STUDENT_TRACK_BYTES)
+        else:
+            kept = self._kept(board, self._settings.history_mb, TRACK_BYTES)
         session = Session(scenario, board, time_scale, kept, self._metrics, self._clock)
         if class_id:
             session.belong(class_id, self._settings.student_ticks_per_s)
@@ -56,12 +60,14 @@ class Maker:
         """
         scenario, tape, recorded = played(recording, path)
         pace = min(max(recorded * speed, MIN_SCALE), MAX_SCALE)
-        kept = self._kept(tape, self._settings.history_mb)
+        kept = self._kept(tape, self._settings.history_mb, 0)
         session = Replay(recording, scenario, tape, pace, kept, self._metrics, self._clock)
         session.recorded_scale = recorded
         return session
 
-    def _kept(self, board: TickSource, megabytes: int) -> int:
-        """Return for how many ticks the signals of a board are kept."""
-        affordable = History.ticks_within(megabytes, board.signals.outputs, len(board.signals.taps))
+    def _kept(self, board: TickSource, megabytes: int, track_bytes: int) -> int:
+        """Return for how many ticks the signals of a board are kept, beside the checkpoints of its past."""
+        affordable = History.ticks_within(
+            megabytes - track_bytes * 1e-6, board.signals.outputs, len(board.signals.taps)
+        )
         return min(self._settings.history_ticks, affordable)

@@ -16,7 +16,7 @@ from server.bench.commands import MAX_PENDING
 from server.bench.live_bench import LiveBench
 from server.bench.recordings import Recordings
 from server.bench.running import Running
-from server.bench.status import ActiveFault, Bench, BenchStatus, DiagnoserInfo, Opened, Pending, State
+from server.bench.status import ActiveFault, Bench, BenchStatus, DiagnoserInfo, Opened, Origin, Pending, State
 
 
 class ShownBench(LiveBench, Protocol):
@@ -33,6 +33,11 @@ class ShownBench(LiveBench, Protocol):
     recorded_scale: float | None
     opened: Opened | None
     keep: bool
+    origin: Origin | None
+
+    @property
+    def is_past(self) -> bool:
+        """Whether it shows the moment it was forked at still."""
 
     @property
     def is_running(self) -> bool:
@@ -89,6 +94,7 @@ def status_of(bench: ShownBench) -> BenchStatus:
         last_event=bench.events.last,
         recording=list(bench.recordings.under_way),
         armed=list(bench.recordings.armed),
+        origin=bench.origin and bench.origin.model_copy(update={"is_past": bench.is_past}),
     )
 
 

@@ -15,6 +15,7 @@ from typing import Any, get_args
 from core.board.board import Board
 from core.board.commands import MakeSafe
 from core.board.document import Document
+from core.board.track import Track
 from core.errors import InputError
 from scenarios.schema import Scenario
 from server.bench import commands
@@ -37,6 +38,8 @@ from server.metrics import Metrics
 
 STUDENT_PAST_TICKS = 2000
 """Ticks of the past that a jump on the bench of a student brings along."""
+STUDENT_TRACK_BYTES = 1_500_000
+"""Memory of the checkpoints of a student's bench."""
 
 
 class Session(Timeline):
@@ -58,6 +61,8 @@ class Session(Timeline):
         The engine's clock.
     """
 
+    taken_over = 0
+    """Number of the last event that is of the bench whose past it shows."""
     replay_of = ""
     """The recording it plays, if it does."""
     recorded_scale: float | None = None
@@ -128,7 +133,10 @@ class Session(Timeline):
 
     def belong(self, class_id: str, most_ticks_per_s: float) -> None:
         """Be the bench of a student, one of many: never let go, limited in pace, with less history."""
-        self.class_id, self.keep, self.past_ticks = class_id, True, STUDENT_PAST_TICKS
+        self.class_id, self.keep = class_id, True
+        self.past_ticks, self.track_bytes = STUDENT_PAST_TICKS, STUDENT_TRACK_BYTES
+        if isinstance(self.board, Board):
+            self.track = Track(self.board, self.track_bytes)
         self.running.limit(most_ticks_per_s * self.dt_ms * 1e-3)
 
     def begin(self, start: bool) -> None:
@@ -187,12 +195,31 @@ class Session(Timeline):
         assert isinstance(other.board, Board)
         before = self.moment(with_past=True)
         self._begin_again(other.scenario, other.board)
-        self.history, self.running.pacer = other.history, other.pacer
+        self.history, self.track, self.running.pacer = other.history, other.track, other.pacer
         self._jumped(text, other.running.ends_at)
         event = self._begun(before, actor, text)
         self.running.is_started = start and self.board.trip is None
         self.refresh_status()
         return event
+
+    def show(self, other: Session, actor: str) -> Event:
+        """Show another moment of the past, a bench that nobody has."""
+        if not self.is_past:
+            raise InputError("it has gone on from its past", "kind", "fork the bench at a tick", "conflict")
+        assert isinstance(other.board, Board)
+        self._begin_again(other.scenario, other.board)
+        self.history, self.track, self.origin = other.history, other.track, other.origin
+        self._jumped("another moment is shown", other.scenario.samples)
+        other.board.log = self.events
+        event = self.look_back(actor)
+        self.refresh_status()
+        return event
+
+    def look_back(self, actor: str) -> Event:
+        """Note which moment of the past it shows; what came after it is not of its past."""
+        tick = self.board.tick
+        led = [event.seq for event in self.events.after(0)[1] if event.seq <= self.taken_over and event.tick <= tick]
+        return self.events.add(tick, actor, "restored", f"shows tick {tick} as it was", new=max(led, default=0))
 
     def _begun(self, before: Moment, actor: str, text: str) -> Event:
         """Note at tick 0 that another board has begun, and take its log over."""
@@ -220,18 +247,6 @@ class Session(Timeline):
         self._be_again(moment)
         self.events.take_over(self.board)
         self._jumped("the bench was restored", self.scenario.samples)
-
-    def fork(self, snapshot_id: str | None) -> Session:
-        """Return a second bench that goes on from this moment or from a snapshot."""
-        moment = self.snapshots.get(snapshot_id).moment if snapshot_id else self.moment()
-        board = Board.restore(moment.checkpoint)
-        twin = Session(moment.scenario, board, self.pacer.scale, self._history_ticks, self._metrics, self._clock)
-        twin.running.ends_at = self.running.ends_at
-        if self._branches.share(moment.branch, board.tick) and (past := self._past(board.tick)) is not None:
-            twin.history.append(past)
-        twin.note("api", "forked", f"forked from bench {self.id}")
-        twin.refresh_status()
-        return twin
 
     def close(self) -> list[Recorder]:
         """Stop for good; return the recordings that were under way."""

@@ -63,3 +63,4 @@ def _advance(session: Session, board: Board, tick: int) -> None:
     while board.tick < tick and session.advance(tick - board.tick):
         pass
     board.apply_due()
+    session.done_otherwise()

@@ -75,6 +75,15 @@ class Company(BaseModel):
     links: int = Field(description="Pages opened by links to watch")
 
 
+class Origin(BaseModel):
+    """The moment of another bench that a bench goes on from."""
+
+    bench: str = Field(description="The other bench, which may be gone by now")
+    tick: int
+    window_ticks: int = Field(description="Ticks before it that were computed again too")
+    is_past: bool = Field(True, description="It shows that moment still and may seek another; it has not gone on")
+
+
 class BenchStatus(BaseModel):
     """The changing part of a bench."""
 
@@ -100,6 +109,7 @@ class BenchStatus(BaseModel):
     last_event: int
     recording: list[str] = Field(description="Recordings under way")
     armed: list[str] = Field(description="Recordings that wait for their condition")
+    origin: Origin | None = Field(None, description="Where it goes on from, if it was forked at a tick")
     watchers: int = 0
     company: Company | None = Field(None, description="Who is there; null while it is one person")
     loop_lag_ms: float = Field(0.0, description="99th percentile of the event loop's lateness, last minute")

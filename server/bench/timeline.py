@@ -8,15 +8,19 @@ from collections.abc import Callable, Sequence
 from core.board.board import Board
 from core.board.history import History
 from core.board.rows import Rows
+from core.board.track import Deed, Track
 from core.device.geometry import Geometry
 from core.device.two_axis import TwoAxis
 from core.signals import Signal
 from scenarios.schema import Scenario
 from server.bench.moment import Branches, Moment
+from server.bench.status import Origin
 from server.bench.tick_source import TickSource
 
 PAST_TICKS = 20_000
 """Ticks of the past that a fork brings along, or a jump that is undone."""
+TRACK_BYTES = 8_000_000
+"""Memory of the checkpoints from which the past is computed again; that of the history is so much less."""
 SLICE_S = 0.005
 """Longest slice, by what a tick takes; other benches and commands wait for it."""
 MOST_SLOWER = 4.0
@@ -38,7 +42,10 @@ class Timeline:
         The engine's clock.
     """
 
+    origin: Origin | None = None
+    """The moment of another bench that it goes on from."""
     past_ticks = PAST_TICKS
+    track_bytes = TRACK_BYTES
 
     def __init__(self, scenario: Scenario, board: TickSource, history_ticks: int, clock: Callable[[], float]) -> None:
         self.scenario, self.board = scenario, board
@@ -47,6 +54,15 @@ class Timeline:
         self.history = self._empty_history()
         self._branches = Branches()
         self._index = {signal.name: signal.index for signal in board.signals}
+        self.track = Track(board, self.track_bytes) if isinstance(board, Board) else None
+
+    @property
+    def is_past(self) -> bool:
+        """Whether it shows the moment it was forked at still: nothing was done, and no time has run."""
+        origin, track = self.origin, self.track
+        if origin is None or track is None:
+            return False
+        return self.board.tick == origin.tick and not track.has_deeds_since(origin.tick)
 
     @property
     def now(self) -> float:
@@ -99,7 +115,19 @@ class Timeline:
             took = max(self._clock() - began, 1e-9)
             self._tick_s = min(took / rows.count, MOST_SLOWER * self._tick_s)
             self.history.append(rows)
+            if self.track is not None and isinstance(self.board, Board):
+                self.track.follow(self.board)
         return rows
+
+    def done(self, deed: Deed) -> None:
+        """Note for the past what was done to the board."""
+        if self.track is not None:
+            self.track.note(deed)
+
+    def done_otherwise(self) -> None:
+        """Note for the past that the board has become another in a way that no command says."""
+        if self.track is not None and isinstance(self.board, Board):
+            self.track.mark(self.board, is_fixed=True)
 
     def _has_due(self) -> bool:
         """Whether a command of the scenario is due at this very tick, such as the reset of a trip."""
@@ -123,6 +151,13 @@ class Timeline:
         past = self._past(self.board.tick) if with_past else None
         return Moment(self.scenario, self.board.checkpoint(), self._branches.current, past)
 
+    def past_of(self, moment: Moment) -> tuple[Track, Rows | None] | None:
+        """Return the track that leads to a moment and the rows before it, if what is kept is the past of the moment."""
+        tick = moment.checkpoint.tick
+        if self.track is None or not self._branches.share(moment.branch, tick):
+            return None
+        return self.track, self._past(tick)
+
     def _past(self, tick: int) -> Rows | None:
         """Return the last ticks before a tick, as far as the history has them."""
         first = max(self.history.first_tick, tick - self.past_ticks)
@@ -133,12 +168,14 @@ class Timeline:
 
     def _be_again(self, moment: Moment) -> None:
         """Be what the bench was; of the past the history keeps what is that moment's own."""
-        self.scenario, self.board = moment.scenario, Board.restore(moment.checkpoint)
-        tick = self.board.tick
+        board = Board.restore(moment.checkpoint)
+        self.scenario, self.board, tick = moment.scenario, board, board.tick
         if self._branches.share(moment.branch, tick):
             self._rewind_history()
+            if self.track is not None:
+                self.track.go_back(board)
         else:
-            self.history = self._empty_history()
+            self.history, self.track = self._empty_history(), Track(board, self.track_bytes)
         if moment.past is not None and self.history.end_tick != tick:
             self.history.append(moment.past)
         self._branches.begin(moment.branch, tick)
@@ -146,5 +183,5 @@ class Timeline:
     def _begin_again(self, scenario: Scenario, board: Board) -> None:
         """Be another bench of the same signals, at tick 0."""
         self.scenario, self.board = scenario, board
-        self.history = self._empty_history()
+        self.history, self.track = self._empty_history(), Track(board, self.track_bytes)
         self._branches.begin()

@@ -13,8 +13,11 @@ from scenarios.run import build
 from scenarios.schema import Scenario
 from server.bench.commands import parse
 from server.bench.events import Event
+from server.bench.forks import forked
+from server.bench.maker import Maker
 from server.bench.session import Session
 from server.metrics import Metrics
+from server.settings import Settings
 from tests.lab import document
 
 EVENTS = [
@@ -22,6 +25,8 @@ EVENTS = [
     {"at_sample": 30, "heal": ["damping"]},
     {"at_sample": 5000, "switch": "pid"},
 ]
+
+MAKER = Maker(Settings(), Metrics(), lambda: 0.0)
 
 
 def session(**more: Any) -> Session:
@@ -102,7 +107,7 @@ def test_a_fork_and_a_copy_note_for_themselves() -> None:
     bench = session()
     bench.advance(25)
     before = bench.events.last
-    twin = bench.fork(None)
+    twin = forked(bench, None, MAKER)
     twin.begin(True)
     copy = Board.restore(bench.board.checkpoint())
     copy.apply(parse({"switch": "mrac"}))

@@ -16,9 +16,14 @@ from scenarios.run import build, run
 from scenarios.schema import Scenario
 from server.bench.commands import parse
 from server.bench.events import Event
+from server.bench.forks import forked
+from server.bench.maker import Maker
 from server.bench.portrait import document_of
 from server.bench.session import Session
 from server.metrics import Metrics
+from server.settings import Settings
+
+MAKER = Maker(Settings(), Metrics(), lambda: 0.0)
 
 
 def session(name: str = "ch5-seven-step", scale: float | None = None, **values: Any) -> Session:
@@ -204,7 +209,7 @@ def test_going_back_and_on_gives_the_same_bits_and_keeps_the_past() -> None:
 def test_a_fork_goes_its_own_way_from_the_same_moment() -> None:
     bench = session()
     advance(bench, 1000)
-    twin = bench.fork(None)
+    twin = forked(bench, None, MAKER)
     twin.begin(True)
     np.testing.assert_array_equal(twin.history.read([3], 0, 1000), bench.history.read([3], 0, 1000))
     twin.execute(parse({"fault": "added_mass", "severity": 0.1}), "test")

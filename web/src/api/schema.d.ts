@@ -352,7 +352,7 @@ export interface paths {
         put?: never;
         /**
          * Fork Bench
-         * @description Make a second bench that goes on from this moment or a snapshot, bit for bit.
+         * @description Make a second bench that goes on from this moment, a snapshot or a tick of the past, bit for bit.
          */
         post: operations["fork_bench_api_v1_benches__bench_id__fork_post"];
         delete?: never;
@@ -2867,6 +2867,8 @@ export interface components {
              * @description Recordings that wait for their condition
              */
             armed: string[];
+            /** @description Where it goes on from, if it was forked at a tick */
+            origin?: components["schemas"]["Origin"] | null;
             /**
              * Watchers
              * @default 0
@@ -4096,9 +4098,32 @@ export interface components {
         ForkFrom: {
             /**
              * Snapshot
-             * @description A snapshot of the bench; null: this moment
+             * @description A snapshot of the bench; null: this moment, or the tick
              */
             snapshot?: string | null;
+            /**
+             * Tick
+             * @description A tick of the past, computed again; null: the snapshot
+             */
+            tick?: number | null;
+            /**
+             * Before
+             * @description Leave out what was done at that very tick
+             * @default false
+             */
+            before?: boolean;
+            /**
+             * Window Ticks
+             * @description Ticks before it that are computed too, for its panels
+             * @default 20000
+             */
+            window_ticks?: number;
+            /**
+             * Paused
+             * @description It waits, and may seek other ticks until something is done on it
+             * @default false
+             */
+            paused?: boolean;
         };
         /**
          * Gallery
@@ -5335,6 +5360,30 @@ export interface components {
             same_bits: boolean;
         };
         /**
+         * Origin
+         * @description The moment of another bench that a bench goes on from.
+         */
+        Origin: {
+            /**
+             * Bench
+             * @description The other bench, which may be gone by now
+             */
+            bench: string;
+            /** Tick */
+            tick: number;
+            /**
+             * Window Ticks
+             * @description Ticks before it that were computed again too
+             */
+            window_ticks: number;
+            /**
+             * Is Past
+             * @description It shows that moment still and may seek another; it has not gone on
+             * @default true
+             */
+            is_past?: boolean;
+        };
+        /**
          * Outcomes
          * @description The outcome of a command to many benches.
          */
@@ -6175,7 +6224,7 @@ export interface components {
         };
         /**
          * Seek
-         * @description Go to a tick of the recording that is played.
+         * @description Go to a tick of the recording that is played, or of the past that is shown.
          */
         Seek: {
             /**
@@ -7637,6 +7686,11 @@ export interface components {
              * @description Recordings that wait for their condition
              */
             armed: string[];
+            /**
+             * @description Where it goes on from, if it was forked at a tick
+             * @default null
+             */
+            origin?: components["schemas"]["Origin"] | null;
             /**
              * Watchers
              * @default 0

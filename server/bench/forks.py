@@ -1,0 +1,114 @@
+"""Forks: second benches that go on from a moment of another, or begin as it is set."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Coroutine
+from dataclasses import replace
+from functools import partial
+from typing import Any, Protocol
+
+from core.board.board import Board
+from server.bench.engine import Engine
+from server.bench.events import Event
+from server.bench.maker import Maker
+from server.bench.past import Past
+from server.bench.portrait import design_of
+from server.bench.session import Session
+
+
+class Registry(Protocol):
+    """The part of the registry of benches that forks need."""
+
+    maker: Maker
+
+    def find(self, bench_id: str) -> Session | None:
+        """Return a bench, or nothing."""
+
+    async def admit(self, coming: Coroutine[Any, Any, Session], start: bool) -> Session:
+        """Take in a bench that is being made, if there is room."""
+
+    async def create(
+        self, source: dict[str, Any], values: dict[str, Any], seed: int | None, paused: bool, time_scale: float | None
+    ) -> Session:
+        """Make a bench from a document."""
+
+
+class Forks:
+    """Makes benches from others.
+
+    Parameters
+    ----------
+    benches : Registry
+        The live benches.
+    engine : Engine
+        Whose thread may read a bench.
+    """
+
+    def __init__(self, benches: Registry, engine: Engine) -> None:
+        self._benches, self._engine = benches, engine
+
+    async def now(self, session: Session, snapshot_id: str | None, *, paused: bool = False) -> Session:
+        """Make a bench that goes on from this moment of another, or from a snapshot."""
+        coming = self._engine.call(forked, session, snapshot_id, self._benches.maker)
+        return await self._benches.admit(coming, session.is_started and not paused)
+
+    async def at(
+        self, session: Session, tick: int, window_ticks: int, *, is_before: bool = False, paused: bool = False
+    ) -> Session:
+        """Make a bench that goes on from a tick of the past of another, computed again.
+
+        Raises
+        ------
+        InputError
+            For a tick that is not kept.
+        """
+        past = await self._engine.call(partial(Past.of, session, tick, window_ticks, is_before=is_before))
+        coming = asyncio.to_thread(past.session, self._benches.maker)
+        return await self._benches.admit(coming, session.is_started and not paused)
+
+    async def seek(self, session: Session, tick: int, actor: str) -> Event:
+        """Show another tick of the past on a bench that shows one.
+
+        Raises
+        ------
+        InputError
+            For a tick that is not kept, and when the bench has gone on.
+        """
+        assert session.origin is not None
+        of = self._benches.find(session.origin.bench) or session
+        past = await self._engine.call(Past.of, of, tick, session.origin.window_ticks)
+        past = replace(past, origin=session.origin.model_copy(update={"tick": tick}))
+        other = await asyncio.to_thread(past.session, self._benches.maker)
+        return await self._engine.call(session.show, other, actor)
+
+    async def variant(self, session: Session, values: dict[str, Any]) -> Session:
+        """Make a bench that begins as another is set now, with values written over it.
+
+        Raises
+        ------
+        InputError
+            If the values do not fit.
+        ApiError
+            If there are too many benches.
+        """
+        document = await self._engine.call(design_of, session)
+        paused, scale = not session.is_started, session.pacer.scale
+        return await self._benches.create(document, values, session.board.spec.seed, paused, scale)
+
+
+def forked(session: Session, snapshot_id: str | None, maker: Maker) -> Session:
+    """Return a bench that is what another is now, or was when a snapshot was taken (a job)."""
+    moment = session.snapshots.get(snapshot_id).moment if snapshot_id else session.moment()
+    board = Board.restore(moment.checkpoint)
+    twin = maker.around(moment.scenario, board, session.pacer.scale)
+    twin.running.ends_at = session.running.ends_at
+    past = session.past_of(moment)
+    if past is not None:
+        track, rows = past
+        twin.track = track.until(board)
+        if rows is not None:
+            twin.history.append(rows)
+    twin.note("api", "forked", f"forked from bench {session.id}")
+    twin.refresh_status()
+    return twin

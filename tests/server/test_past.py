@@ -1,0 +1,157 @@
+"""The past of a live bench: shown again at any tick, gone on from, the bits of a straight run."""
+
+from __future__ import annotations
+
+import io
+import time
+from typing import Any
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from scenarios.edit import with_values
+from scenarios.library import get
+from scenarios.run import build, run
+from scenarios.schema import Scenario
+
+FAR = 120_000
+ENDLESS = {"samples": 100_000_000}
+
+
+def forward(live: Any, bench_id: str, tick: int) -> None:
+    while (now := live.get(bench_id)["tick"]) < tick:
+        answer = live.command(bench_id, "step", ticks=min(10_000, tick - now))
+        assert answer.status_code == 200, answer.text
+
+
+def fork(live: Any, bench_id: str, **fields: Any) -> Any:
+    return live.http.post(f"/api/v1/benches/{bench_id}/fork", json=fields)
+
+
+def digest(live: Any, bench_id: str) -> Any:
+    return live.http.get(f"/api/v1/benches/{bench_id}/digest").json()["digest"]
+
+
+def trace(live: Any, bench_id: str, start: int, end: int) -> dict[str, Any]:
+    asked = {"format": "parquet", "start_tick": start, "end_tick": end}
+    answer = live.http.get(f"/api/v1/benches/{bench_id}/trace", params=asked)
+    assert answer.status_code == 200, answer.text
+    table = pq.read_table(io.BytesIO(answer.content))
+    return {name: table.column(name).to_numpy() for name in table.column_names}
+
+
+@pytest.fixture
+def ran(live: Any) -> Any:
+    """A bench that has run for long, with a fault and another controller on the way."""
+    bench = live.bench("ch5-seven-step", set=ENDLESS, paused=True)["id"]
+    forward(live, bench, 9_500)
+    assert live.command(bench, switch="pid").status_code == 200
+    assert live.command(bench, fault="drive_gain", severity=0.02).status_code == 200
+    forward(live, bench, FAR)
+    return bench
+
+
+def test_a_branch_a_hundred_thousand_ticks_back_is_a_straight_run(live: Any, ran: str) -> None:
+    made = fork(live, ran, tick=FAR - 100_000, window_ticks=5000).json()
+    assert made["origin"] == {"bench": ran, "tick": FAR - 100_000, "window_ticks": 5000, "is_past": True}
+    assert (made["state"], made["tick"], made["controller"]) == ("paused", FAR - 100_000, "pid")
+    forward(live, made["id"], FAR)
+    assert digest(live, made["id"]) == digest(live, ran)
+    mine, theirs = (trace(live, one, FAR - 50_000, FAR) for one in (made["id"], ran))
+    assert len(mine["tick"]) == 50_000
+    for name, values in theirs.items():
+        np.testing.assert_array_equal(values, mine[name], name)
+    document = live.http.get(f"/api/v1/benches/{made['id']}/scenario").text
+    assert run(Scenario.load(document)).digest == digest(live, ran)
+
+
+def test_the_past_before_the_history_is_computed_again(serve: Any) -> None:
+    with serve(history_ticks=5000) as live:
+        bench = live.bench("ch5-seven-step", set=ENDLESS, paused=True)["id"]
+        forward(live, bench, 60_000)
+        assert live.get(bench)["first_tick"] > 50_000
+        made = fork(live, bench, tick=12_000, window_ticks=3000, paused=True).json()["id"]
+        straight = build(with_values(get("ch5-seven-step"), {**ENDLESS, "expect": []}))
+        rows = []
+        while straight.tick < 12_000:
+            part = straight.advance(12_000 - straight.tick)
+            rows.append(np.hstack([part.outputs, part.taps]))
+        names = straight.signals.names
+        expected = np.vstack(rows)[9_000:].astype(np.float32)
+        shown = trace(live, made, 9_000, 12_000)
+        for at, name in enumerate(names):
+            np.testing.assert_array_equal(shown[name].astype(np.float32), expected[:, at], name)
+        assert digest(live, made) == straight.digest()
+
+
+def test_seeking_shows_other_ticks_until_the_bench_goes_on(live: Any, ran: str) -> None:
+    made = fork(live, ran, tick=50_000, paused=True).json()["id"]
+    for tick, controller in ((3_000, "open_loop"), (9_500, "pid"), (FAR, "pid"), (9_499, "open_loop")):
+        assert live.command(made, "seek", tick=tick).json()["tick"] == tick
+        shown = live.get(made)
+        assert (shown["tick"], shown["controller"], shown["origin"]["is_past"]) == (tick, controller, True)
+    assert digest(live, made) != digest(live, ran)
+    live.command(made, fault="stiffness", severity=0.1)
+    assert live.get(made)["origin"] == {"bench": ran, "tick": 9_499, "window_ticks": 20_000, "is_past": False}
+    refused = live.command(made, "seek", tick=10)
+    assert refused.json()["error"]["code"] == "conflict" and "gone on" in refused.json()["error"]["message"]
+    again = fork(live, made, tick=4_000, paused=True).json()
+    assert (again["tick"], again["controller"]) == (4_000, "open_loop")
+
+
+def test_a_fork_before_what_was_done_at_a_tick_is_without_it(live: Any, ran: str) -> None:
+    with_it, without = (fork(live, ran, tick=9_500, before=before, paused=True).json() for before in (False, True))
+    assert [fault["name"] for fault in with_it["faults"] if fault["name"] == "drive_gain"] == ["drive_gain"]
+    assert "drive_gain" not in [fault["name"] for fault in without["faults"]]
+    assert without["controller"] == "open_loop"
+    forward(live, without["id"], 12_000)
+    straight = run(with_values(get("ch5-seven-step"), {"samples": 12_000, "expect": []}))
+    assert digest(live, without["id"]) == straight.digest
+
+
+def test_the_log_of_the_past_ends_at_its_tick(live: Any, ran: str) -> None:
+    made = fork(live, ran, tick=5_000, paused=True).json()["id"]
+    live.command(made, "seek", tick=9_500)
+    events = live.http.get(f"/api/v1/benches/{made}/events").json()["events"]
+    restored = [event for event in events if event["kind"] == "restored"]
+    assert [event["tick"] for event in restored] == [5_000, 9_500]
+    shown = [event for event in events if event["seq"] <= restored[-1]["new"]]
+    assert {"switch", "inject"} <= {event["kind"] for event in shown if event["tick"] == 9_500}
+    assert max(event["tick"] for event in shown) == 9_500
+
+
+def test_a_bench_that_tripped_is_forked_from_before(live: Any) -> None:
+    bench = live.bench("ch5-seven-step", set=ENDLESS, paused=True)["id"]
+    forward(live, bench, 3000)
+    assert live.command(bench, set={"guard.travel_um": 0.01}).status_code == 200
+    live.command(bench, "step", ticks=5000)
+    live.until(bench, lambda status: status["state"] == "tripped")
+    tick = live.get(bench)["trip"]["tick"]
+    made = fork(live, bench, tick=tick - 1, paused=True).json()
+    assert (made["state"], made["trip"], made["tick"]) == ("paused", None, tick - 1)
+    live.command(made["id"], "step", ticks=1000)
+    assert live.get(made["id"])["trip"]["tick"] == tick
+
+
+def test_ticks_that_are_not_there_are_refused_in_one_line(live: Any, ran: str) -> None:
+    for fields, field in (
+        ({"tick": FAR + 1}, "tick"),
+        ({"tick": -1}, "tick"),
+        ({"tick": 5, "window_ticks": -1}, "window_ticks"),
+        ({"before": True}, ""),
+        ({"tick": 5, "snapshot": "x"}, ""),
+    ):
+        answer = fork(live, ran, **fields)
+        assert answer.status_code == 422, (fields, answer.text)
+        assert answer.json()["error"]["field"] == field
+    assert len(live.http.get("/api/v1/benches").json()["benches"]) == 1
+
+
+def test_the_past_of_a_bench_that_runs_is_shown_while_it_runs(live: Any) -> None:
+    bench = live.bench("first-look", time_scale=0.5)["id"]
+    live.until(bench, lambda status: status["tick"] > 30_000)
+    made = fork(live, bench, tick=20_000, paused=True).json()["id"]
+    time.sleep(0.2)
+    assert live.get(made)["tick"] == 20_000
+    assert live.get(bench)["tick"] > 30_000 and live.get(bench)["state"] == "running"
