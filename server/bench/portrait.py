@@ -7,6 +7,7 @@ from itertools import islice
 from typing import Any, Protocol
 
 from core.board.spec import Section
+from core.board.track import Track
 from core.board.words import describe
 from core.faults.fault import FaultParams
 from core.registry import card
@@ -34,6 +35,7 @@ class ShownBench(LiveBench, Protocol):
     opened: Opened | None
     keep: bool
     origin: Origin | None
+    track: Track | None
 
     @property
     def is_past(self) -> bool:
@@ -94,6 +96,7 @@ def status_of(bench: ShownBench) -> BenchStatus:
         last_event=bench.events.last,
         recording=list(bench.recordings.under_way),
         armed=list(bench.recordings.armed),
+        earliest_tick=bench.track and bench.track.first_tick,
         origin=bench.origin and bench.origin.model_copy(update={"is_past": bench.is_past}),
     )
 

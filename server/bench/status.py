@@ -109,6 +109,7 @@ class BenchStatus(BaseModel):
     last_event: int
     recording: list[str] = Field(description="Recordings under way")
     armed: list[str] = Field(description="Recordings that wait for their condition")
+    earliest_tick: int | None = Field(None, description="The first tick that can be computed again; null: none can")
     origin: Origin | None = Field(None, description="Where it goes on from, if it was forked at a tick")
     watchers: int = 0
     company: Company | None = Field(None, description="Who is there; null while it is one person")

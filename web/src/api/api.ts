@@ -6,6 +6,7 @@ import type {
   Design,
   Document,
   ExcitationSource,
+  ForkFrom,
   LinkWords,
   MapSource,
   NewBench,
@@ -126,8 +127,8 @@ export const api = {
   removeLink: (id: string) => data(client.DELETE("/api/v1/links/{link_id}", link(id))),
   openLink: (id: string) => data(client.POST("/api/v1/links/{link_id}/open", link(id))),
   removeBench: (id: string) => data(client.DELETE("/api/v1/benches/{bench_id}", bench(id))),
-  fork: (id: string, snapshot: string | null = null) =>
-    data(client.POST("/api/v1/benches/{bench_id}/fork", { ...bench(id), body: { snapshot } })),
+  fork: (id: string, body: ForkFrom = {}) =>
+    data(client.POST("/api/v1/benches/{bench_id}/fork", { ...bench(id), body })),
   variant: (id: string, set: Record<string, unknown>) =>
     data(client.POST("/api/v1/benches/{bench_id}/variant", { ...bench(id), body: { set } })),
   snapshots: async (id: string) =>

@@ -2867,6 +2867,11 @@ export interface components {
              * @description Recordings that wait for their condition
              */
             armed: string[];
+            /**
+             * Earliest Tick
+             * @description The first tick that can be computed again; null: none can
+             */
+            earliest_tick?: number | null;
             /** @description Where it goes on from, if it was forked at a tick */
             origin?: components["schemas"]["Origin"] | null;
             /**
@@ -7686,6 +7691,12 @@ export interface components {
              * @description Recordings that wait for their condition
              */
             armed: string[];
+            /**
+             * Earliest Tick
+             * @description The first tick that can be computed again; null: none can
+             * @default null
+             */
+            earliest_tick?: number | null;
             /**
              * @description Where it goes on from, if it was forked at a tick
              * @default null

@@ -28,6 +28,7 @@ export type Equation = Schemas["EquationCard"];
 export type Evaluation = Schemas["Evaluation"];
 export type Distribution = Schemas["Distribution"];
 export type DiagnosisTally = Schemas["DiagnosisTally"];
+export type ForkFrom = Partial<Schemas["ForkFrom"]>;
 export type FaultProfile = Schemas["Profile"];
 export type Gallery = Schemas["Gallery"];
 export type GalleryCard = Schemas["GalleryCard"];

@@ -31,6 +31,7 @@ import { Rail } from "./rail";
 import { ReplayBar } from "./replay-bar";
 import { ShareSheet } from "./share-sheet";
 import { StepBar } from "./step-bar";
+import { TimeBar } from "./time-bar";
 import { useKeys } from "./use-keys";
 import { useLasting } from "./use-lasting";
 import { useReadingSize } from "./use-reading-size";
@@ -117,6 +118,7 @@ export function App() {
           {!phone && <View3dHost />}
         </div>
       )}
+      {!failure && !phone && page === "bench" && <TimeBar />}
       {!failure && <LectureStrip />}
       <KeySheet />
       <NewBench />

@@ -7,6 +7,7 @@ import { jump } from "../ui/hover";
 import { saveFile } from "../ui/save-file";
 import { layoutNow } from "./dock";
 import { openOwn } from "./open-bench";
+import { forkBeforeTrip } from "./past";
 import { send, showError } from "./send";
 import { sendAndTell } from "./tell";
 import { stepTimeScale } from "./time-scale";
@@ -67,11 +68,11 @@ async function replay(before_tick: number | undefined): Promise<void> {
   if (began && bench()?.state === "paused") void send({ kind: "start" });
 }
 
-async function fork(snapshot: string | null = null): Promise<void> {
+async function fork(): Promise<void> {
   const from = bench();
   if (!from) return;
   try {
-    const made = await api.fork(from.id, snapshot);
+    const made = await api.fork(from.id);
     openOwn(made.id);
     notifications.show({ title: "Forked", message: `This is a copy of ${from.title}; the original is untouched.` });
   } catch (error) {
@@ -98,29 +99,13 @@ async function record(): Promise<void> {
   }
 }
 
-/** Keep this moment, to come back to or to branch from. */
+/** Keep this moment: it stands on the timeline. */
 async function keep(): Promise<void> {
   const from = bench();
   if (!from) return;
   try {
     const kept = await api.keep(from.id);
-    notifications.show({ title: "Moment kept", message: `Tick ${kept.tick} can be forked from if the board trips.` });
-  } catch (error) {
-    showError(error);
-  }
-}
-
-async function forkBeforeTrip(): Promise<void> {
-  const from = bench();
-  if (!from?.trip) return;
-  const { tick } = from.trip;
-  try {
-    const before = (await api.snapshots(from.id)).filter((s) => s.tick < tick).at(-1);
-    if (before) return await fork(before.id);
-    notifications.show({
-      title: "No moment was kept before the trip",
-      message: "Press K while a bench runs to keep one.",
-    });
+    notifications.show({ title: "Moment kept", message: `Tick ${kept.tick} stands on the timeline.` });
   } catch (error) {
     showError(error);
   }

@@ -20,6 +20,7 @@ const WORDS: Partial<Record<string, string>> = {
   reset_trip: "trip reset",
   make_safe: "safe outputs",
   scheduled: "waits",
+  snapshot_taken: "kept",
 };
 
 function faultWords(name: string, severity: number): string {
@@ -52,6 +53,7 @@ const TONES: Record<string, EventTone> = {
   scheduled: "change",
   reset: "change",
   restored: "change",
+  snapshot_taken: "change",
 };
 
 export function eventTone(event: Pick<LogEntry, "kind">): EventTone {

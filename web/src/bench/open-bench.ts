@@ -36,23 +36,23 @@ export function openOwn(id: string, replace = false): void {
   openBench(id, replace || !teaches);
 }
 
-/** Show a bench and put it into the address, so that others can join it and back works. */
-export function openBench(id: string, replace = false): void {
+/** Show a bench and put it into the address, so that others can join it and back works. `keep`: see `stream.open`. */
+export function openBench(id: string, replace = false, keep = false): void {
   const url = new URL(window.location.href);
   url.searchParams.delete("link");
   url.searchParams.set(PARAMETER, id);
   url.hash = "";
   if (replace) window.history.replaceState(null, "", url);
   else window.history.pushState(null, "", url);
-  showBench(id);
+  showBench(id, keep);
 }
 
 /** Show a bench; what was chosen and said about the one before does not concern it. */
-export function showBench(id: string): void {
+export function showBench(id: string, keep = false): void {
   useView.setState({ sample: undefined });
   alarm("");
   useMe.setState({ at: id });
-  stream.open(id);
+  stream.open(id, keep);
 }
 
 let before: string | undefined;

@@ -35,13 +35,17 @@ loop.add(() => client.feeds.draw());
 /** The page's single stream and its animation loop. */
 export const stream = { client, loop, open, retry: () => client.retryNow() };
 
-function open(id: string): void {
+/** Show a bench. With `keep` the one before stays in sight until the server has said hello. */
+function open(id: string, keep = false): void {
   benchId = id;
   pendingEvents = [];
   client.head = { tick: 0, dtMs: 0, running: false };
   known = { bench: undefined, scores: {} };
-  tell();
-  useBench.setState({ events: [], droppedFrames: 0, notice: undefined });
+  if (!keep) {
+    tell();
+    useBench.setState({ events: [] });
+  }
+  useBench.setState({ droppedFrames: 0, notice: undefined });
   patch({ phase: "connecting", reason: undefined, retryAt: undefined, staleSince: undefined });
   const url = new URL(`./api/v1/benches/${encodeURIComponent(id)}/stream`, document.baseURI);
   client.connect(url.href.replace(/^http/, "ws"));
@@ -54,7 +58,7 @@ function receive(message: ServerMessage): void {
       serverId = message.server;
       // while a fault is hidden the server keeps a log of its own for the page
       const turned = known.bench !== undefined && known.bench.blind?.id !== message.bench.blind?.id;
-      if (restarted || turned) {
+      if (restarted || turned || !known.bench) {
         pendingEvents = [];
         useBench.setState({ events: [] });
       }

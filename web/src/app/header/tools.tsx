@@ -85,7 +85,7 @@ export function Tools() {
       run: actions.fork,
     },
     {
-      label: "Keep this moment, to fork from later (K)",
+      label: "Keep this moment on the timeline (K)",
       icon: <IconBookmark size={19} />,
       needs: "teach",
       run: actions.keep,

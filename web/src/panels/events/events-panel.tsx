@@ -1,8 +1,11 @@
-import { SegmentedControl } from "@mantine/core";
+import { ActionIcon, SegmentedControl } from "@mantine/core";
+import { IconGitBranch } from "@tabler/icons-react";
 import { useState } from "react";
 import { useMay } from "../../api/me";
+import type { LogEntry } from "../../api/types";
 import { useClasses } from "../../api/use-classes";
 import { eventTone } from "../../bench/flag-words";
+import { goOnWithout } from "../../bench/past";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatMoment } from "../../ui/format";
@@ -37,8 +40,15 @@ export function EventsPanel() {
   );
 }
 
+/** Kinds of events that a branch can be without. */
+const CHANGES = new Set(["inject", "heal", "set", "switch"]);
+
 function Events() {
   const events = useBench((s) => s.events);
+  const earliest = useBench((s) => s.bench?.earliest_tick);
+  const teaches = useMay("teach");
+  const canBranch = ({ kind, tick }: LogEntry) =>
+    teaches && CHANGES.has(kind) && earliest !== null && earliest !== undefined && tick >= earliest;
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   if (events.length === 0)
     return (
@@ -52,7 +62,7 @@ function Events() {
         .slice(-SHOWN)
         .reverse()
         .map((event) => (
-          <li key={event.seq}>
+          <li key={event.seq} className={styles.row}>
             <button
               type="button"
               className={styles.event}
@@ -65,6 +75,17 @@ function Events() {
               <span className={styles.text}>{event.text}</span>
               <span className={styles.actor}>{event.actor}</span>
             </button>
+            {canBranch(event) && (
+              <ActionIcon
+                size="sm"
+                variant="subtle"
+                aria-label={`Branch without this: ${event.text}`}
+                title="Go on from just before, without this, on a bench of its own"
+                onClick={() => void goOnWithout(event.tick, event.text)}
+              >
+                <IconGitBranch size={14} />
+              </ActionIcon>
+            )}
           </li>
         ))}
     </ol>

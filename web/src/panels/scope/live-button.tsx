@@ -4,6 +4,7 @@ import styles from "./scope.module.css";
 /** Says whether a picture follows the board, and leads back to now from the past. */
 export function LiveButton({ past, onLive }: { past: boolean; onLive(): void }) {
   const running = useBench((s) => s.bench?.state === "running" && s.connection.phase !== "closed");
+  const isPast = useBench((s) => Boolean(s.bench?.origin?.is_past));
   return (
     <button
       type="button"
@@ -14,7 +15,7 @@ export function LiveButton({ past, onLive }: { past: boolean; onLive(): void }) 
       onClick={onLive}
       title={past ? "Return to the newest data" : "Drag or scroll the plot to look at the past; the board runs on"}
     >
-      {past ? "PAST → LIVE" : running ? "LIVE" : "LIVE, PAUSED"}
+      {past ? "PAST → LIVE" : isPast ? "AS IT WAS" : running ? "LIVE" : "LIVE, PAUSED"}
     </button>
   );
 }

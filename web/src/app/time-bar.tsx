@@ -1,0 +1,131 @@
+import { Button, Menu, Slider } from "@mantine/core";
+import { IconGitBranch, IconPlayerPlayFilled, IconPlayerTrackNextFilled } from "@tabler/icons-react";
+import { useEffect, useState } from "react";
+import { useMay } from "../api/me";
+import type { Bench } from "../api/types";
+import { cardOf, slotMates } from "../api/use-catalog";
+import { eventTone } from "../bench/flag-words";
+import { backToNow, goOn, lookBack } from "../bench/past";
+import { send } from "../bench/send";
+import { useBench } from "../stream/bench-store";
+import { currentEvents } from "../stream/event-log";
+import { formatMoment } from "../ui/format";
+import styles from "./time-bar.module.css";
+
+const MOST_MARKS = 200;
+
+/** The time of the bench under all panels: dragged back, they show that moment, and another future can begin there. */
+export function TimeBar() {
+  const bench = useBench((s) => s.bench);
+  const teaches = useMay("teach");
+  if (!bench || !teaches || bench.replay_of || bench.earliest_tick === null || bench.earliest_tick === undefined)
+    return null;
+  return <Bar bench={bench} first={bench.earliest_tick} />;
+}
+
+function Bar({ bench, first }: { bench: Bench; first: number }) {
+  const events = useBench((s) => s.events);
+  const isPast = Boolean(bench.origin?.is_past);
+  const [newest, setNewest] = useState({ of: bench.id, tick: bench.tick });
+  const [held, setHeld] = useState<number | undefined>(undefined);
+  // the bench that is looked back at goes on; where it was when it was left is the end of the bar
+  useEffect(() => {
+    const of = isPast ? (bench.origin?.bench ?? "") : bench.id;
+    setNewest((n) => ({ of, tick: isPast ? Math.max(n.of === of ? n.tick : 0, bench.tick) : bench.tick }));
+  }, [bench, isPast]);
+  const end = Math.max(isPast ? newest.tick : bench.tick, first + 1);
+  const shown = Math.min(held ?? bench.tick, end);
+  const place = (tick: number) => `${((tick - first) / (end - first)) * 100}%`;
+  const marks = (isPast ? events : currentEvents(events)).filter(
+    (e) => e.tick >= first && e.tick <= end && eventTone(e) !== "quiet",
+  );
+  const go = (tick: number) => {
+    setHeld(tick);
+    if (tick >= end && isPast) void backToNow();
+    else if (tick < end) lookBack(tick);
+  };
+  return (
+    <section className={styles.bar} data-past={isPast} aria-label="Timeline">
+      <p className={styles.words}>
+        {isPast ? <strong>As it was at {formatMoment(shown * bench.dt_ms)}</strong> : <strong>Timeline</strong>}
+      </p>
+      <div className={styles.track}>
+        <Slider
+          size="sm"
+          min={first}
+          max={end}
+          label={(tick) => formatMoment(tick * bench.dt_ms)}
+          thumbLabel="Moment shown by all panels"
+          value={shown}
+          onChange={go}
+          onChangeEnd={() => setHeld(undefined)}
+        />
+        <span className={styles.marks} aria-hidden="true">
+          {marks.slice(-MOST_MARKS).map((event) => (
+            <i key={event.seq} data-tone={eventTone(event)} style={{ left: place(event.tick) }} title={event.text} />
+          ))}
+          {bench.origin && !isPast && <i data-tone="branch" style={{ left: place(bench.origin.tick) }} />}
+        </span>
+      </div>
+      <span className={styles.end}>{formatMoment(end * bench.dt_ms)}</span>
+      {isPast ? <PastActions bench={bench} /> : bench.origin && <Other />}
+    </section>
+  );
+}
+
+/** What can begin at the moment shown. */
+function PastActions({ bench }: { bench: Bench }) {
+  const others = slotMates(bench.controller, bench.controllers).filter((name) => name !== bench.controller);
+  return (
+    <>
+      <Menu position="top-end" shadow="md">
+        <Menu.Target>
+          <Button size="compact-sm" leftSection={<IconGitBranch size={16} />}>
+            Branch here
+          </Button>
+        </Menu.Target>
+        <Menu.Dropdown>
+          <Menu.Item leftSection={<IconPlayerPlayFilled size={14} />} onClick={() => void goOn()}>
+            Go on as it was
+          </Menu.Item>
+          {bench.faults.map(({ name }) => (
+            <Menu.Item
+              key={name}
+              onClick={() => void goOn(() => send({ heal: [name] }, `${cardOf("faults", name)?.title ?? name} healed`))}
+            >
+              Without {cardOf("faults", name)?.title.toLowerCase() ?? name}
+            </Menu.Item>
+          ))}
+          {others.map((name) => (
+            <Menu.Item key={name} onClick={() => void goOn(() => send({ switch: name }))}>
+              With {cardOf("control", name)?.title ?? name}
+            </Menu.Item>
+          ))}
+        </Menu.Dropdown>
+      </Menu>
+      <Button
+        size="compact-sm"
+        variant="default"
+        leftSection={<IconPlayerTrackNextFilled size={14} />}
+        onClick={() => void backToNow()}
+      >
+        Back to now
+      </Button>
+    </>
+  );
+}
+
+/** From a branch to the bench it is of. */
+function Other() {
+  return (
+    <Button
+      size="compact-sm"
+      variant="default"
+      leftSection={<IconGitBranch size={16} />}
+      title="Show the bench that this one branched off"
+      onClick={() => void backToNow()}
+    >
+      The other future
+    </Button>
+  );
+}

@@ -1,0 +1,113 @@
+import { api } from "../api/api";
+import { useBench } from "../stream/bench-store";
+import { stream } from "../stream/stream";
+import { announce } from "./announce";
+import { openBench, openOwn } from "./open-bench";
+import { send, showError } from "./send";
+
+/** Ticks before a moment of the past that its panels can show. */
+const WINDOW_TICKS = 20_000;
+/** How long a bench may take to say hello. */
+const HELLO_MS = 10_000;
+
+let wanted: number | undefined;
+let following = false;
+
+/** Show the bench as it was at a tick; of several ticks asked for in quick succession the last is shown. */
+export function lookBack(tick: number): void {
+  wanted = tick;
+  if (!following) void follow();
+}
+
+async function follow(): Promise<void> {
+  following = true;
+  try {
+    while (wanted !== undefined) {
+      const tick = wanted;
+      wanted = undefined;
+      const bench = useBench.getState().bench;
+      if (!bench) return;
+      if (bench.origin?.is_past) await stream.client.command({ kind: "seek", tick });
+      else {
+        const past = await api.fork(bench.id, { tick, paused: true, window_ticks: WINDOW_TICKS });
+        openBench(past.id, false, true);
+        await helloOf(past.id);
+      }
+    }
+  } catch (error) {
+    wanted = undefined;
+    showError(error);
+  } finally {
+    following = false;
+  }
+}
+
+/** Wait until the page shows a bench. */
+function helloOf(id: string): Promise<void> {
+  return new Promise((resolve) => {
+    const done = () => {
+      clearTimeout(timer);
+      stop();
+      resolve();
+    };
+    const timer = setTimeout(done, HELLO_MS);
+    const stop = useBench.subscribe(({ bench, connection }) => {
+      if (bench?.id === id && connection.phase === "open") done();
+    });
+  });
+}
+
+/** Go back from the past to the bench it is of; a bench that only showed the past is closed. */
+export async function backToNow(): Promise<void> {
+  const bench = useBench.getState().bench;
+  if (!bench?.origin) return;
+  try {
+    const { id, origin } = bench;
+    await api.reopenBench(origin.bench); // it may have been let go
+    openBench(origin.bench, true, true);
+    if (origin.is_past) await api.removeBench(id);
+  } catch (error) {
+    showError(error);
+  }
+}
+
+/** Go on from the moment that is shown, as a bench of its own. */
+export async function goOn(change?: () => Promise<boolean>): Promise<void> {
+  const bench = useBench.getState().bench;
+  if (!bench?.origin?.is_past) return;
+  if (change && !(await change())) return;
+  if (await send({ kind: "start" }, "A branch goes on from here")) openOwn(bench.id, true);
+}
+
+/** Fork the bench before what was done at a tick, and let it go on without that. */
+export async function goOnWithout(tick: number, words: string): Promise<void> {
+  const bench = useBench.getState().bench;
+  if (!bench) return;
+  try {
+    const made = await api.fork(bench.id, { tick, before: true, paused: true, window_ticks: WINDOW_TICKS });
+    openOwn(made.id);
+    await helloOf(made.id);
+    await send({ kind: "start" });
+    announce(`A branch without this: ${words}.`);
+  } catch (error) {
+    showError(error);
+  }
+}
+
+/** Fork a bench that has tripped from shortly before. */
+export async function forkBeforeTrip(): Promise<void> {
+  const bench = useBench.getState().bench;
+  if (!bench?.trip) return;
+  const before = Math.round(BEFORE_TRIP_PERIODS * (bench.drive_period_ticks ?? BEFORE_TRIP_TICKS));
+  try {
+    const tick = Math.max(bench.trip.tick - before, bench.earliest_tick ?? 0);
+    const made = await api.fork(bench.id, { tick, paused: true, window_ticks: WINDOW_TICKS });
+    openOwn(made.id);
+    announce(`A branch from ${bench.trip.tick - tick} ticks before the trip; it waits.`);
+  } catch (error) {
+    showError(error);
+  }
+}
+
+const BEFORE_TRIP_PERIODS = 10;
+const BEFORE_TRIP_TICKS = 100;
