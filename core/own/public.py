@@ -11,7 +11,7 @@ import re
 from core.control.two_axis import DrivePorts, RatePorts
 from core.loop.effects import Effects
 from core.own.text import refuse
-from core.ports import INPUT, BlockPorts
+from core.ports import INPUT, BlockPorts, Port
 
 MOST_LABELS = 64
 LONGEST_TEXT = 300
@@ -73,10 +73,19 @@ def check_ports(node: ast.AST, family: str, ports: type[BlockPorts]) -> None:
             refuse(node, f"{port.name} has a text of more than {LONGEST_TEXT} characters")
         if port.vector and port.kind == INPUT:
             refuse(node, f"{port.name} is a vector that is read")
-    names = {port.name for port in ports.declared}
+    names = {port.name: port for port in ports.declared}
+    for base in ports.__mro__[1:]:
+        for port in getattr(base, "declared", ()):
+            if _shape(names[port.name]) != _shape(port):
+                refuse(node, f"{port.name} is another port in {base.__qualname__}, which others read")
     for name in () if slot else FIRST_OUTPUTS.get(family, ()):
         if name not in names:
             refuse(node, f"has no output {name}, which others read")
+
+
+def _shape(port: Port) -> tuple[object, ...]:
+    """Return what others rely on of a port: whether it is read or written, and which numbers it has."""
+    return port.kind, port.vector, port.labels, port.each
 
 
 def slot_of(ports: type[BlockPorts]) -> str:
