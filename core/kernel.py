@@ -48,6 +48,11 @@ def _kept(function: F, compiled: Any) -> F:
     return cast(F, compiled)
 
 
+def is_kernel(function: object) -> bool:
+    """Say whether a step may call a function."""
+    return isinstance(function, Dispatcher) or bool(getattr(numba.config, "DISABLE_JIT", False))
+
+
 @inlined
 def whole(n: int) -> int:
     """Return how many numbers whole vector registers hold, at least ``n``.

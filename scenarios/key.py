@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from core.board.document import written_over
+from core.board.packages import carried
 
 SCENARIOS = Path(__file__).resolve().parent
 CORE = SCENARIOS.parent / "core"
@@ -26,8 +27,8 @@ def code_version() -> str:
 
 
 def content_hash(document: dict[str, Any]) -> str:
-    """Return a hash of a scenario without its seed; the order of fields does not matter."""
-    content = {name: value for name, value in written_over(document, {}).items() if name != "seed"}
+    """Return a hash of a scenario without its seed, with the packages it names; the order of fields does not matter."""
+    content = {name: value for name, value in written_over(carried(document), {}).items() if name != "seed"}
     return hashlib.sha256(json.dumps(content, sort_keys=True, default=str).encode()).hexdigest()
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,17 +14,18 @@ from core.block import FloatArray
 from core.board.board import Board
 from core.board.commands import Trip
 from core.board.ensemble import Ensemble, make
-from core.board.hosted import Hosted, Law
+from core.board.hosted import NOTHING, Hosted
 from core.board.idle import leave_out_idle
 from core.board.observer import cautions
+from core.board.outside import Conclusion, Law
 from core.board.parse import changed
 from core.errors import InputError
 from core.signals import Signal
-from scenarios.expectation import overall
 from scenarios.measure.metrics import device_metrics, measure
 from scenarios.samples import Samples, Trace
 from scenarios.schema import Scenario
 from scenarios.signals import PICTURED, figure_signals, traced
+from scenarios.summary import judge, summarise
 
 DEFAULT_SAMPLES = 10_000
 """Length of a run whose scenario has no end."""
@@ -89,54 +90,6 @@ class Result:
         )
 
 
-def judge(scenario: Scenario, metrics: dict[str, float]) -> list[dict[str, Any]]:
-    """Return each expectation of a scenario with the measured figure."""
-    return [
-        {
-            "metric": entry.metric,
-            "published": entry.published,
-            "expected": entry.text(),
-            "measured": metrics.get(entry.metric),
-            "ok": entry.holds(metrics.get(entry.metric)),
-            "published_value": entry.published_value,
-            "verdict": entry.word(metrics.get(entry.metric)),
-            "note": entry.note if entry.metric in metrics else "no such metric in this run",
-        }
-        for entry in scenario.head.expect
-    ]
-
-
-def summarise(
-    scenario: Scenario,
-    seed: int,
-    ticks: int,
-    elapsed_s: float,
-    metrics: dict[str, float],
-    digest: str,
-    trip: Trip | None,
-    warnings: list[str],
-) -> dict[str, Any]:
-    """Return the summary of a run, JSON-ready."""
-    expectations = judge(scenario, metrics)
-    return {
-        "scenario": scenario.id,
-        "title": scenario.head.title,
-        "source": scenario.head.source,
-        "claim": scenario.head.claim,
-        "verdict": overall(entry["verdict"] for entry in expectations),
-        "seed": seed,
-        "ticks": ticks,
-        "dt_s": scenario.spec.dt_ms / 1e3,
-        "elapsed_s": elapsed_s,
-        "digest": digest,
-        "trip": trip.model_dump() if trip is not None else None,
-        "warnings": warnings,
-        "metrics": metrics,
-        "expectations": expectations,
-        "ok": all(entry["ok"] for entry in expectations),
-    }
-
-
 def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True) -> Board:
     """Return the board of a scenario at its first tick, its events waiting.
 
@@ -154,19 +107,27 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
     return board
 
 
-def build_hosted(scenario: Scenario, law: Law, seed: int | None = None, *, compiled: bool = True) -> Hosted:
-    """Return the board of a scenario with a controller from outside in place of its own, at its first tick.
+def build_hosted(
+    scenario: Scenario,
+    seed: int | None = None,
+    *,
+    law: Law | None = None,
+    diagnosers: Mapping[str, Conclusion] = NOTHING,
+    identifiers: Mapping[str, Conclusion] = NOTHING,
+    compiled: bool = True,
+) -> Hosted:
+    """Return the board of a scenario with parts from outside in place of its own, at its first tick.
 
     Raises
     ------
     InputError
-        As `build`; for a study, for twins, for a plant with axes, for an analogue drive.
+        As `build`; for a study, for twins, for a plant with axes, with a controller for an analogue drive.
     """
     for name, other in (("study", scenario.study), ("twins", scenario.twins)):
         if other:
-            raise InputError("a controller from outside drives one board, and nothing else", name, "leave it out")
+            raise InputError("code from outside is asked by one board, and nothing else", name, "leave it out")
     spec = scenario.spec if seed is None else changed(scenario.spec, {"seed": seed})
-    board = Hosted(spec, law, compiled=compiled)
+    board = Hosted(spec, law, diagnosers=diagnosers, identifiers=identifiers, compiled=compiled)
     _await_events(board, scenario)
     return board
 
@@ -194,6 +155,8 @@ def run(
     trace: Trace | None = None,
     on_tick: Callable[[int], None] | None = None,
     law: Law | None = None,
+    diagnosers: Mapping[str, Conclusion] = NOTHING,
+    identifiers: Mapping[str, Conclusion] = NOTHING,
 ) -> Result:
     """Run a scenario from start to end, or until the board trips for good.
 
@@ -218,18 +181,24 @@ def run(
     on_tick : callable, optional
         Called with the tick reached after every chunk; it may raise to end the run.
     law : callable, optional
-        Drives in place of the controller of the scenario: called with each `core.board.hosted.Sample`, it answers with
+        Drives in place of the controller of the scenario: called with each `core.board.outside.Sample`, it answers with
         a voltage.
+    diagnosers, identifiers : mapping
+        Callables by id, in place of those of the scenario or beside them: called with each
+        `core.board.outside.Observation`, they answer with the probability of each hypothesis, or with mass, stiffness
+        and damping over nominal.
 
     Raises
     ------
     OSError
         When samples have no room in the folder of temporary files, or for what ``trace`` raises.
     """
-    if law is None:
-        board = build(scenario, seed, compiled=compiled)
+    if law or diagnosers or identifiers:
+        board: Board = build_hosted(
+            scenario, seed, law=law, diagnosers=diagnosers, identifiers=identifiers, compiled=compiled
+        )
     else:
-        board = build_hosted(scenario, law, seed, compiled=compiled)
+        board = build(scenario, seed, compiled=compiled)
     signals = traced(board, taps=taps, figures_only=figures_only, everything=everything)
     kept = [one for one in signals if trace is None or one.kind == "output" or one.name in PICTURED]
     if scenario.study is not None:

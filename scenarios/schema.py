@@ -12,6 +12,7 @@ from pydantic import Field, ValidationError
 from core.board.commands import LONGEST_MS, Command, parse_event
 from core.board.document import Document, has, says_the_same
 from core.board.ensemble import twin_specs
+from core.board.packages import carried
 from core.board.parse import parse
 from core.board.spec import Spec, fields
 from core.errors import InputError, from_validation, short, unknown_field
@@ -56,7 +57,7 @@ class Scenario:
     Attributes
     ----------
     document : dict
-        The document it was read from.
+        The document it was read from, with the installed packages whose blocks it names.
     head : Head
         Title, length, events, expectations.
     bench : dict
@@ -74,9 +75,9 @@ class Scenario:
     def __init__(self, document: Document, like: Scenario | None = None) -> None:
         if not isinstance(document, dict):
             raise InputError("a scenario must be a table", "scenario")
-        self.document = document = _with_open_ends(document)
-        head = {key: value for key, value in document.items() if key in HEAD}
         check_admitted(document)
+        self.document = document = carried(_with_open_ends(document))
+        head = {key: value for key, value in document.items() if key in HEAD}
         self.bench: Document = {key: value for key, value in document.items() if key not in HEAD}
         self._head, known = head, like._head if like is not None else {}
         is_alike = head.keys() == known.keys() and all(says_the_same(value, known[key]) for key, value in head.items())

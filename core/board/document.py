@@ -66,6 +66,7 @@ SECTIONS = (
     "readouts",
     "twins",
     "units",
+    "packages",
 )
 
 

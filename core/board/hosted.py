@@ -1,153 +1,156 @@
-"""A board whose controller is computed outside: asked at every sample, between what is measured and what is held."""
+"""A board with parts that are computed outside: asked at every sample, between what is measured and what is held."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from core.board import program
 from core.board.board import Board, Checkpoint
 from core.board.commands import Command, ResetTrip, Switch
+from core.board.document import Document
 from core.board.log import LogEntry
+from core.board.outside import Asked, Conclusion, Law, Observation, Sample
 from core.board.parse import changed
 from core.board.spec import Spec
 from core.control.external import External
-from core.errors import InputError, short
+from core.diagnose.hypothesis import hypotheses_of, names_of
+from core.errors import InputError
+from core.identify.identifier import PHYSICAL
 from core.ports import TICK, TIME_MS
 
-
-class Sample(NamedTuple):
-    """What a controller may read at a sample, and nothing of the truth.
-
-    Parameters
-    ----------
-    begins : bool
-        Whether to begin anew: at the first sample, after a reset, at a cold start.
-    tick : int
-        The sample.
-    time_ms, dt_ms : float
-        Device time, and the time to the next sample.
-    reference : float
-        Reference voltage, V.
-    model : float
-        Where the shuttle should be, um.
-    measured : float
-        Measured displacement, um.
-    applied : float
-        Voltage applied over the sample that ends now, V.
-    engaged : bool
-        Whether the controller drives. In shadow it should be ready to go on from ``applied``.
-    """
-
-    begins: bool
-    tick: int
-    time_ms: float
-    dt_ms: float
-    reference: float
-    model: float
-    measured: float
-    applied: float
-    engaged: bool
-
-
-Law = Callable[[Sample], float]
-"""A controller: a voltage for every sample, V."""
+OF_HYPOTHESES = "the probability of each hypothesis"
+NOTHING: Mapping[str, Conclusion] = {}
 
 
 class Hosted(Board):
-    """A board with a controller from outside, which drives from the first sample unless an event switches.
+    """A board with a controller, diagnosers or identifiers from outside.
 
-    A tick is cut in two: the steps up to the controller, then the law, then the rest. So the voltage that follows from
-    a measurement is held over the very next sample, as that of a law of the library.
+    A tick is cut before each of them: the steps up to there, then its answer, then the rest. So a voltage that follows
+    from a measurement is held over the very next sample, as that of a law of the library.
 
     Parameters
     ----------
     bench : Spec
-        The bench; its own controllers run in shadow.
-    law : callable
-        The controller.
+        The bench; its own controllers run in shadow of one from outside.
+    law : callable, optional
+        A controller, which drives from the first sample unless an event switches.
+    diagnosers : mapping, optional
+        Diagnosers by their ids. One that the bench has is replaced and leaves its hypotheses; others have the six of
+        5.2.4.
+    identifiers : mapping, optional
+        Identifiers by their ids; one that the bench has is replaced.
     compiled : bool
         Run compiled blocks.
 
     Raises
     ------
     InputError
-        When the plant has axes, or the drive is analogue.
+        When the plant has axes; for a law when the drive is analogue.
     """
 
-    def __init__(self, bench: Spec, law: Law, *, compiled: bool = True) -> None:
-        self._law, self._begins, self._begun = law, True, -1
-        name = External.name
-        super().__init__(changed(bench, {"controller.kind": name, f"controllers.{name}": {}}), compiled=compiled)
+    def __init__(
+        self,
+        bench: Spec,
+        law: Law | None = None,
+        *,
+        diagnosers: Mapping[str, Conclusion] = NOTHING,
+        identifiers: Mapping[str, Conclusion] = NOTHING,
+        compiled: bool = True,
+    ) -> None:
+        values: Document = {"controller.kind": External.name, f"controllers.{External.name}": {}} if law else {}
+        for key, given in (("diagnosers", diagnosers), ("identifiers", identifiers)):
+            if given:
+                values[key] = {**bench.document.get(key, {}), **{name: _table(bench, key, name) for name in given}}
+        spec, self._asked = changed(bench, values), list[Asked]()
+        for name, ask in identifiers.items():
+            self._asked.append(Asked(name, Observation, ask, len(PHYSICAL), f"{', '.join(PHYSICAL)} over nominal"))
+        for name, ask in diagnosers.items():
+            count = len(names_of(spec.diagnosers[name].params))
+            self._asked.append(Asked(name, Observation, ask, count, f"{count} numbers, {OF_HYPOTHESES}"))
+        self._law = Asked(External.name, Sample, law, 1, "one number, the voltage") if law else None
+        self._asked += [self._law] if self._law else []
+        self._begun = -1
+        super().__init__(spec, compiled=compiled)
 
     def link(self) -> None:
-        """Find the row of the law and what it reads, besides what every board does."""
+        """Find the rows that are asked for and what they read, besides what every board does."""
         super().link()
-        row = self.wiring.row(External.name)
-        self._cut = self._running.index(row)
-        places = dict(zip((port.name for port in External.inputs), self.wiring.ports(row).tolist(), strict=False))
-        self._places = [places[name] for name in ("reference", "model", "measured", "applied", "engaged")]
-        self._state = self.wiring.state_of(External.name)
+        for one in self._asked:
+            one.link(self.wiring, self._running, self.dt_ms)
+        self._asked.sort(key=lambda one: one.cut)
+        self._cut = self._asked[-1].cut
 
     def sample(self) -> Sample | None:
         """Begin the next tick and return what the controller may read; None once the board has tripped.
 
         `advance` goes on from there with the answer of the law.
         """
+        assert self._law is not None
         self.apply_due()
-        return None if self.trip is not None else self._begin(self.tick)
+        if self.trip is not None:
+            return None
+        self._begin(self.tick)
+        sample: Sample = self._law.sample(self.tick, self.wiring.w)
+        return sample
 
     def checkpoint(self) -> Checkpoint:
         """Refuse: what runs outside cannot be copied."""
-        raise InputError("cannot be copied: its controller runs outside of it", "board")
+        raise InputError("cannot be copied: part of it runs outside", "board")
 
     def _do(self, command: Command, actor: str) -> LogEntry:
-        ran_away = not math.isfinite(self._state[0])
+        law = self._law
+        ran_away = law is not None and not math.isfinite(law.answered[0])
         entry = super()._do(command, actor)
-        if isinstance(command, Switch) and command.switch == External.name:
-            self._begins |= command.cold or ran_away
-        self._begins |= isinstance(command, ResetTrip)
+        if law is not None and isinstance(command, Switch) and command.switch == law.key:
+            law.begins |= command.cold or ran_away
+        if isinstance(command, ResetTrip):
+            for one in self._asked:
+                one.begins = True
         return entry
 
-    def _begin(self, tick: int) -> Sample:
-        """Run the steps before the controller, once a tick."""
+    def _begin(self, tick: int) -> None:
+        """Run the steps before the last that is computed outside, once a tick; those before it are asked on the way."""
+        if self._begun == tick:
+            return
+        self._begun, first = tick, 0
+        for one in self._asked:
+            self._walk(first, one.cut, tick)
+            first = one.cut
+            if one is not self._asked[-1]:
+                self._ask(one, tick)
+
+    def _ask(self, one: Asked, tick: int) -> None:
+        """Ask for a row whose turn it is; a voltage that is not finite trips the board at this tick."""
+        if tick % one.every == 0:
+            one.ask(one.sample(tick, self.wiring.w))
+
+    def _walk(self, first: int, end: int, tick: int) -> None:
+        """Run some rows of a tick."""
         wiring = self.wiring
-        if self._begun != tick:
-            self._begun, table = tick, self._table[: self._cut]
-            if self.compiled:
-                program.begin(table, tick, self.dt_ms, wiring.p, wiring.s, wiring.w, wiring.io)
-            else:
-                self._begin_uncompiled(tick)
-        reference, model, measured, applied, engaged = wiring.w[self._places].tolist()
-        time_ms = float(wiring.w[TIME_MS])
-        return Sample(self._begins, tick, time_ms, self.dt_ms, reference, model, measured, applied, engaged != 0.0)
+        if self.compiled:
+            rows = self._table[first:end]
+            program.begin(rows, tick, self.dt_ms, wiring.p, wiring.s, wiring.w, wiring.io)
+        else:
+            self._walk_uncompiled(first, end, tick)
 
     @np.errstate(all="ignore")
-    def _begin_uncompiled(self, tick: int) -> None:
+    def _walk_uncompiled(self, first: int, end: int, tick: int) -> None:
         self.wiring.w[TICK], self.wiring.w[TIME_MS] = tick, tick * self.dt_ms
-        for step, row in zip(self._steps[: self._cut], self._table, strict=False):
+        for step, row in zip(self._steps[first:end], self._table[first:end], strict=True):
             if tick % row[program.EVERY] == 0:
                 step()
-
-    def _ask(self, sample: Sample) -> None:
-        """Take the answer of the law; a number that is not finite trips the board at this tick."""
-        answer: Any = self._law(sample)
-        try:
-            self._state[0] = float(answer)
-        except (TypeError, ValueError):
-            text = f"must answer with one number, the voltage; at sample {sample.tick} it was {short(answer)}"
-            raise InputError(text, External.name) from None
-        self._begins = False
 
     def _run(self, n: int, at: int) -> tuple[int, int]:
         wiring, cut = self.wiring, self._cut
         watches = self.pending.watches(wiring.index)
         for i in range(n):
             tick = self.tick + i
-            self._ask(self._begin(tick))
+            self._begin(tick)
+            self._ask(self._asked[-1], tick)
             rest: Any = (
                 1,
                 tick,
@@ -167,3 +170,16 @@ class Hosted(Board):
             if why != program.DONE:
                 return i + 1, why
         return n, program.DONE
+
+
+def _table(bench: Spec, key: str, name: str) -> Document:
+    """Return the table of a block from outside: what it takes over from the one of its name that the bench has."""
+    section = getattr(bench, key).get(name)
+    if section is None:
+        return {"kind": External.name}
+    hypotheses = [one.model_dump(exclude_defaults=True) for one in hypotheses_of(section.params)]
+    return {
+        "kind": External.name,
+        "every": section.every,
+        **({"hypotheses": hypotheses} if hypotheses and key == "diagnosers" else {}),
+    }

@@ -253,7 +253,7 @@ def read(s: Score.State, names: list[str], winner: int, unexplained: bool) -> Sc
         false_switches=int(s.exits),
         delays=[None if value < 0 else int(value) for value in delays],
         since_tick=int(s.since),
-        nis=float(s.nis_sum / s.nis_count) if s.nis_count else None,
+        nis=float(s.nis_sum / s.nis_count) if s.nis_sum else None,  # 0 from first to last where the bank says none
         least_nis=min(s.average[:n].tolist()),
         unexplained=unexplained,
         confusion=s.confusion.reshape(n, n).astype(int).tolist(),

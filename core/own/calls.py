@@ -7,6 +7,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from core.kernel import is_kernel
 from core.own.expressions import Checked, Expressions, called
 from core.own.guarded import floored
 from core.own.kinds import NUMBER, TRUTH, Count, Number, Part, signature
@@ -44,6 +45,8 @@ class Calls(Expressions):
             taken, result = signature(function)
         except TypeError:
             refuse(node, f"{name} is no function of steps")
+        if not is_kernel(function):
+            refuse(node, f"{name} is for pack, and no function of steps")
         if len(taken) != len(node.args):
             refuse(node, f"{name} takes {len(taken)} arguments and is given {len(node.args)}")
         self.count(node, COST_OF_CALL)

@@ -21,6 +21,8 @@ MOST_NUMBERS = 4096
 MOST_FIELDS = 200
 LONGEST_TEXT = 4000
 TABLES = (Record, BlockParams, BlockPorts)
+INNER = {"Params": BlockParams, "Packed": Record, "State": Record, "Ports": BlockPorts}
+"""Tables within the class of a unit, and what each is on where the base of the unit has none."""
 
 
 class Declaration:
@@ -139,6 +141,7 @@ class Declaration:
                 if part.name in self.inner:
                     refuse(part, f"{part.name} is declared already")
                 made = self._table(part, self._bases(part))
+                self._check_inner(part, made)
                 self.inner[part.name] = self.names[part.name] = made
             elif isinstance(part, ast.FunctionDef):
                 if part.name in self.methods:
@@ -152,6 +155,14 @@ class Declaration:
         self.values["__doc__"] = _text(node)
         self.names.clear()
         self.names.update(outer)
+
+    def _check_inner(self, node: ast.ClassDef, made: type[Any]) -> None:
+        """Refuse a table that the framework would not know, or that lacks what the base of the unit relies on."""
+        if node.name not in INNER:
+            refuse(node, f"a class within a unit is one of {', '.join(INNER)}")
+        usual: type[Any] = getattr(self.base, node.name, INNER[node.name])
+        if not issubclass(made, usual):
+            refuse(node, f"{node.name} must be on {usual.__qualname__}")
 
     def _value(self, target: ast.expr, node: ast.expr) -> None:
         """Read an attribute, or several at once."""
@@ -197,6 +208,8 @@ class Declaration:
             fields: dict[str, Any] = {name: (hint, values.get(name, ...)) for name, hint in hints.items()}
             if any(not isinstance(value, FieldInfo) for value in values.values()) or values.keys() != hints.keys():
                 raise TypeError("declare each parameter as name: kind = parameter(default, meaning, unit)")
+            for base in bases:
+                _check_parameters(base, hints)
             model: Any = create_model(node.name, __base__=bases, __module__=self._module, **fields)
             model.__doc__ = space["__doc__"]
             return cast(type[Any], model)
@@ -247,6 +260,14 @@ class Declaration:
             if len(texts) == len(words):
                 return Literal[texts]
         return refuse(node, "is no kind of a field")
+
+
+def _check_parameters(base: type[BlockParams], hints: dict[str, Any]) -> None:
+    """Refuse parameters that mean something else to the framework, such as how many hypotheses there are."""
+    for name, hint in hints.items():
+        known = base.model_fields.get(name)
+        if hasattr(base, name) or (known is not None and known.annotation != hint):
+            raise TypeError(f"{name} is something else in {base.__name__}")
 
 
 def _is_text(node: ast.stmt) -> bool:

@@ -30,6 +30,10 @@ OFFERED: dict[str, tuple[str, ...]] = {
     "core.noise": ("key", "normal", "uniform"),
     "core.voltage": ("AppliedPorts", "MeasuredPorts", "ObservedPorts", "Tick"),
     "core.control.controller": CONTROL,
+    "core.control.two_axis": (
+        *("DrivePorts", "RatePorts", "PartnerPorts", "Sense"),
+        *("two_axis", "fill_sense", "components", "share_kept"),
+    ),
     "core.reference.waveform": ("ReferenceParams", "Waveform", "line"),
     "core.faults.fault": (
         *("Fault", "FaultParams", "PackedFault", "ScaleFault"),
@@ -46,6 +50,7 @@ OFFERED: dict[str, tuple[str, ...]] = {
     "core.identify.identifier": ("PHYSICAL",),
     "core.device.oscillator": ("held", "transition"),
     "core.device.ranges": ("Sized",),
+    "core.units": ("PM_PER_UM", "hz_of_rad_ms", "rate_deg_s"),
 }
 
 MATHEMATICS = {"sqrt": math.sqrt, "copysign": math.copysign, "isfinite": math.isfinite, "pi": math.pi, "inf": math.inf}

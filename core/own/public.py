@@ -8,9 +8,10 @@ from __future__ import annotations
 import ast
 import re
 
+from core.control.two_axis import DrivePorts, RatePorts
 from core.loop.effects import Effects
 from core.own.text import refuse
-from core.ports import INPUT, BlockPorts
+from core.ports import INPUT, BlockPorts, Port
 
 MOST_LABELS = 64
 LONGEST_TEXT = 300
@@ -18,16 +19,28 @@ IDENTIFIER = re.compile(r"[a-z][a-z0-9_]{0,31}")
 DRIVEN = ("drive.voltage", "drive.middle", "drive.end")
 REFERENCE = ("reference.voltage", "reference.middle", "reference.end")
 MEASURED = ("sensor.displacement",)
+MOTION = tuple(
+    f"sensor.{axis}.{name}{mark}"
+    for axis, mark in (("x", ""), ("y", ""), ("partner_x", "?"), ("partner_y", "?"))
+    for name in ("displacement", "velocity")
+)
+CARRIER = ("@drive.sine", "@drive.cosine", "@drive.amplitude", "@drive.frequency")
+AXES = ("x", "y")
+SLOTS = {"drive": DrivePorts, "sense": RatePorts}
+"""Axes that units for gyroscopes declare; the slots of controllers, and the ports that others expect of each."""
+
 
 PUBLIC: dict[str, tuple[str, ...]] = {
     "reference": (),
     "control": (*REFERENCE, "model.displacement", "model.velocity", *MEASURED, *DRIVEN, "@engaged"),
+    "control, axes": (*MOTION, *CARRIER, "@engaged"),
+    "readout": ("@active.rate",),
     "diagnose": (*MEASURED, *DRIVEN, *REFERENCE),
     "identify": (*MEASURED, *DRIVEN, *REFERENCE),
     "sense": ("plant.displacement", "plant.velocity", *MEASURED),
     "faults": (*(f"effects.{port.name}" for port in Effects.outputs), *DRIVEN),
 }
-"""Sources of the inputs of each family."""
+"""Sources of the inputs of each family; what ends in ``?`` is not on every bench, and must be read so."""
 
 FIRST_OUTPUTS = {
     "control": ("voltage",),
@@ -41,8 +54,10 @@ FIRST_OUTPUTS = {
 
 def check_ports(node: ast.AST, family: str, ports: type[BlockPorts]) -> None:
     """Refuse ports that a unit of this family may not have."""
+    slot = slot_of(ports)
+    sources = PUBLIC[f"{family}, axes" if slot else family]
     for port in ports.declared:
-        if port.kind == INPUT and port.source.removesuffix("?") not in PUBLIC[family]:
+        if port.kind == INPUT and not {port.source, port.source.removesuffix("?")} & {*sources}:
             refuse(
                 node, f"{port.name} reads {port.source}, which a unit of {family} may not; docs/own-units.md lists what"
             )
@@ -58,7 +73,21 @@ def check_ports(node: ast.AST, family: str, ports: type[BlockPorts]) -> None:
             refuse(node, f"{port.name} has a text of more than {LONGEST_TEXT} characters")
         if port.vector and port.kind == INPUT:
             refuse(node, f"{port.name} is a vector that is read")
-    names = {port.name for port in ports.declared}
-    for name in FIRST_OUTPUTS.get(family, ()):
+    names = {port.name: port for port in ports.declared}
+    for base in ports.__mro__[1:]:
+        for port in getattr(base, "declared", ()):
+            if _shape(names[port.name]) != _shape(port):
+                refuse(node, f"{port.name} is another port in {base.__qualname__}, which others read")
+    for name in () if slot else FIRST_OUTPUTS.get(family, ()):
         if name not in names:
             refuse(node, f"has no output {name}, which others read")
+
+
+def _shape(port: Port) -> tuple[object, ...]:
+    """Return what others rely on of a port: whether it is read or written, and which numbers it has."""
+    return port.kind, port.vector, port.labels, port.each
+
+
+def slot_of(ports: type[BlockPorts]) -> str:
+    """Return the slot in which a controller with these ports stands; "" of one displacement."""
+    return next((slot for slot, base in SLOTS.items() if issubclass(ports, base)), "")

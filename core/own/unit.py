@@ -25,7 +25,7 @@ from core.kernel import kernel
 from core.own.declare import Declaration
 from core.own.evaluate import Evaluator
 from core.own.kinds import NOTHING, NUMBER, Kind, Part, Signals
-from core.own.public import check_ports
+from core.own.public import AXES, check_ports, slot_of
 from core.own.steps import Steps
 from core.own.text import UnitError, read, refuse
 from core.own.values import Own
@@ -140,21 +140,25 @@ def _family(declared: Declaration) -> str:
         if issubclass(declared.base, base):
             return family
     ports = declared.inner.get("Ports", declared.base.Ports)
-    if declared.base is Block and issubclass(ports, EngagedPorts):
+    if declared.base is Block and (issubclass(ports, EngagedPorts) or slot_of(ports)):
         return "control"
     if declared.base is Block and any(port.source.startswith("plant.") for port in ports.declared):
         return "sense"
+    if declared.base is Block and any(port.source == "@active.rate" for port in ports.declared):
+        return "readout"
     node = cast(ast.ClassDef, declared.node)
+    blocks = "ControllerPorts, DrivePorts or RatePorts, a Block that reads the plant or @active.rate"
     bases = ", ".join(base.__name__ for base, _ in BASES)
-    return refuse(
-        node, f"is none of these: a Block with ControllerPorts, a Block that reads the plant, or on one of {bases}"
-    )
+    return refuse(node, f"is none of these: a Block with {blocks}, or on one of {bases}")
 
 
 def _attributes(declared: Declaration, family: str) -> dict[str, Any]:
     """Return the attributes of the class, each of its kind."""
     node = cast(ast.ClassDef, declared.node)
-    allowed = ATTRIBUTES | (FAULT_ATTRIBUTES if family == "faults" else {})
+    slot = slot_of(declared.inner.get("Ports", declared.base.Ports))
+    wanted = ({"axes": AXES} if slot or family == "readout" else {}) | ({"slot": slot} if slot else {})
+    more = {name: type(value) for name, value in wanted.items()}
+    allowed = ATTRIBUTES | more | (FAULT_ATTRIBUTES if family == "faults" else {})
     found = {name: value for name, value in declared.values.items() if name != "__doc__"}
     for name, value in found.items():
         if name not in allowed:
@@ -169,6 +173,9 @@ def _attributes(declared: Declaration, family: str) -> dict[str, Any]:
             texts = astuple(part) if isinstance(part, Equation) else (part,) if isinstance(part, str) else ()
             if any(not isinstance(text, str) or len(text) > LONGEST_TEXT for text in texts):
                 refuse(node, f"{name} has a text of more than {LONGEST_TEXT} characters")
+    for name, value in wanted.items():
+        if found.get(name) != value:
+            refuse(node, f"{name} must be {value!r} with these ports")
     shown = sorted({block.shows for block in blocks("faults").values()})
     if family == "faults" and found.get("shows") not in shown:
         refuse(node, f"shows must be one of {', '.join(shown)}")

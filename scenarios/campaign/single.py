@@ -17,8 +17,9 @@ from scenarios.campaign.outcome import Outcome, outcome_of
 from scenarios.campaign.sums import Moments
 from scenarios.campaign.sweep import Sweep
 from scenarios.counterpart import counterpart, replaced
-from scenarios.run import Result, summarise
+from scenarios.run import Result
 from scenarios.schema import Scenario
+from scenarios.summary import summarise
 
 OWN = "own"
 """Name of the scenario among its counterparts."""

@@ -12,6 +12,7 @@ import numpy as np
 from core.block import FloatArray
 from core.board.board import Board
 from core.device.two_axis import TwoAxis
+from core.readout.allan import Allan
 from core.units import MS_PER_S, PM_PER_UM
 from scenarios.measure.blocks import BLOCK, blocks, is_zero, last_where, mean, stretches, total, width
 from scenarios.measure.rate_noise import rate_noise_metrics
@@ -65,9 +66,9 @@ def rate_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -
         figures["rate.angle_error_deg"] = float(angle[-1] - angle[first]) + turned
     figures |= _in_step(trace, _settled(pieces[-1], stretch))
     for name, section in board.spec.readouts.items():
-        block: Any = section.block
-        taus = block.taus_s(section.params, board.spec.context(section.every))
-        figures |= rate_noise_metrics(taus, board.wiring.state(name))
+        if issubclass(section.block, Allan):
+            taus = section.block.taus_s(section.params, board.spec.context(section.every))
+            figures |= rate_noise_metrics(taus, board.wiring.state(name))
     return {name: value for name, value in figures.items() if math.isfinite(value)}
 
 

@@ -10,7 +10,8 @@ import numpy as np
 from gymnasium.spaces import Box
 
 from core.block import FloatArray
-from core.board.hosted import Hosted, Sample
+from core.board.hosted import Hosted
+from core.board.outside import Sample
 from core.board.spec import MOST_SEED
 from core.errors import InputError
 from scenarios.edit import with_values
@@ -56,7 +57,7 @@ class Tracking(gymnasium.Env[FloatArray, FloatArray]):
         self.scenario = with_values(chosen, values or {})
         self._samples = self.scenario.samples or DEFAULT_SAMPLES
         self._voltage = 0.0
-        self._board = build_hosted(self.scenario, self._answer)
+        self._board = build_hosted(self.scenario, law=self._answer)
         self.limit_v = self._board.spec.context().limit_v
         self.action_space = Box(-1.0, 1.0, (1,), np.float64)
         self.observation_space = Box(-FARTHEST, FARTHEST, (len(OBSERVED),), np.float64)
@@ -74,7 +75,7 @@ class Tracking(gymnasium.Env[FloatArray, FloatArray]):
         if options:
             raise InputError("an episode has no options", "options", "give the environment other values")
         noise = int(self.np_random.integers(MOST_SEED))
-        self._board = build_hosted(self.scenario, self._answer, noise)
+        self._board = build_hosted(self.scenario, noise, law=self._answer)
         sample = self._board.sample()
         assert sample is not None
         return _observation(sample), self._info()

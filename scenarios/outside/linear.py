@@ -10,7 +10,7 @@ from typing import Any, Literal
 import control
 import numpy as np
 
-from core.board.hosted import Sample
+from core.board.outside import Sample
 from core.control.pid import Pid
 from core.errors import InputError, unknown
 from scenarios.schema import Scenario

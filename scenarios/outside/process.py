@@ -12,7 +12,7 @@ import time
 from types import TracebackType
 from typing import Self
 
-from core.board.hosted import Sample
+from core.board.outside import Sample
 from core.errors import InputError, short
 
 SAMPLE = struct.Struct("<9d")

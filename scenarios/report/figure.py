@@ -13,13 +13,13 @@ import re
 from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from core.block import FloatArray
 from core.board.board import Board
 from core.format import format_figure
+from core.readout.allan import Allan
 from core.theory.rate_noise import LEAST_TIMES, averaging_times
 from core.units import DEG_H_PER_DEG_S
 from scenarios.measure.blocks import BLOCK, blocks, largest, loaded, mean
@@ -125,11 +125,12 @@ def _allan(result: Result) -> Chart | None:
     board = result.board
     lines = []
     for name, section in board.spec.readouts.items():
-        block: Any = section.block
+        if not issubclass(section.block, Allan):
+            continue
         state = board.wiring.state(name)
         averages = np.array(state.averages)
         known = averaging_times(averages) >= LEAST_TIMES
-        taus = np.array(block.taus_s(section.params, board.spec.context(section.every)))[known]
+        taus = np.array(section.block.taus_s(section.params, board.spec.context(section.every)))[known]
         deviation = DEG_H_PER_DEG_S * np.sqrt(0.5 * np.array(state.squares)[known] / averages[known])
         lines.append(Series(name, taus.tolist(), deviation.tolist()))
     if not any(one.x for one in lines):

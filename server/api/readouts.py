@@ -62,9 +62,10 @@ FIGURES = (
 def get_readout(session: SessionDep, name: str) -> RateReadout:
     """Fit angle random walk, bias instability and rate random walk to the record so far."""
     spec = session.board.spec
-    if name not in spec.readouts:
-        raise unknown("read-out", name, spec.readouts, "name")
-    section = spec.readouts[name]
+    deviations_of = {key: section for key, section in spec.readouts.items() if issubclass(section.block, Allan)}
+    if name not in deviations_of:
+        raise unknown("Allan deviation", name, deviations_of, "name")
+    section = deviations_of[name]
     taus_s = Allan.taus_s(section.params, spec.context(section.every))
     tick = session.history.end_tick
     columns = [*(f"{name}.deviation.{m}" for m in OCTAVES), *(f"{name}.averages.{m}" for m in OCTAVES)]

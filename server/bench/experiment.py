@@ -8,6 +8,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from core.board.board import Board
+from core.board.packages import TABLE, carried
 from core.errors import InputError
 from core.own.admission import kept
 from scenarios.key import code_version
@@ -45,6 +46,8 @@ def experiment_of(session: Session) -> Experiment:
     board = session.board
     document = {**session.scenario.document, **board.base}
     events = board.save()["events"]
+    if named := carried({**document, "events": events}).get(TABLE):  # what was done may name others
+        document[TABLE] = named
     plain = json.loads(json.dumps({"scenario": document, "events": events}, default=str))
     return Experiment(
         **plain,

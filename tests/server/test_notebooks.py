@@ -33,8 +33,8 @@ def errors_um(said: str) -> dict[str, float]:
     return {name.strip(): float(value) for name, value in re.findall(r"^(.{10}) (\d\.\d+) um$", said, re.M)}
 
 
-def test_there_are_four_and_none_has_outputs() -> None:
-    assert [path.stem for path in NOTEBOOKS] == ["campaign", "first-run", "lqg", "own-controller"]
+def test_there_are_five_and_none_has_outputs() -> None:
+    assert [path.stem for path in NOTEBOOKS] == ["campaign", "first-run", "lqg", "own-controller", "own-diagnoser"]
     for path in NOTEBOOKS:
         book = nbformat.read(path, as_version=4)
         nbformat.validate(book)
@@ -51,6 +51,13 @@ def test_the_first_run(tmp_path: Path) -> None:
 def test_a_controller_of_ones_own(tmp_path: Path) -> None:
     errors = errors_um(printed("own-controller", tmp_path))
     assert errors["mrac"] < errors["own"] < errors["open loop"]
+
+
+def test_a_diagnoser_of_ones_own(tmp_path: Path) -> None:
+    said = printed("own-diagnoser", tmp_path)
+    right = {name: float(value) for name, value in re.findall(r"^(\w+) +(0\.\d+) right$", said, re.M)}
+    assert 0.8 < right["own"] < right["kalman"]
+    assert len(re.findall(r"^\w+ +\d+ samples$", said, re.M)) == 2
 
 
 def test_a_design_with_python_control(tmp_path: Path) -> None:

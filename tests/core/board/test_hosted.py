@@ -10,7 +10,8 @@ import pytest
 
 from core import registry
 from core.board.board import Board
-from core.board.hosted import Hosted, Law, Sample
+from core.board.hosted import Hosted
+from core.board.outside import Law, Sample
 from core.board.parse import parse
 from core.errors import InputError
 from tests.lab import RICH, do, document, make, play

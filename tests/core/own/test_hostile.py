@@ -13,6 +13,7 @@ import pytest
 
 from core.board.commands import Set
 from core.errors import InputError
+from core.own.text import UnitError
 from core.own.unit import unit
 from scenarios import own
 from scenarios.library import get
@@ -76,6 +77,51 @@ def test_how_many_hypotheses_there_are_is_not_the_units_to_say() -> None:
     assert board.wiring.parameters("mine").count == 6.0
     board.advance(200)
     assert board.trip is None
+
+
+MEMORY = "        memory: float = parameter("
+
+
+KNOWN = "a class within a unit is one of Params, Packed, State, Ports"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        (
+            MEMORY,
+            f'        count: float = parameter(40.0, "more", "1")\n{MEMORY}',
+            "count is something else in BankParams",
+        ),
+        (MEMORY, f'        hypotheses: float = parameter(1.0, "none", "1")\n{MEMORY}', "hypotheses is something else"),
+        (
+            MEMORY,
+            f'        model_fields: float = parameter(1.0, "none", "1")\n{MEMORY}',
+            "model_fields is something else",
+        ),
+        ("class Params(BankParams)", "class Params(BlockParams)", "Params must be on BankParams"),
+        ("class Params(BankParams)", "class Params(Record)", "declares|Params must be on"),
+        ("class Packed(Judge.Packed)", "class Packed(Record)", "Packed must be on Judge.Packed"),
+        ("class State(Record)", "class State(BankParams)", "declare each parameter|State must be on Record"),
+        (
+            "    class State(Record)",
+            "    class Ports(Judge.Ports):\n"
+            '        probability: Vector = output("1", "x", labels=("a",))\n\n'
+            "    class State(Record)",
+            "probability is another port in Judge.Ports",
+        ),
+        ("class State(Record)", "class rests(Record)", KNOWN),
+        ("class State(Record)", "class packed(Record)", KNOWN),
+    ],
+)
+def test_what_the_framework_counts_on_is_not_the_units_to_declare(old: str, new: str, said: str) -> None:
+    """A parameter named count once stood for the number of hypotheses, so that loops went beyond their vectors."""
+    text = (ROOT / "docs" / "own-units.md").read_text("utf-8").split("```python\n")[2].partition("```")[0]
+    changed = text.replace("import Context, ", "import BlockParams, Context, ")
+    changed = changed.replace("import Any\n", "import Any\nfrom core.ports import output\n").replace(old, new)
+    assert changed.count(new) == 1
+    with pytest.raises(UnitError, match=said):
+        unit("judge", changed)
 
 
 def test_a_fault_of_ones_own_cannot_come_while_the_board_runs() -> None:

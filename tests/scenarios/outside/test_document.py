@@ -8,7 +8,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-from core.board.hosted import Sample
+from core.board.outside import Sample
 from scenarios.outside.process import SAMPLE
 
 DOCUMENT = Path(__file__).resolve().parents[3] / "docs" / "other-languages.md"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import scipy.signal
 
-from core.board.hosted import Sample
+from core.board.outside import Sample
 from core.device.frequency import response
 from core.errors import InputError
 from scenarios.edit import with_values

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.board.hosted import Sample
+from core.board.outside import Sample
 from core.errors import InputError
 from scenarios.edit import with_values
 from scenarios.library import get
@@ -167,6 +167,6 @@ def test_bad_options_are_said_in_one_line(tmp_path: Path) -> None:
 def test_what_no_single_controller_drives_is_refused(name: str) -> None:
     twins = with_values(get("first-look"), {"twins.other.controller": {"kind": "pid"}})
     chosen, field = (twins, "twins") if name == "twins" else (get(name), "study")
-    with pytest.raises(InputError, match="drives one board") as refused:
+    with pytest.raises(InputError, match="asked by one board") as refused:
         run(chosen, law=Pi())
     assert refused.value.field == field

@@ -1,0 +1,31 @@
+"""A diagnoser that is computed outside of the board."""
+
+from __future__ import annotations
+
+from core.block import Equation
+from core.diagnose.judge import Judge
+from core.diagnose.lanes import LANE
+from core.record import Record, Vector, vector
+
+
+class External(Judge):
+    r"""The probabilities come from outside, :math:`P_i=f(y_i,u_{i-1},\dots)`: from a function.
+
+    It is asked once the sample has been measured, as every other diagnoser. `core.board.hosted` asks; on any other
+    board there is nobody to ask.
+    """
+
+    title = "External"
+    apart = True
+    equations = (Equation("law", r"P_i=f(y_i,u_{i-1})"),)
+
+    class State(Record):
+        """The probabilities that were answered."""
+
+        answered: Vector = vector(LANE)
+
+    @staticmethod
+    def step(p: Judge.Packed, s: State, x: Judge.Ports) -> None:
+        """Pass on what was answered."""
+        for k in range(int(p.count)):
+            x.probability[k] = s.answered[k]

@@ -1,0 +1,34 @@
+"""An identifier that is computed outside of the board."""
+
+from __future__ import annotations
+
+from core.block import BlockParams, Equation
+from core.identify.estimator import Estimator
+from core.identify.identifier import PHYSICAL
+from core.record import Record, Vector, vector
+
+
+class External(Estimator):
+    r"""The estimate comes from outside, :math:`\hat\theta_i=f(y_i,u_{i-1},\dots)`: from a function.
+
+    It is asked once the sample has been measured, as every other identifier. `core.board.hosted` asks; on any other
+    board there is nobody to ask.
+    """
+
+    title = "External"
+    apart = True
+    equations = (Equation("law", r"\hat\theta_i=f(y_i,u_{i-1})"),)
+
+    class Params(BlockParams):
+        """What it does is decided outside."""
+
+    class State(Record):
+        """Mass, stiffness and damping over nominal that were answered."""
+
+        answered: Vector = vector(len(PHYSICAL))
+
+    @staticmethod
+    def step(p: Record, s: State, x: Estimator.Ports) -> None:
+        """Pass on what was answered."""
+        for k in range(3):
+            x.estimate[k] = s.answered[k]

@@ -1,0 +1,57 @@
+"""Summary of a run, as ``run --json`` prints it: what was expected beside what was measured."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from core.board.commands import Trip
+from scenarios.expectation import overall
+from scenarios.schema import Scenario
+
+
+def judge(scenario: Scenario, metrics: dict[str, float]) -> list[dict[str, Any]]:
+    """Return each expectation of a scenario with the measured figure."""
+    return [
+        {
+            "metric": entry.metric,
+            "published": entry.published,
+            "expected": entry.text(),
+            "measured": metrics.get(entry.metric),
+            "ok": entry.holds(metrics.get(entry.metric)),
+            "published_value": entry.published_value,
+            "verdict": entry.word(metrics.get(entry.metric)),
+            "note": entry.note if entry.metric in metrics else "no such metric in this run",
+        }
+        for entry in scenario.head.expect
+    ]
+
+
+def summarise(
+    scenario: Scenario,
+    seed: int,
+    ticks: int,
+    elapsed_s: float,
+    metrics: dict[str, float],
+    digest: str,
+    trip: Trip | None,
+    warnings: list[str],
+) -> dict[str, Any]:
+    """Return the summary of a run, JSON-ready."""
+    expectations = judge(scenario, metrics)
+    return {
+        "scenario": scenario.id,
+        "title": scenario.head.title,
+        "source": scenario.head.source,
+        "claim": scenario.head.claim,
+        "verdict": overall(entry["verdict"] for entry in expectations),
+        "seed": seed,
+        "ticks": ticks,
+        "dt_s": scenario.spec.dt_ms / 1e3,
+        "elapsed_s": elapsed_s,
+        "digest": digest,
+        "trip": trip.model_dump() if trip is not None else None,
+        "warnings": warnings,
+        "metrics": metrics,
+        "expectations": expectations,
+        "ok": all(entry["ok"] for entry in expectations),
+    }
