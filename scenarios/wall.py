@@ -11,7 +11,7 @@ from core.errors import InputError
 from core.wall import wall
 from scenarios.kernel_cache import folder
 
-BENCH = {
+BENCH: dict[str, Any] = {
     "device": {"id": "ch3"},
     "reference": {"kind": "sine", "amplitude_v": 10.0, "frequency_hz": 159.15494309189535},
     "controller": {"kind": "pid"},
@@ -32,9 +32,14 @@ def build() -> None:
         text = "needs a folder for compiled kernels: the process that compiles units leaves them there"
         raise InputError(text, "units", "set COMBBENCH_KERNEL_CACHE to a folder that can be written")
     wall.demand()
-    if _digest(BENCH) != _digest({**BENCH, "units": {"pid": {"source": inspect.getsource(pid)}}}):
+    if _digest(BENCH) != _digest(with_unit()):
         wall.demand(False)
         raise InputError("the wall gives other bits than this processor", "units", "set teacher or off")
+
+
+def with_unit() -> dict[str, Any]:
+    """Return the bench with a copy of its controller as a unit of one's own."""
+    return {**BENCH, "units": {"pid": {"source": inspect.getsource(pid)}}}
 
 
 def _digest(bench: dict[str, Any]) -> str:

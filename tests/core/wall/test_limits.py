@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import inspect
 import sys
 from collections.abc import Iterator
 from typing import Any
@@ -10,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from core.control import pid
 from core.errors import InputError
 from core.wall import code, host, wall
 from core.wall.crossing import Behind, Crossing, Sizes
@@ -152,18 +154,10 @@ def test_without_the_package_the_wall_is_not_built_and_says_what_to_install(monk
 
 
 def test_a_wall_that_gives_other_bits_is_not_built(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The unit has a line more than any that was compiled before, so that it is one of its own."""
+    unit = {"pid": {"source": inspect.getsource(pid) + "\nOTHER = 1\n"}}
     monkeypatch.setattr("core.wall.wall.kept", lambda _: code.compiled(BEGIN + GOOD, "f"))
-    monkeypatch.setattr(built, "inspect", _Other)
+    monkeypatch.setattr(built, "with_unit", lambda: {**built.BENCH, "units": unit})
     with pytest.raises(InputError, match="other bits"):
         built.build()
     assert not wall.is_demanded()
-
-
-class _Other:
-    """Reads a file of the library with one line more, so that it is a unit of its own."""
-
-    @staticmethod
-    def getsource(module: Any) -> str:
-        import inspect
-
-        return inspect.getsource(module) + "\nOTHER = 1\n"
