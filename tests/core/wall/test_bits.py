@@ -14,6 +14,8 @@ import pytest
 
 from core.board import program
 from core.board.board import Board
+from core.board.flops import budget
+from core.errors import InputError
 from core.lanes import code
 from core.lanes.numbers import WIDTH
 from core.own.unit import unit
@@ -23,6 +25,7 @@ from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import build, run
 from scenarios.schema import Scenario
+from scenarios.studies.joined_records import _play, _record
 from tests.core.own.test_own_units import examples, source_of, with_unit
 from tests.core.own.texts import FIT, PI, ROOT, odd
 
@@ -180,3 +183,28 @@ def test_twins_stay_behind_the_wall() -> None:
     inside = behind(lambda: digests(build(document)))
     assert inside == digests(build(document))
     assert np.isfinite(np.frombuffer(inside[1])).any()
+
+
+def test_nothing_else_runs_a_unit_while_the_wall_stands() -> None:
+    text, base, values = next(case[1:] for case in CASES if case[0] == "leaky_squares")
+    scenario = with_unit("leaky_squares", text() + "\n# nothing else\n", values, base)
+    wall.demand()
+    board = build(scenario)
+    board.advance(100)
+    with pytest.raises(InputError, match="behind a wall") as raised:
+        budget(board, 50e6)
+    assert raised.value.field == "units.leaky_squares"
+    with pytest.raises(RuntimeError, match="behind the wall alone"):
+        program.address(board.spec.diagnosers["mine"].block)
+
+
+def test_a_study_of_a_unit_is_the_same_behind_the_wall() -> None:
+    """This one runs the step of a diagnoser by itself, on a record."""
+    text = examples()[1]
+
+    def played() -> bytes:
+        board = build(with_unit("leaky_squares", text, JUDGE, "ch5-seven-step"))
+        record = _record(board, 200, faulty=True)
+        return _play(board, "mine", board.spec.diagnosers["mine"].params.hypotheses[0].name, record).tobytes()
+
+    assert behind(played) == played()
