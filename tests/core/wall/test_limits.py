@@ -44,11 +44,13 @@ def _wall() -> Iterator[None]:
 
 STOPS_BELOW_0 = (
     "%r = alloca [64 x double]\n%in = getelementptr double, ptr %w, i64 2\n%v = load double, ptr %in\n"
-    "store volatile double %v, ptr %r\n%bad = fcmp olt double %v, 0.0\nbr i1 %bad, label %stop, label %go\n"
-    "stop:\ncall void @llvm.trap()\nunreachable\ngo:\n%u = load volatile double, ptr %r\n"
+    "store volatile double %v, ptr %r\ncall void @g(ptr %r)\n%u = load volatile double, ptr %r\n"
     "%out = getelementptr double, ptr %w, i64 3\nstore double %u, ptr %out\nret ptr null\n}\n"
+    "define void @g(ptr %r) noinline {\n%v = load volatile double, ptr %r\n%bad = fcmp olt double %v, 0.0\n"
+    "br i1 %bad, label %stop, label %go\nstop:\ncall void @llvm.trap()\nunreachable\ngo:\nret void\n}\n"
     "declare void @llvm.trap()"
 )
+"""A step with numbers on its stack, which it passes on."""
 
 
 def way(body: str) -> tuple[Crossing, Callable[..., None]]:
