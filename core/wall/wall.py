@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import atexit
 from collections.abc import MutableMapping
+from threading import Lock
 from weakref import WeakKeyDictionary
 
 from core.block import Block
@@ -15,6 +16,7 @@ INSTANCES = 4
 """Of a step: so many threads can run it at a time; more wait for each other."""
 
 _is_demanded = False
+_building = Lock()
 _crossings: MutableMapping[type[Block], dict[tuple[Sizes, int], Crossing]] = WeakKeyDictionary()
 atexit.register(_crossings.clear)  # while the package that lets go of them is still there
 
@@ -41,15 +43,18 @@ def is_demanded() -> bool:
 def address(block: type[Block], sizes: Sizes, width: int = 1) -> int:
     """Return where a C function is that computes a step behind the wall, of boards side by side if need be.
 
+    It is there as long as the block.
+
     Raises
     ------
     InputError
         When the step cannot be there.
     """
-    ways = _crossings.setdefault(block, {})
-    found = ways.get((sizes, width))
-    if found is None:
-        module = module_of(kept(block))
-        instances = [instance_of(module, sizes.total) for _ in range(INSTANCES)]
-        found = ways[sizes, width] = Crossing(instances, sizes, width)
-    return found.address
+    with _building:  # a way that another replaced would be gone from under the boards that have its address
+        ways = _crossings.setdefault(block, {})
+        found = ways.get((sizes, width))
+        if found is None:
+            module = module_of(kept(block))
+            instances = [instance_of(module, sizes.total) for _ in range(INSTANCES)]
+            found = ways[sizes, width] = Crossing(instances, sizes, width)
+        return found.address

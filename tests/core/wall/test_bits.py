@@ -18,6 +18,8 @@ from core.board.flops import budget
 from core.errors import InputError
 from core.lanes import code
 from core.lanes.numbers import WIDTH
+from core.own.kinds import NUMBER, signature
+from core.own.offered import OFFERED, offered
 from core.own.unit import unit
 from core.wall import wall
 from scenarios.campaign.batch import outcomes
@@ -208,3 +210,27 @@ def test_a_study_of_a_unit_is_the_same_behind_the_wall() -> None:
         return _play(board, "mine", board.spec.diagnosers["mine"].params.hypotheses[0].name, record).tobytes()
 
     assert behind(played) == played()
+
+
+def test_every_function_of_numbers_that_a_step_may_call_is_there_behind_the_wall() -> None:
+    calls, imports = [], []
+    for module, names in OFFERED.items():
+        for name in names:
+            function = offered(module, name) if module != "__future__" else None
+            try:
+                taken, result = signature(function)
+            except (TypeError, AttributeError):
+                continue
+            if result == NUMBER and all(kind == NUMBER for kind in taken):
+                imports.append(f"from {module} import {name} as {name}_")
+                calls.append(f"total += {name}_({', '.join(f'e + {0.3 + 0.1 * i}' for i in range(len(taken)))})")
+    assert len(calls) >= 10
+    steps = [
+        "total = math.sqrt(abs(e)) + math.copysign(e, 1.0) + floor(e) + max(e, 0.1) + min(e, 0.2)",
+        *calls,
+        "x.seen = total",
+    ]
+    text = odd("step", "\n".join(steps), top="\n".join(imports))
+    scenario = with_unit("odd", text, {}, "first-look")
+    one = behind(lambda: digests(build(scenario)))
+    assert one == digests(build(scenario))

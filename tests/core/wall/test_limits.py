@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import inspect
+import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -18,7 +19,7 @@ from core.wall.crossing import Behind, Crossing, Sizes
 from scenarios import wall as built
 from scenarios.run import build
 from tests.core.own.test_own_units import with_unit
-from tests.core.own.texts import PI
+from tests.core.own.texts import PI, ROOT
 
 BEGIN = "define ptr @f(ptr %p, ptr %s, ptr %w, ptr %io) {\n"
 GOOD = "%v = load double, ptr %p\nstore double %v, ptr %s\nret ptr null\n}"
@@ -189,3 +190,8 @@ def test_a_wall_that_gives_other_bits_is_not_built(monkeypatch: pytest.MonkeyPat
     with pytest.raises(InputError, match="other bits"):
         built.build()
     assert not wall.is_demanded()
+
+
+def test_nothing_of_the_wall_is_loaded_where_nobody_wants_it() -> None:
+    text = "import sys, server.app, scenarios.own; assert 'wasmtime' not in sys.modules"
+    subprocess.run([sys.executable, "-c", text], cwd=ROOT, check=True, timeout=100)
