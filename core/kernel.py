@@ -83,12 +83,33 @@ class _Apart(Compiler):
 
 def compiled_step(step: Step, packed: type[Record], state: type[Record], ports: type[BlockPorts]) -> Any:
     """Return the C function of a step: pointers to its two records, to all signals, and to the places of its ports."""
-    seen = tuple((port.name, port.record.layout if port.record else port.vector) for port in ports.declared)
-    return _compiled(step, packed.layout, state.layout, seen)
+    return _compiled(step, packed.layout, state.layout, _seen(ports))
 
 
 @cache
 def _compiled(step: Step, packed: Layout, state: Layout, ports: tuple[tuple[str, bool | Layout], ...]) -> Any:
+    function = _entry(step, packed, state, ports)
+    function._cache = KernelCache(cast(FunctionType, step), f"{packed}{state}{ports}")
+    function.compile()
+    return function
+
+
+def step_instructions(
+    step: Step, packed: type[Record], state: type[Record], ports: type[BlockPorts]
+) -> tuple[str, str]:
+    """Return the instructions that the C function of a step is compiled from, and its name among them."""
+    function = _entry(step, packed.layout, state.layout, _seen(ports))
+    function.compile()
+    return str(function.inspect_llvm()), str(function.native_name)
+
+
+def _seen(ports: type[BlockPorts]) -> tuple[tuple[str, bool | Layout], ...]:
+    """Return of every port its name, and whether it is a vector or of which records."""
+    return tuple((port.name, port.record.layout if port.record else port.vector) for port in ports.declared)
+
+
+def _entry(step: Step, packed: Layout, state: Layout, ports: tuple[tuple[str, bool | Layout], ...]) -> Any:
+    """Return the C function of a step, still to be compiled."""
     body: Any = numba.njit(error_model="numpy", inline="always")(step)
     parameters_at, state_at, signals_at = record_at(packed), record_at(state), ports_at(ports)
 
@@ -96,7 +117,4 @@ def _compiled(step: Step, packed: Layout, state: Layout, ports: tuple[tuple[str,
         body(parameters_at(p), state_at(s), signals_at(w, io))
 
     options: dict[str, Any] = {"nopython": True, "error_model": "numpy"}
-    function: Any = CFunc(entry, _SIGNATURE, locals={}, options=options, pipeline_class=_Apart)
-    function._cache = KernelCache(cast(FunctionType, step), f"{packed}{state}{ports}")
-    function.compile()
-    return function
+    return CFunc(entry, _SIGNATURE, locals={}, options=options, pipeline_class=_Apart)

@@ -18,6 +18,8 @@ from core.kernel_cache import get, key, put
 from core.lanes import code
 from core.own.apart import compile_by
 from core.own.unit import unit
+from core.wall import wall
+from core.wall.code import kept, name_of
 from scenarios.kernel_cache import folder
 
 MOST_S = 60
@@ -35,11 +37,13 @@ def compile_apart(name: str, text: str) -> None:
     InputError
         When that takes too long, too much memory, or fails.
     """
-    mark = f"own-{name}-{key(unit(name, text).block.step)}"
+    block = unit(name, text).block
+    behind_wall = wall.is_demanded()
+    mark = name_of(block) if behind_wall else f"own-{name}-{key(block.step)}"
     if folder() is None or get(mark) is not None:
         return
     command = [sys.executable, "-m", "scenarios.own"]
-    told = json.dumps([name, text])
+    told = json.dumps([name, text, behind_wall])
     where = Path(__file__).resolve().parents[1]
     try:
         ended = subprocess.run(
@@ -51,7 +55,8 @@ def compile_apart(name: str, text: str) -> None:
         said = one_line(ended.stderr.strip().rpartition("\n")[2])[:200]
         why = said or f"it takes more than {MOST_S} s or {MOST_BYTES >> 30} GB"
         raise InputError(f"cannot be compiled: {why}", f"units.{name}")
-    put(mark, b"")
+    if not behind_wall:
+        put(mark, b"")
 
 
 def with_units(document: Document, files: Iterable[Path], field: str = "--unit") -> Document:
@@ -69,7 +74,7 @@ def with_units(document: Document, files: Iterable[Path], field: str = "--unit")
 
 def main() -> None:
     """Compile the unit on standard input."""
-    name, text = json.load(sys.stdin)
+    name, text, behind_wall = json.load(sys.stdin)
     if sys.platform != "win32":
         import resource
 
@@ -77,8 +82,11 @@ def main() -> None:
         resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))
     compile_by(None)
     block = unit(name, text).block
-    program.address(block)
-    code.kept(block)
+    if behind_wall:
+        kept(block)  # as WebAssembly alone
+    else:
+        program.address(block)
+        code.kept(block)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from collections.abc import AsyncIterator
 
 from fastapi import FastAPI
 
+from scenarios import wall
 from server import document, errors
 from server.api import (
     aliases,
@@ -95,7 +96,14 @@ def create_app(settings: Settings) -> FastAPI:
     ----------
     settings : Settings
         Limits and places of the service.
+
+    Raises
+    ------
+    InputError
+        When everyone may bring units and the wall around them cannot be built.
     """
+    if settings.units == "everyone":
+        wall.build()
     service = Service(settings)
     public = service.public
     token = settings.token.get_secret_value() if settings.token else token_of(settings.data)

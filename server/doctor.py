@@ -6,6 +6,7 @@ import os
 import platform
 from importlib.metadata import PackageNotFoundError, version
 
+from core.errors import InputError
 from scenarios.kernel_cache import folder
 from scenarios.key import code_version
 from server.classroom import join_addresses
@@ -14,7 +15,18 @@ from server.security.identity import TOKEN_FILE
 from server.settings import describe_settings, load_settings
 from server.version import VERSION
 
-PACKAGES = ("numpy", "scipy", "numba", "pydantic", "fastapi", "uvicorn", "websockets", "sqlalchemy", "viser")
+PACKAGES = (
+    "numpy",
+    "scipy",
+    "numba",
+    "pydantic",
+    "fastapi",
+    "uvicorn",
+    "websockets",
+    "sqlalchemy",
+    "viser",
+    "wasmtime",
+)
 
 
 def examine() -> dict[str, dict[str, str]]:
@@ -43,9 +55,21 @@ def examine() -> dict[str, dict[str, str]]:
             "page": "built" if (DIST / "index.html").is_file() else "not built: make setup",
             "data folder": "can be written" if _can_write(settings.data) else "cannot be written",
             "access token": token,
+            "wall around units": _wall() if settings.units == "everyone" else "not asked for: units is not everyone",
             "students open": join if settings.classroom else "nothing: classroom is off",
         },
     }
+
+
+def _wall() -> str:
+    """Say whether the wall around units can be built here."""
+    from scenarios import wall  # a slow import that only this function needs
+
+    try:
+        wall.build()
+    except InputError as error:
+        return f"cannot be built: {error.message}"
+    return "stands, with the same bits"
 
 
 def _version(package: str) -> str:

@@ -100,9 +100,6 @@ def check_binding(settings: Settings) -> None:
             "classroom",
             "serve the class through the proxy without it, as docs/behind-a-proxy.md says, or unset public_origin",
         )
-    if settings.units == "everyone":
-        text = "needs a second wall around the units of others, which this version lacks"
-        raise InputError(text, "units", "set teacher or off")
     if settings.classroom and settings.is_loopback:
         text = f"students cannot reach {settings.host}, which is this machine alone"
         raise InputError(text, "classroom", f"leave host out, or set it to {ANY_IPV4} or an address of this machine")

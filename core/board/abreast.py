@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from core.block import FloatArray, IntArray
-from core.board import program
+from core.board import program, steps
 from core.board.fold import SHIFTS, A, B, Words
 from core.board.instances import instances
 from core.board.lane import Lane
@@ -31,10 +31,8 @@ from core.board.program import EVERY, call, walk
 from core.board.spec import Spec
 from core.board.wiring import Wiring
 from core.kernel import kernel
-from core.lanes import code
 from core.lanes.numbers import WIDTH
 from core.lanes.rows import folding, keeping, sorting
-from core.own.apart import compiled_apart
 from core.ports import RESERVED, TICK, TIME_MS
 
 ALIGNMENT = 8
@@ -259,7 +257,7 @@ class Abreast:
             raise Uneven("other choices")
         self._io = first.io
         self._table = first.table[rows]
-        self._table[:, program.ADDRESS] = [code.address(compiled_apart(first.instances[row].block)) for row in rows]
+        self._table[:, program.ADDRESS] = [steps.abreast(first, row) for row in rows]
 
 
 def _apart(wiring: Wiring) -> Wiring:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from core.block import BlockParams
-from core.board import changes, fold, program, words
+from core.board import changes, fold, program, steps, words
 from core.board.commands import Command, Trip
 from core.board.condition import Condition, parse_condition
 from core.board.document import Document
@@ -194,8 +194,7 @@ class Board:
         self._table = wiring.table[running]
         self._idle = wiring.idle(running)
         if self.compiled:
-            blocks = [wiring.instances[row].block for row in running]
-            self._table[:, program.ADDRESS] = [program.address(block) for block in blocks]
+            self._table[:, program.ADDRESS] = [steps.alone(wiring, row) for row in running]
         else:
             self._steps = [wiring.bound(row) for row in running]
 

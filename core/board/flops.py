@@ -16,6 +16,7 @@ from core.diagnose.hypothesis import names_of
 from core.errors import InputError, unknown
 from core.plain import rebound
 from core.ports import TICK, TIME_MS
+from core.wall import wall
 
 SAMPLES = 4
 """Samples counted, after one that is not."""
@@ -103,7 +104,16 @@ def counted(function: Any, tally: Tally) -> Any:
 
 
 def plain_step(block: type[Block], tally: Tally) -> Any:
-    """Return a step as plain Python with counted mathematics."""
+    """Return a step as plain Python with counted mathematics.
+
+    Raises
+    ------
+    InputError
+        For a unit of one's own where these run behind the wall: nothing else runs them there.
+    """
+    if block.text and wall.is_demanded():
+        text = "operations of a unit of one's own are not counted where units run behind a wall"
+        raise InputError(text, f"units.{block.name}")
 
     def swap(value: Any) -> Any:
         name = getattr(value, "__name__", "")

@@ -80,13 +80,17 @@ def _choices_of(layout: Layout) -> list[int]:
     return found
 
 
-class _Noting:
-    """The facts of a bench, which notes those that are read."""
+class _Noting(Context):
+    """The facts of a bench, which notes those that are read; a unit of one's own reads nothing but a `Context`."""
+
+    read: set[str]
 
     def __init__(self, context: Context) -> None:
-        self._context, self.read = context, set[str]()
+        vars(self).update(_context=context, read=set[str]())
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattribute__(self, name: str) -> Any:
+        if name.startswith("_") or name == "read":
+            return object.__getattribute__(self, name)
         self.read.add(name)
         return getattr(self._context, name)
 

@@ -20,6 +20,7 @@ from core.board.fold import Words, fold, fold_uncompiled
 from core.kernel import compiled_step, inlined, kernel
 from core.own.apart import compiled_apart
 from core.ports import RESERVED, TICK, TIME_MS
+from core.wall import wall
 
 ADDRESS, P_OFFSET, S_OFFSET, IO_OFFSET, EVERY = 0, 1, 2, 3, 4
 COLUMNS = 5
@@ -34,6 +35,8 @@ _addresses: dict[type[Block], int] = {}
 
 def address(block: type[Block]) -> int:
     """Return where the C function of the step of a block is; it is compiled when it is asked for the first time."""
+    if block.text and wall.is_demanded():
+        raise RuntimeError(f"{block.name} runs behind the wall alone")
     found = _addresses.get(block)
     if found is None:
         found = compiled_step(compiled_apart(block).step, block.Packed, block.State, block.Ports).address

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import cache
 
 from core.block import Block
+from core.wall import wall
 
 Compiler = Callable[[str, str], None]
 """Compiles a unit, by name and text, and puts its code where kernels are kept."""
@@ -28,11 +29,11 @@ def compiled_apart(block: type[Block]) -> type[Block]:
         When it takes too long, or too much memory.
     """
     if block.text:
-        _compiled(block.name, block.text)
+        _compiled(block.name, block.text, wall.is_demanded())
     return block
 
 
 @cache
-def _compiled(name: str, text: str) -> None:
+def _compiled(name: str, text: str, _behind_wall: bool) -> None:
     for compiler in _compilers:
         compiler(name, text)

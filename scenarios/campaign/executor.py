@@ -16,6 +16,7 @@ from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import forkserver
 from typing import Any, TypeVar
 
+from core.wall import wall
 from scenarios.campaign.signs import Signs, receive, watched
 
 LOST: tuple[type[BaseException], ...] = (BrokenProcessPool, CancelledError, OSError)
@@ -104,13 +105,14 @@ def pool(workers: int, niceness: int = 0, signs: Signs | None = None) -> Process
 
     That one does nothing else; forking this process, which has threads at work, is not safe.
     """
+    told = niceness, signs, wall.is_demanded()
     if sys.platform != "linux":
-        return ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), prepare, (niceness, signs))
+        return ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), prepare, told)
     forkserver.set_forkserver_preload([LOADED])
     starter = threading.Thread(target=_load, args=(niceness,))
     starter.start()
     starter.join()
-    return ProcessPoolExecutor(workers, multiprocessing.get_context("forkserver"), prepare, (niceness, signs))
+    return ProcessPoolExecutor(workers, multiprocessing.get_context("forkserver"), prepare, told)
 
 
 def _load(niceness: int) -> None:
@@ -122,8 +124,10 @@ def _load(niceness: int) -> None:
     forkserver.ensure_running()
 
 
-def prepare(niceness: int = 0, signs: Signs | None = None) -> None:
-    """Set up a process: its priority, an end with its parent; Ctrl-C is left to the parent."""
+def prepare(niceness: int = 0, signs: Signs | None = None, behind_wall: bool = False) -> None:
+    """Set up a process: its priority, the wall around units, an end with its parent; Ctrl-C is left to the parent."""
+    if behind_wall:
+        wall.demand()
     if niceness:
         os.nice(max(0, niceness - os.nice(0)))
     if signs is not None:

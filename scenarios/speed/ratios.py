@@ -11,12 +11,14 @@ import numpy as np
 
 from core.device.response import held_response
 from core.device.two_axis import TwoAxis
+from core.errors import InputError
 from scenarios.library import get
 from scenarios.run import build
 from scenarios.speed import boards, campaign, gyroscope, naive, peers
 from scenarios.speed.figure import Costs, figure, per_sample, ratio, scaled
 from scenarios.speed.side_by_side import DIAGNOSERS, SAMPLES, whole_seven_steps, wired_seven_steps
 from scenarios.speed.timing import ALIVE, advance_cost, block_costs, cpu_ns, interleaved, loop_cost
+from scenarios.speed.units import native_and_walled
 
 SAMPLE_NS = 10_000.0
 """Device time of a sample at 100 kHz."""
@@ -78,6 +80,10 @@ class Speed:
                 found[name] = prepare()
             except ImportError:
                 self.missing.append(f"{name} is not measured: {package} is not installed (make setup-test installs it)")
+        try:
+            found["unit"], found["unit_walled"] = native_and_walled()
+        except InputError as error:
+            self.missing.append(f"the wall around units is not measured: {error.message}")
         return found
 
     @property
@@ -165,6 +171,12 @@ class Speed:
         ):
             if peer in costs:
                 rows.append(figure(name, ratio(costs, peer, own), "x", least=least))
+        if "unit_walled" in costs:
+            rows += [
+                figure("PID as a unit of one's own, per sample", scaled(costs, "unit", 1.0), "ns"),
+                figure("the same behind the wall", scaled(costs, "unit_walled", 1.0), "ns"),
+                figure("behind the wall over machine code", ratio(costs, "unit_walled", "unit"), "x"),
+            ]
         return rows
 
     def _gyroscopes(self, costs: Costs) -> Figures:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from core.board import fold, program
+from core.board import fold, program, steps
 from core.board.board import CHUNK, Board
 
 REPEATS = 7
@@ -57,7 +57,7 @@ def loop_cost(board: Board, keys: list[str], ticks: int = 100_000) -> float:
     wiring = board.wiring
     rows = [wiring.row(key) for key in keys]
     table = np.ascontiguousarray(wiring.table[rows])
-    table[:, program.ADDRESS] = [program.address(wiring.instances[row].block) for row in rows]
+    table[:, program.ADDRESS] = [steps.alone(wiring, row) for row in rows]
     nothing = np.zeros((ticks, 0))
     arrays = (table, wiring.p, wiring.s, wiring.w, wiring.io)
     trip, watches = wiring.trip, np.zeros((0, 3))

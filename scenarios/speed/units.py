@@ -1,13 +1,18 @@
-"""Cost of a unit of one's own, measured on a bench that has it."""
+"""Cost of a unit of one's own, measured on a bench that has it, and what the wall adds."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from core.own.unit import Unit
+from core.wall import wall
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import build
 from scenarios.speed import gyroscope
-from scenarios.speed.timing import ALIVE, block_costs
+from scenarios.speed.boards import begun
+from scenarios.speed.timing import ALIVE, block_costs, loop_cost
+from scenarios.wall import with_unit
 
 WARM_TICKS = 2000
 WHERE = {
@@ -20,6 +25,28 @@ WHERE = {
     "readout": ({"readouts.{name}.kind": "{name}"}, "{name}"),
 }
 """Values of a bench that has a unit of each family in use, and the block to measure."""
+
+
+def native_and_walled() -> tuple[Callable[[], float], Callable[[], float]]:
+    """Return what measures a sample of a PID as a unit, ns: in machine code and behind the wall.
+
+    Raises
+    ------
+    InputError
+        When the wall cannot be built here.
+    """
+    board = begun(with_unit())
+    wall.demand()
+    wall.demand(False)
+
+    def walled() -> float:
+        wall.demand()
+        try:
+            return loop_cost(board, ["pid"])
+        finally:
+            wall.demand(False)
+
+    return lambda: loop_cost(board, ["pid"]), walled
 
 
 def cost_ns(unit: Unit) -> float:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from core.block import BlockParams, FloatArray, parameter
-from core.board import fold, program
+from core.board import fold, program, steps
 from core.diagnose.hypothesis import hypotheses_of
 from core.errors import InputError
 from core.ports import TICK, TIME_MS
@@ -76,9 +76,8 @@ def _record(board: Board, samples: int, *, faulty: bool) -> dict[str, FloatArray
 def _play(board: Board, name: str, hypothesis: str, record: dict[str, FloatArray]) -> FloatArray:
     """Run one diagnoser on a record and return the probability of a hypothesis."""
     wiring = again(board, board.spec.seed).wiring
-    instance = wiring.instances[wiring.row(name)]
     table = np.ascontiguousarray(wiring.table[[wiring.row(name)]])
-    table[:, program.ADDRESS] = program.address(instance.block)
+    table[:, program.ADDRESS] = steps.alone(wiring, wiring.row(name))
     nothing, watches = np.zeros((1, 0)), np.zeros((0, 3))
     places = {signal: wiring.index[signal] for signal in RECORDED}
     wanted, trip = wiring.index[f"{name}.probability.{hypothesis}"], wiring.index["guard.trip"]

@@ -63,7 +63,8 @@ class Gate:
     frames : Frames, optional
         The doors of learning platforms, if there are any.
     units : str
-        Whose scenarios may carry units of their own: nobody's (``off``), or those of the teacher.
+        Whose scenarios may carry units of their own: nobody's (``off``), those of the teacher, or those of
+        all people it knows (``everyone``).
     """
 
     def __init__(
@@ -136,6 +137,8 @@ class Gate:
         """Return why this person may not bring units of their own; nothing where they may."""
         if self._units == "off":
             return "this server takes no units of one's own"
+        if self._units == "everyone" and person is not None:
+            return ""
         return "" if person is not None and person.is_teacher else "only the teacher may bring units of their own"
 
     def _is_open(self, scope: Scope) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -12,19 +13,19 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from core.errors import InputError
+from core.board import program
+from core.wall import wall
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
 from scenarios.schema import Scenario
 from server.cli import app
-from server.serve import check_binding
-from server.settings import Settings
 from tests.core.own.texts import PI, ROOT, odd
 from tests.server.people.group import join, open_class
 
 LOOK = get("first-look").document
 NAMED = {"units": {"pi": {"source": PI}}}
+WALLED = PI + "\n# behind the wall\n"
 
 
 def document(**more: Any) -> dict[str, Any]:
@@ -139,10 +140,43 @@ def test_a_server_may_take_none_at_all(serve: Any) -> None:
         assert live.http.post("/api/v1/runs", json={"scenario": document()}).status_code in (403, 422)
 
 
-def test_nobody_may_be_let_bring_units_without_a_second_wall() -> None:
-    with pytest.raises(InputError) as raised:
-        check_binding(Settings(units="everyone"))
-    assert raised.value.field == "units"
+def test_everyone_may_bring_units_behind_the_wall_and_by_every_door(serve: Any) -> None:
+    alone = run(Scenario.load(document(controller={"kind": "pi"}))).digest
+    try:
+        with serve(units="everyone") as live:
+            group = open_class(live)
+            student = join(live, group, "Ada")
+            begun = document(controller={"kind": "pi"}, duration_ms=200.0)
+            assert live.http.post(f"/api/v1/classes/{group['id']}/scenario", json={"scenario": begun}).is_success
+            (member,) = live.http.get(f"/api/v1/classes/{group['id']}/members").json()["members"]
+            path = f"/api/v1/benches/{member['bench']}"
+            other = {"kind": "reset", "values": {"units.pi.source": WALLED}}
+            reset = student.ask("POST", f"{path}/commands", json=other)
+            assert reset.status_code == 200, reset.text
+            assert student.ask("POST", f"{path}/commands", json={"kind": "start"}).status_code == 200
+            live.until(member["bench"], lambda now: now["tick"] > 100)
+            assert live.get(member["bench"])["controller"] == "pi"
+            asked = document(controller={"kind": "pi"}, units={"pi": {"source": WALLED}})
+            made = live.http.post("/api/v1/runs", json={"scenario": asked})
+            assert finished(live, made.json()["id"])["summary"]["digest"] == alone
+            with live.anonymous(headers={"Origin": live.address}) as nobody:
+                assert nobody.post("/api/v1/benches", json={"scenario": document()}).status_code == 401
+            wrong = {"kind": "reset", "values": {"units.pi.source": odd("step", "import os")}}
+            assert student.ask("POST", f"{path}/commands", json=wrong).status_code == 422
+            own = [block for block in program._addresses if block.text and "behind the wall" in block.text]
+            assert own == [], "a unit ran as machine code"
+    finally:
+        wall.demand(False)
+
+
+def test_a_server_for_everyone_does_not_start_without_the_wall(tmp_path: Path) -> None:
+    """The package is hidden by a module of its name that cannot be loaded."""
+    (tmp_path / "wasmtime.py").write_text("raise ImportError('no wasmtime here')", "utf-8")
+    told = [sys.executable, "-m", "server.cli", "serve", "--port", "0", "--data", str(tmp_path / "data")]
+    environment = {**os.environ, "COMBBENCH_UNITS": "everyone", "PYTHONPATH": str(tmp_path)}
+    ended = subprocess.run(told, cwd=ROOT, env=environment, capture_output=True, text=True, check=False, timeout=110)
+    assert ended.returncode == 2 and ended.stdout == ""
+    assert "units" in ended.stderr and "no wasmtime here" in ended.stderr and "combbench[wall]" in ended.stderr
 
 
 def test_check_says_what_is_wrong_and_what_it_costs(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Random steps: those that are admitted stay in their own slots, and are the same compiled and uncompiled.
+"""Random steps: those that are admitted stay in their own slots, and are the same compiled, behind the wall and plain.
 
 ``OWN_FUZZ_S`` sets for how many seconds; the seeds go on from 0.
 """
@@ -17,9 +17,12 @@ import pytest
 
 from core.block import Block, Context, Oscillator
 from core.board import program
+from core.board.steps import _seen
 from core.errors import InputError
 from core.own.unit import Unit, unit
 from core.plain import plain
+from core.wall import wall
+from core.wall.crossing import Sizes
 from tests.core.own.grammar import Writer
 from tests.core.own.texts import odd
 
@@ -94,28 +97,42 @@ def oracle(block: type[Block]) -> Any:
     return space["step"]
 
 
-def run_both(block: type[Block]) -> None:
-    one, other = Slots(block), Slots(block)
+def walled(block: type[Block]) -> np.ndarray:
+    """Return the table of the step behind the wall."""
+    slots = Slots(block)
+    ports = tuple(_seen(port, 3 if port.vector else 1) for port in block.Ports.declared)
+    return _table(wall.address(block, Sizes(len(slots.p), len(slots.s), ports)))
+
+
+def run_all(block: type[Block]) -> None:
+    one, other, inside = Slots(block), Slots(block), Slots(block)
     before, inputs = one.p.copy(), one.io[: len(block.inputs)]
     step = oracle(block)
     p, s, x = block.Packed(other.p), block.State(other.s), block.Ports(other.w, other.io)
     nothing = np.zeros((1, 0))
-    table = np.zeros((1, program.COLUMNS), np.int64)
-    table[0, program.ADDRESS], table[0, program.EVERY] = program.address(block), 1
+    table, wall_table = _table(program.address(block)), walled(block)
     trips = np.zeros(1)
     for tick in range(40):
-        for slots in (one, other):
+        for slots in (one, other, inside):
             slots.stimulate(tick)
         seen = one.w[inputs].copy()
         _call(table, one, tick, nothing, trips)
+        _call(wall_table, inside, tick, nothing, trips)
         with np.errstate(all="ignore"):
             step(p, s, x)
         np.testing.assert_array_equal(one.s, other.s)
         np.testing.assert_array_equal(one.w, other.w)
+        assert (one.s.tobytes(), one.w.tobytes()) == (inside.s.tobytes(), inside.w.tobytes())
         np.testing.assert_array_equal(one.w[inputs], seen)
-    one.check_guards()
-    other.check_guards()
+    for slots in (one, other, inside):
+        slots.check_guards()
     np.testing.assert_array_equal(one.p, before)
+
+
+def _table(address: int) -> np.ndarray:
+    table = np.zeros((1, program.COLUMNS), np.int64)
+    table[0, program.ADDRESS], table[0, program.EVERY] = address, 1
+    return table
 
 
 def _call(table: np.ndarray, slots: Slots, tick: int, nothing: np.ndarray, trips: np.ndarray) -> None:
@@ -144,9 +161,9 @@ def test_random_steps_stay_in_their_own_slots() -> None:
         own = {name for name in names if name.startswith(("_", "mix_"))}
         assert own <= {"_item", "_put", "_floor", "_inf"} | {name for name in own if name.startswith("mix_")}
         assert names <= ALLOWED | fields | ports | own, seed
-        run_both(one.block)
+        run_all(one.block)
     assert ran >= 0.3 * total, f"{ran} of {total} were admitted"
 
 
 def test_the_frame_runs_alike() -> None:
-    run_both(unit("odd", odd("step", "s.line[int(e)] = x.tick\nx.seen = s.line[int(x.tick)] + floor(e)")).block)
+    run_all(unit("odd", odd("step", "s.line[int(e)] = x.tick\nx.seen = s.line[int(x.tick)] + floor(e)")).block)

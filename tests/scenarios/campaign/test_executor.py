@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import os
+import pickle
 import signal
 import sys
 import time
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
+from core.wall import wall
+from scenarios.campaign.cluster import Cluster
 from scenarios.campaign.executor import LOST, Processes
 from scenarios.campaign.signs import Cancelled, tell
 
@@ -74,3 +78,37 @@ def test_processes_are_forked_from_one_of_their_own_and_that_one_is_replaced_too
 
 def test_elsewhere_nobody_listens() -> None:
     tell(5)
+
+
+def test_processes_of_a_server_with_a_wall_have_it_too() -> None:
+    wall.demand()
+    try:
+        with Processes(1) as found:
+            assert found.submit(wall.is_demanded).result(60)
+    finally:
+        wall.demand(False)
+    with Processes(1) as found:
+        assert not found.submit(wall.is_demanded).result(60)
+
+
+def test_pieces_of_work_take_the_wall_along_to_a_cluster() -> None:
+    """Each piece is done as a worker would do it, which has never heard of the wall."""
+
+    class Client:
+        told: Any = None
+
+        def submit(self, function: Any, *arguments: Any, **_: Any) -> Any:
+            self.told = pickle.loads(pickle.dumps(function)), arguments
+            raise OSError("this is as far as it goes")
+
+    try:
+        for wanted in (True, False):
+            client = Client()
+            wall.demand(wanted)
+            with pytest.raises(OSError, match="as far"):
+                Cluster(client).submit(wall.is_demanded)
+            wall.demand(False)
+            function, arguments = client.told
+            assert function(*arguments) is wanted
+    finally:
+        wall.demand(False)
