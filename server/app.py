@@ -40,6 +40,7 @@ from server.api import (
     sweeps,
     theory,
     trace,
+    units,
     votes,
     watchers,
 )
@@ -60,6 +61,7 @@ ROUTERS = (
     devices,
     aliases,
     scenarios,
+    units,
     benches,
     experiments,
     diagnosers,
