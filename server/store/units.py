@@ -48,9 +48,7 @@ class Units:
             try:
                 self._kept[file.stem] = self.check(file.stem, read_unit(file))
             except (InputError, ApiError) as error:
-                log.warning(
-                    "%s is left out: %s", file, error.message if isinstance(error, InputError) else error.detail
-                )
+                log.warning("%s is left out: %s", file, error.detail if isinstance(error, ApiError) else error)
 
     def all(self) -> list[Unit]:
         """List the units."""
