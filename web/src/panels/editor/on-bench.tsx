@@ -56,7 +56,11 @@ export function OnBench({ card }: { card: BlockCard }) {
         </Button>
       )}
       {own.length > 0 && (
-        <Button size="compact-sm" variant="default" onClick={() => addScope(card.title, own.slice(0, MOST_TRACES))}>
+        <Button
+          size="compact-sm"
+          variant="default"
+          onClick={() => addScope(card.title, own.slice(0, MOST_TRACES), "scope")}
+        >
           Show its signals
         </Button>
       )}

@@ -6,7 +6,7 @@ import { useBench } from "../../stream/bench-store";
 import type { Check } from "./use-check";
 
 /** Pause after a check that passed until the text runs. */
-const PAUSE_MS = 600;
+const PAUSE_MS = 300;
 
 export interface Run {
   /** The text as it is now is on the bench of the page. */
