@@ -54,4 +54,5 @@ export const LOOK = EditorView.theme({
     background: "var(--raised)",
     color: "var(--muted)",
   },
+  ".cm-collapsedLines:before, .cm-collapsedLines:after": { content: "none" },
 });

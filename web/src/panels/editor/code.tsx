@@ -3,12 +3,13 @@ import { defaultKeymap, history, historyKeymap, indentWithTab } from "@codemirro
 import { localCompletionSource, python } from "@codemirror/lang-python";
 import { bracketMatching, indentOnInput, indentUnit, syntaxHighlighting } from "@codemirror/language";
 import { lintGutter, lintKeymap, setDiagnostics } from "@codemirror/lint";
-import { EditorState, type Text } from "@codemirror/state";
+import { EditorState } from "@codemirror/state";
 import { drawSelection, EditorView, highlightActiveLine, keymap, lineNumbers, placeholder } from "@codemirror/view";
 import { useEffect, useRef } from "react";
 import type { BlockCard, UnitMistake } from "../../api/types";
 import { COLOURS, LOOK, NONCE } from "./code-look";
 import styles from "./editor.module.css";
+import { spanOf } from "./span";
 
 interface CodeProps {
   source: string;
@@ -75,17 +76,6 @@ export function Code({ source, onChange, mistake, card }: CodeProps) {
   }, [mistake]);
 
   return <div ref={place} className={styles.code} />;
-}
-
-/** Where a mistake stands in a text: the name there with its fields, or the sign. */
-export function spanOf(
-  doc: Text,
-  { line, column }: Pick<UnitMistake, "line" | "column">,
-): { from: number; to: number } {
-  const { from, to, text } = doc.line(Math.min(Math.max(line, 1), doc.lines));
-  const at = Math.min(column - 1, Math.max(text.length - 1, 0));
-  const word = /^[\w.]+/.exec(text.slice(at))?.[0].length ?? 1;
-  return { from: from + at, to: Math.min(from + at + word, to) };
 }
 
 /** After "x." the ports of the unit, after "p." its parameters. */

@@ -16,7 +16,8 @@ const BUSY_MS = 300;
 /** A headless run of the bench's scenario with the unit: its digest, and its figures. */
 export function Headless({ card, source, ready }: { card: BlockCard; source: string; ready: boolean }) {
   const scenario = useBench((s) => s.bench?.scenario_id);
-  const [id, setId] = useState<string | undefined>(undefined);
+  const [started, setStarted] = useState<{ id: string; source: string } | undefined>(undefined);
+  const id = started?.id;
   const [busy, setBusy] = useState(false);
   const { value: run } = useAnswer(
     id === undefined ? undefined : ["run", id],
@@ -26,7 +27,8 @@ export function Headless({ card, source, ready }: { card: BlockCard; source: str
   const start = async () => {
     setBusy(true);
     try {
-      setId((await api.startRun(await wanted(card, source))).id);
+      const { id } = await api.startRun(await wanted(card, source));
+      setStarted({ id, source });
     } catch (error) {
       showError(error);
     } finally {
@@ -48,6 +50,7 @@ export function Headless({ card, source, ready }: { card: BlockCard; source: str
       >
         Use in a run
       </Button>
+      {run && started?.source !== source && <p className={styles.summary}>These figures are of an earlier text.</p>}
       {run && isOver(run) && <Outcome run={run} card={card} />}
     </section>
   );
@@ -81,12 +84,15 @@ function Outcome({ run, card }: { run: Run; card: BlockCard }) {
   return (
     <>
       <dl className={styles.list}>
-        {figures.map(([name, value]) => (
-          <div key={name}>
-            <dt>{metricScale(name, [value]).name}</dt>
-            <dd>{formatFigure(name, value)}</dd>
-          </div>
-        ))}
+        {figures.map(([name, value]) => {
+          const { title, shown } = metricScale(name, [value]);
+          return (
+            <div key={name}>
+              <dt>{title}</dt>
+              <dd>{formatFigure(name, shown(value))}</dd>
+            </div>
+          );
+        })}
         <div>
           <dt>Digest</dt>
           <dd className={styles.digest}>{digest ?? run.state}</dd>

@@ -3,7 +3,7 @@ import { useMemo } from "react";
 import { useAsked, useLast } from "../../api/queries";
 import type { CheckedUnit, UnitMistake } from "../../api/types";
 import { units } from "../../api/units";
-import { isUnitName, useDraft } from "../../bench/unit-draft";
+import { isUnitName, nameOfClass, useDraft } from "../../bench/unit-draft";
 
 /** Pause in typing after which a text is checked. */
 const PAUSE_MS = 300;
@@ -25,9 +25,12 @@ export interface Checked {
   refusal: string | undefined;
 }
 
+/** The name a text is checked under while it has none that is allowed. */
+const checkedName = (name: string, source: string): string => (isUnitName(name) ? name : nameOfClass(source) || "unit");
+
 /** Checks the text of the draft as one types. */
 export function useCheck(): Checked {
-  const name = useDraft((s) => (isUnitName(s.name) ? s.name : "unit"));
+  const name = useDraft((s) => checkedName(s.name, s.source));
   const source = useDraft((s) => s.source);
   const draft = useMemo(() => ({ name, source }), [name, source]);
   const [wanted] = useDebouncedValue(draft, PAUSE_MS);
