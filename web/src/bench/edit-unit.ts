@@ -1,9 +1,9 @@
 import { units } from "../api/units";
 import { useBench } from "../stream/bench-store";
 import { showAtEdge, showPanel, useDock } from "./dock";
-import { sourceOnBench } from "./run-unit";
 import { showError } from "./send";
 import { beginWith } from "./unit-draft";
+import { sourceOnBench } from "./unit-values";
 import { setPage } from "./view-store";
 
 const WIDTH = 820;

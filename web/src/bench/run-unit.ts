@@ -1,34 +1,17 @@
 import { api } from "../api/api";
-import type { BlockCard, Document } from "../api/types";
+import type { BlockCard } from "../api/types";
 import { cardOf } from "../api/use-catalog";
 import { useBench } from "../stream/bench-store";
 import { stream } from "../stream/stream";
 import { announce } from "./announce";
 import { openOwn } from "./open-bench";
 import { send } from "./send";
+import { sourceOnBench, valuesOf } from "./unit-values";
 
 /** The bench that was made last for a unit; the next one takes its place. */
 let made: string | undefined;
 
 const MOST_WAIT_MS = 5000;
-
-/** The text of a unit on the bench, if it is there. */
-export const sourceOnBench = (parameters: Document | undefined, name: string): string | undefined =>
-  (parameters?.units as Record<string, { source: string }> | undefined)?.[name]?.source;
-
-/** Tables in which a unit of a family must be named to be on a bench; the others are there by themselves. */
-const NAMED: Record<string, string> = { diagnose: "diagnosers", identify: "identifiers" };
-
-/** Values over a scenario that bring a unit into it; one that controls may drive from the first tick. */
-export function valuesOf(card: BlockCard, source: string, drives: boolean, parameters?: Document): Document {
-  const table = NAMED[card.family];
-  const there = table && (parameters?.[table] as Document | undefined)?.[card.name];
-  return {
-    [`units.${card.name}.source`]: source,
-    ...(table && !there ? { [`${table}.${card.name}`]: { kind: card.name } } : {}),
-    ...(drives ? { "controller.kind": card.name } : {}),
-  };
-}
 
 /** Whether a bench can take the text by a reset: it has the same outputs and taps. */
 const isAlike = (before: BlockCard | undefined, now: BlockCard): boolean =>

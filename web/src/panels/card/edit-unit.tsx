@@ -5,7 +5,7 @@ import { useAnswer } from "../../api/queries";
 import type { BlockCard } from "../../api/types";
 import { units } from "../../api/units";
 import { editCopy, editOwn } from "../../bench/edit-unit";
-import { sourceOnBench } from "../../bench/run-unit";
+import { sourceOnBench } from "../../bench/unit-values";
 import { useBench } from "../../stream/bench-store";
 
 /** The way from a block to its text: a unit of one's own is edited, one of the library is copied where it can be. */

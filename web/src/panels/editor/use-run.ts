@@ -1,7 +1,8 @@
 import { useCallback, useEffect, useState } from "react";
 import { ApiError } from "../../api/client";
-import { runUnit, sourceOnBench } from "../../bench/run-unit";
+import { runUnit } from "../../bench/run-unit";
 import { isUnitName, noteVersion, useDraft } from "../../bench/unit-draft";
+import { sourceOnBench } from "../../bench/unit-values";
 import { useBench } from "../../stream/bench-store";
 import type { Check } from "./use-check";
 

@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import type { BlockCard } from "../api/types";
-import { sourceOnBench, valuesOf } from "./run-unit";
+import { sourceOnBench, valuesOf } from "./unit-values";
 
 const card = (family: string): BlockCard => ({ family, name: "mine" }) as BlockCard;
 
