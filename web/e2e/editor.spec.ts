@@ -6,6 +6,7 @@ import type { Locator, Page } from "@playwright/test";
 import { expect, test } from "./lab";
 import type { LabServer } from "./lab-server";
 import { expectClean, expectReadable, SCHEMES, SCREENS, showOn } from "./screens";
+import { seriousViolations } from "./serious-violations";
 
 const ROOT = join(import.meta.dirname, "..", "..");
 const PID = readFileSync(join(ROOT, "core", "control", "pid.py"), "utf-8");
@@ -139,12 +140,28 @@ test("a mistake is said with its place, and the last that worked comes back", as
   const difference = editor(page).getByRole("region", { name: "Difference" });
   await expect(difference.locator(".cm-deletedChunk")).toContainText('title = "PI"');
   await expectClean(page, "the difference of two versions");
+  expect.soft(await seriousViolations(page)).toEqual([]);
   await difference.getByRole("button", { name: "Close" }).click();
   await page.reload();
   await expect(text(page)).toContainText('title = "PI of today"');
   await editor(page).getByRole("button", { name: "Back to the last that worked" }).click();
   await expect(text(page)).toContainText('title = "PI"');
   await expect(state(page)).toContainText("It runs on this bench");
+});
+
+test("a text that trips the bench is marked so, and the version before it runs again", async ({ page, server }) => {
+  await openEditor(page, server);
+  await paste(page, PI);
+  await editor(page).getByRole("button", { name: "Let it drive" }).click();
+  await expect(editor(page).getByText("It drives.")).toBeVisible();
+  await paste(page, PI.replace("x.voltage = proportional", "x.voltage = (e - e) / (e - e)"));
+  await expect(state(page)).toContainText("it has tripped the bench");
+  await expect(page.getByTestId("bench-state")).toHaveText("tripped");
+  await expect(editor(page).getByLabel("Version")).toContainText("tripped the bench");
+  await editor(page).getByRole("button", { name: "Back to the last that worked" }).click();
+  await expect(page.getByTestId("bench-state")).toHaveText("running");
+  await expect(state(page)).toContainText("It runs on this bench");
+  await expect(text(page)).toContainText("x.voltage = proportional");
 });
 
 test("a unit of the library is copied from its block, kept on the server, and taken away", async ({ page, server }) => {
@@ -177,6 +194,7 @@ test("the editor lies right on a large screen and on a phone, dark and light", a
     if (screen === SCREENS[3]) await page.getByRole("combobox", { name: "Another panel" }).selectOption("Editor");
     await expect(text(page)).toBeVisible();
     await expectClean(page, `the editor at ${screen.width}`);
+    expect.soft(await seriousViolations(page)).toEqual([]);
     for (const scheme of SCHEMES) await expectReadable(page, `the editor at ${screen.width}`, scheme);
   }
 });

@@ -47,7 +47,7 @@ export function Code({ source, onChange, mistake, card }: CodeProps) {
           python(),
           syntaxHighlighting(COLOURS),
           LOOK,
-          EditorView.contentAttributes.of({ "aria-label": "Text of the unit", spellcheck: "false" }),
+          EditorView.contentAttributes.of({ "aria-label": "Text of the unit", spellcheck: "false", tabindex: "0" }),
           placeholder("Type or paste a unit, or start from one of the library."),
           autocompletion({ override: [(at) => fieldsOf(at, known.current.card), localCompletionSource] }),
           keymap.of([...defaultKeymap, ...historyKeymap, ...completionKeymap, ...lintKeymap, indentWithTab]),

@@ -34,7 +34,7 @@ export function Difference({ version, source, onBack, onClose }: DifferenceProps
           LOOK,
           EditorView.lineWrapping,
           EditorState.readOnly.of(true),
-          EditorView.contentAttributes.of({ "aria-label": "Difference" }),
+          EditorView.contentAttributes.of({ "aria-label": "Difference", tabindex: "0" }),
           unifiedMergeView({
             original: version.source,
             mergeControls: false,

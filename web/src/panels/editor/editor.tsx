@@ -131,6 +131,7 @@ function stateOf(name: string, source: string, check: Check | undefined, refusal
   if (check?.error) return wrong(`Line ${check.error.line}, column ${check.error.column}: ${check.error.message}.`);
   if (run.busy) return fine("Checked. It is being compiled for this bench.");
   if (run.refusal) return wrong(`Checked, but the bench did not take it: ${run.refusal}.`);
+  if (run.trip) return wrong(`Checked, but it has tripped the bench: ${run.trip}. Change it, or go back.`);
   if (run.isOn) return fine("Checked. It runs on this bench since tick 0.");
   if (check) return fine("Checked. It does not run on this bench yet.");
   return refusal ? wrong(sentence(refusal)) : fine("Being checked.");

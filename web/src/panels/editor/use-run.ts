@@ -13,6 +13,8 @@ export interface Run {
   /** The text as it is now is on the bench of the page. */
   isOn: boolean;
   busy: boolean;
+  /** Why the bench stopped while the unit drove. */
+  trip: string | undefined;
   /** Why the bench did not take the text. */
   refusal: string | undefined;
   start(): void;
@@ -22,7 +24,7 @@ export interface Run {
 export function useRun(check: Check | undefined): Run {
   const { name, source, asYouType, tried } = useDraft();
   const isOn = useBench((s) => sourceOnBench(s.bench?.parameters, name) === source);
-  const trip = useBench((s) => s.bench?.trip?.signal);
+  const reason = useBench((s) => s.bench?.trip?.reason);
   const drives = useBench((s) => Object.values(s.bench?.slots ?? {}).includes(name));
   const [busy, setBusy] = useState(false);
   const [refused, setRefused] = useState<{ source: string; why: string } | undefined>(undefined);
@@ -51,13 +53,15 @@ export function useRun(check: Check | undefined): Run {
     return () => clearTimeout(timer);
   }, [asYouType, card, isOn, busy, tried, source, start]);
 
+  const trip = isOn && drives ? reason : undefined;
   useEffect(() => {
-    if (isOn && drives && trip !== undefined) noteVersion(name, source, "tripped");
-  }, [isOn, drives, trip, name, source]);
+    if (trip !== undefined) noteVersion(name, source, "tripped");
+  }, [trip, name, source]);
 
   return {
     isOn,
     busy,
+    trip,
     refusal: refused?.source === source ? refused.why : undefined,
     start: () => void start(),
   };
