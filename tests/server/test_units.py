@@ -12,6 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 from core.own.unit import unit
+from scenarios.library import get
 from server.cli import app
 from tests.core.own.test_own_units import COPIED, source_of
 from tests.core.own.texts import PI, odd
@@ -111,6 +112,7 @@ def test_a_server_that_takes_no_units_says_so(serve: Any) -> None:
 
 def test_what_a_server_keeps_is_on_every_new_bench_and_in_runs_that_name_it(serve: Any, tmp_path: Path) -> None:
     with serve(folder=tmp_path) as live:
+        before = live.http.post("/api/v1/runs", json={"scenario": "first-look", "set": {"duration_ms": 5.0}}).json()
         kept = live.http.put(f"{DOOR}/my_pi", json={"source": PI})
         assert kept.status_code == 200 and kept.json()["origin"] == "folder", kept.text
         file = tmp_path / "units" / "my_pi.py"
@@ -119,6 +121,7 @@ def test_what_a_server_keeps_is_on_every_new_bench_and_in_runs_that_name_it(serv
         assert bench["controller"] == "my_pi"
         short = {"duration_ms": 5.0}
         plain = live.http.post("/api/v1/runs", json={"scenario": "first-look", "set": short}).json()
+        assert plain["id"] == before["id"], "a run that does not name it is the one it was"
         named = {**short, "controller.kind": "my_pi"}
         run = live.http.post("/api/v1/runs", json={"scenario": "first-look", "set": named})
         assert run.status_code == 202, run.text
@@ -131,6 +134,22 @@ def test_what_a_server_keeps_is_on_every_new_bench_and_in_runs_that_name_it(serv
         assert live.http.delete(f"{DOOR}/my_pi").status_code == 204
         assert not file.exists() and live.http.get(f"{DOOR}/my_pi").status_code == 404
         assert live.bench("first-look")["units"] == []
+
+
+def test_a_student_has_the_units_of_the_server_and_brings_no_other(serve: Any, tmp_path: Path) -> None:
+    with serve(folder=tmp_path) as live:
+        assert live.http.put(f"{DOOR}/my_pi", json={"source": PI}).status_code == 200
+        student = join(live, open_class(live), "Ada")
+        bench = student.ask("POST", "/api/v1/benches", json={"scenario": "first-look"})
+        assert bench.status_code == 201 and [one["name"] for one in bench.json()["units"]] == ["my_pi"]
+        document = {**get("first-look").document, "units": {"own": {"source": PI}}}
+        for body in (
+            {"scenario": document},
+            {"scenario": "first-look", "set": {"units.own.source": PI}},
+            {"scenario": "first-look", "set": {"units.my_pi.source": PI + "\n# mine\n"}},
+        ):
+            refused = student.ask("POST", "/api/v1/benches", json=body)
+            assert refused.status_code in (403, 422) and refused.json()["error"]["code"] == "forbidden", refused.text
 
 
 WITH_PI = ("--set", "controller.kind=my_pi")
