@@ -1,5 +1,5 @@
 import type { BlockCard, CheckedUnit } from "../../api/types";
-import { formatNumber, formatShort } from "../../ui/format";
+import { formatCount, formatNumber, formatShort } from "../../ui/format";
 import { Formula } from "../../ui/formula";
 import { Prose } from "../../ui/prose";
 import { unitText } from "../../ui/unit-scale";
@@ -25,8 +25,16 @@ export function UnitFacts({ unit: { card, operations, hash } }: { unit: CheckedU
         </figure>
       ))}
       <Parameters card={card} />
-      <Signals title="Puts out" ports={[...card.outputs, ...card.taps]} />
-      <Signals title="Reads" ports={card.inputs} />
+      <section aria-label="Puts out">
+        <h3>Puts out</h3>
+        <Ports ports={[...card.outputs, ...card.taps]} />
+      </section>
+      {card.inputs.length > 0 && (
+        <details>
+          <summary>Reads {formatCount(card.inputs.length, "signal")}</summary>
+          <Ports ports={card.inputs} />
+        </details>
+      )}
       <p className={styles.summary}>
         At most {formatNumber(operations, 0)} operations a sample. Text <code>{hash.slice(0, 12)}</code>
       </p>
@@ -67,22 +75,18 @@ function usualText(usual: unknown): string {
   return typeof usual === "object" ? "…" : String(usual);
 }
 
-function Signals({ title, ports }: { title: string; ports: BlockCard["taps"] }) {
-  if (ports.length === 0) return null;
+function Ports({ ports }: { ports: BlockCard["taps"] }) {
   return (
-    <section aria-label={title}>
-      <h3>{title}</h3>
-      <dl className={styles.list}>
-        {ports.map(({ name, unit, meaning, labels }) => (
-          <div key={name}>
-            <dt>
-              <code>{name}</code>
-              <small>{meaning}</small>
-            </dt>
-            <dd>{[labels.length > 0 && `${labels.length} of`, unitText(unit)].filter(Boolean).join(" ")}</dd>
-          </div>
-        ))}
-      </dl>
-    </section>
+    <dl className={styles.list}>
+      {ports.map(({ name, unit, meaning, labels }) => (
+        <div key={name}>
+          <dt>
+            <code>{name}</code>
+            <small>{meaning}</small>
+          </dt>
+          <dd>{[labels.length > 0 && `${labels.length} of`, unitText(unit)].filter(Boolean).join(" ")}</dd>
+        </div>
+      ))}
+    </dl>
   );
 }
