@@ -5,19 +5,22 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import subprocess
 import sys
 from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 
+from core import registry
 from core.board import program
 from core.board.document import Document
 from core.errors import InputError, one_line
 from core.kernel_cache import get, key, put
 from core.lanes import code
 from core.own.apart import compile_by
-from core.own.unit import unit
+from core.own.unit import Unit, unit
 from core.wall import wall
 from core.wall.code import kept, name_of
 from scenarios.kernel_cache import folder
@@ -70,6 +73,21 @@ def with_units(document: Document, files: Iterable[Path], field: str = "--unit")
         except UnicodeDecodeError:
             raise InputError(f"{file} is not UTF-8 text", field) from None
     return {**document, "units": units} if units else document
+
+
+@cache
+def copies() -> tuple[Unit, ...]:
+    """Return the units of the library whose file is a unit of one's own as it stands: what one may begin with."""
+    found = []
+    for family in registry.FAMILIES:
+        for name, block in registry.blocks(family).items():
+            try:
+                one = unit(name, Path(inspect.getfile(block)).read_text("utf-8"))
+            except (InputError, OSError, UnicodeDecodeError):
+                continue
+            if one.family == family:
+                found.append(one)
+    return tuple(found)
 
 
 def main() -> None:

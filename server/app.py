@@ -41,6 +41,7 @@ from server.api import (
     sweeps,
     theory,
     trace,
+    units,
     votes,
     watchers,
 )
@@ -61,6 +62,7 @@ ROUTERS = (
     devices,
     aliases,
     scenarios,
+    units,
     benches,
     experiments,
     diagnosers,

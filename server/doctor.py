@@ -13,6 +13,7 @@ from server.classroom import join_addresses
 from server.page import DIST
 from server.security.identity import TOKEN_FILE
 from server.settings import describe_settings, load_settings
+from server.store.units import FOLDER
 from server.version import VERSION
 
 PACKAGES = (
@@ -54,6 +55,7 @@ def examine() -> dict[str, dict[str, str]]:
             "kernel cache": f"{kernels}, {compiled} kernels" if kernels else "no writable folder",
             "page": "built" if (DIST / "index.html").is_file() else "not built: make setup",
             "data folder": "can be written" if _can_write(settings.data) else "cannot be written",
+            "units kept": ", ".join(sorted(file.stem for file in (settings.data / FOLDER).glob("*.py"))) or "none",
             "access token": token,
             "wall around units": _wall() if settings.units == "everyone" else "not asked for: units is not everyone",
             "students open": join if settings.classroom else "nothing: classroom is off",

@@ -84,6 +84,7 @@ class Service:
         self.parameter_sets = ParameterSets(self.shared)
         self.people, self.audit = People(self.database, shard), Audit(self.database)
         self.benches = Benches(self.engine, settings, self.metrics, self.audit.witness)
+        self.units = self.benches.maker.units
         self.driving = Driving(self.people, self.hub, self._note, self._go_without_driver)
         self.hub.company = self.driving.company
         self.lesson = Lesson(self.database, self.people, self.audit, self.hub)

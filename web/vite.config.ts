@@ -29,6 +29,7 @@ export default defineConfig({
           groups: [
             { name: "katex", test: /node_modules[\\/]katex/ },
             { name: "dock", test: /node_modules[\\/]dockview/ },
+            { name: "codemirror", test: /node_modules[\\/](@codemirror|@lezer|@marijn|style-mod|w3c-keyname|crelt)/ },
             { name: "mantine", test: /node_modules[\\/]@(mantine|floating-ui)/ },
             { name: "vendor", test: /node_modules/ },
           ],

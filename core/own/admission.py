@@ -18,6 +18,11 @@ def admit(refusal: str) -> None:
     _refusal.set(refusal)
 
 
+def refusal() -> str:
+    """Return why units are refused to whom the code at work belongs; empty where they are admitted."""
+    return _refusal.get()
+
+
 @contextmanager
 def kept() -> Iterator[None]:
     """Read what this server has kept: its units were admitted when it came."""

@@ -6,6 +6,7 @@ import ast
 import hashlib
 import linecache
 import math
+import weakref
 from collections.abc import Callable
 from dataclasses import astuple, dataclass
 from functools import lru_cache
@@ -128,6 +129,7 @@ def unit(name: str, source: str) -> Unit:
         refuse(node, f"has no {entry}")
     try:
         block = type(node.name, (declared.base,), space)
+        weakref.finalize(block, linecache.cache.pop, _file(name, mark), None)  # many texts are checked as one types
         own = Unit(family, name, source, block, steps.last_cost)
     except (TypeError, ValueError) as error:
         raise UnitError(f"cannot be declared: {error}", node.lineno, 1) from None
@@ -223,11 +225,16 @@ def _packed(cls: type[Block], params: BlockParams, context: Context) -> FloatArr
     return numbers
 
 
+def _file(name: str, mark: str) -> str:
+    """Return what the source of a step is called."""
+    return f"<unit {name} {mark}>"
+
+
 def _function(steps: Steps, entry: str, name: str, mark: str) -> FunctionType:
     """Return the checked functions as Python's own, to be compiled; nothing of them has run."""
     tree = ast.fix_missing_locations(ast.Module(list(steps.written), []))
     text = ast.unparse(tree)
-    file = f"<unit {name} {mark}>"
+    file = _file(name, mark)
     linecache.cache[file] = (
         len(text),
         None,

@@ -112,7 +112,7 @@ class Benches:
         """
 
         def made() -> Session:
-            scenario, board = prepare(source, values, seed, self.maker.units)
+            scenario, board = prepare(source, values, seed, self.maker.units.beside)
             scale = usual_scale(board) if own_scale else time_scale
             session = self.maker.around(scenario, board, scale, class_id)
             session.running.fast_forward.leads = quiet_lead

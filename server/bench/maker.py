@@ -7,8 +7,6 @@ from pathlib import Path
 
 from core.board.board import Board
 from core.board.history import History
-from core.board.library import library_of
-from scenarios.own import with_units
 from scenarios.schema import Scenario
 from server.bench.commands import MAX_SCALE, MIN_SCALE
 from server.bench.replay import Replay, played
@@ -18,6 +16,7 @@ from server.bench.timeline import TRACK_BYTES
 from server.metrics import Metrics
 from server.settings import Settings
 from server.store.recordings import RecordingDetail
+from server.store.units import FOLDER, Units
 
 
 class Maker:
@@ -35,9 +34,8 @@ class Maker:
 
     def __init__(self, settings: Settings, metrics: Metrics, clock: Callable[[], float]) -> None:
         self._settings, self._metrics, self._clock = settings, metrics, clock
-        self.units = with_units({}, settings.unit_files, "unit_files").get("units", {})
+        self.units = Units(settings.data / FOLDER, settings.unit_files)
         """Units that every new bench has beside the library's."""
-        library_of({"units": self.units})
 
     def around(self, scenario: Scenario, board: Board, time_scale: float | None, class_id: str = "") -> Session:
         """Put a bench around a board; one for a student of a class has less room for its history."""

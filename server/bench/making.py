@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeGuard
 
 from core.board.board import Board
 from core.board.document import Document
-from core.own.admission import kept
+from core.nesting import read_toml
+from core.own.admission import check_admitted, kept_with
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import build
@@ -19,24 +21,38 @@ AXES_SCALE = 0.1
 
 
 def prepare(
-    source: str | dict[str, Any], values: dict[str, Any], seed: int | None, units: Document | None = None
+    source: str | dict[str, Any],
+    values: dict[str, Any],
+    seed: int | None,
+    units: Callable[[Document], Document] | None = None,
 ) -> tuple[Scenario, Board]:
-    """Read a scenario, write values over it, give it the units of this server that it has not, wire its board."""
+    """Read a scenario, write values over it, give it those units of this server that are for it, wire its board."""
+    document = _document(source)
+    has_table = isinstance(document.get("units", {}), dict)  # else it is refused below
+    if units and has_table and (given := units({**document, "set": values})):
+        check_admitted(document)
+        with kept_with(values):
+            own = {**given, **document.get("units", {})}
+            scenario = with_values(Scenario.load({**document, "units": own}), values)
+            return scenario, build(scenario, seed)
     scenario = with_values(read_scenario(source), values)
-    if units:
-        with kept():
-            own = {**units, **scenario.document.get("units", {})}
-            scenario = Scenario.load({**scenario.document, "units": own}, like=scenario)
     return scenario, build(scenario, seed)
 
 
 def read_scenario(source: str | dict[str, Any]) -> Scenario:
     """Read a scenario: a document, a library id, or a TOML text (which has an equals sign)."""
+    return get(source) if _is_id(source) else Scenario.load(source)
+
+
+def _document(source: str | dict[str, Any]) -> Document:
+    """Return a scenario as it was written."""
     if isinstance(source, dict):
-        return Scenario.load(source)
-    if "=" in source or "\n" in source:
-        return Scenario.load(source)
-    return get(source)
+        return source
+    return get(source).document if _is_id(source) else read_toml(source, "scenario")
+
+
+def _is_id(source: str | dict[str, Any]) -> TypeGuard[str]:
+    return isinstance(source, str) and "=" not in source and "\n" not in source
 
 
 def usual_scale(board: TickSource) -> float:

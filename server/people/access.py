@@ -55,6 +55,9 @@ _DOORS = {
         GET {API}/scenarios  *
         GET {API}/scenarios/{{scenario_id}}  *
         POST {API}/scenarios/check
+        GET {API}/units
+        POST {API}/units
+        GET {API}/units/{{name}}
         GET {API}/benches  *
         POST {API}/benches  *
         GET {API}/parameter-sets
@@ -133,6 +136,8 @@ _DOORS = {
         DELETE {API}/recordings/{{recording_id}}
         POST {API}/recordings/{{recording_id}}/replay
         POST {API}/recordings/{{recording_id}}/compare
+        PUT {API}/units/{{name}}
+        DELETE {API}/units/{{name}}
         POST {API}/runs
         GET {API}/runs
         POST {API}/runs/remove

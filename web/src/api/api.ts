@@ -118,6 +118,8 @@ export const api = {
   benches: async () => (await data(client.GET("/api/v1/benches"))).benches,
   bench: (id: string) => data(client.GET("/api/v1/benches/{bench_id}", bench(id))),
   createBench: (body: NewBench) => data(client.POST("/api/v1/benches", { body })),
+  start: (id: string) =>
+    data(client.POST("/api/v1/benches/{bench_id}/commands", { ...bench(id), body: { kind: "start" } })),
   reopenBench: (id: string) => data(client.POST("/api/v1/benches/{bench_id}/reopen", bench(id))),
   links: async (kind: "experiment" | "layout") =>
     (await data(client.GET("/api/v1/links", { params: { query: { kind } } }))).links,

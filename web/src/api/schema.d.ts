@@ -188,6 +188,58 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/units": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Units
+         * @description List the units one may begin with, and say whether one may bring any.
+         */
+        get: operations["list_units_api_v1_units_get"];
+        put?: never;
+        /**
+         * Check Unit
+         * @description Check the text of a unit; nothing is compiled and nothing is kept.
+         */
+        post: operations["check_unit_api_v1_units_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/units/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Unit
+         * @description Return the text of a unit.
+         */
+        get: operations["get_unit_api_v1_units__name__get"];
+        /**
+         * Keep Unit
+         * @description Keep a unit in the folder of this server: every new bench has it, and runs that name it.
+         */
+        put: operations["keep_unit_api_v1_units__name__put"];
+        post?: never;
+        /**
+         * Delete Unit
+         * @description Delete a unit from the folder of this server; benches that have it keep it.
+         */
+        delete: operations["delete_unit_api_v1_units__name__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/benches": {
         parameters: {
             query?: never;
@@ -3246,6 +3298,24 @@ export interface components {
             version: string;
             /** Blocks */
             blocks: components["schemas"]["BlockCard"][];
+        };
+        /**
+         * CheckedUnit
+         * @description A unit that can be used.
+         */
+        CheckedUnit: {
+            /** @description As the catalogue would have it */
+            card: components["schemas"]["BlockCard"];
+            /**
+             * Operations
+             * @description Most operations of a sample
+             */
+            operations: number;
+            /**
+             * Hash
+             * @description SHA-256 of its text
+             */
+            hash: string;
         };
         /**
          * Chosen
@@ -7047,6 +7117,108 @@ export interface components {
             text: string;
         };
         /**
+         * UnitCheck
+         * @description A unit, or what is wrong with its text.
+         */
+        UnitCheck: {
+            unit: components["schemas"]["CheckedUnit"] | null;
+            error: components["schemas"]["UnitMistake"] | null;
+        };
+        /**
+         * UnitDraft
+         * @description A text to check.
+         */
+        UnitDraft: {
+            /**
+             * Name
+             * @description Small letters, digits and _, a letter first
+             */
+            name: string;
+            /** Source */
+            source: string;
+        };
+        /**
+         * UnitEntry
+         * @description A unit whose text can be read and copied.
+         */
+        UnitEntry: {
+            /** Family */
+            family: string;
+            /** Name */
+            name: string;
+            /** Title */
+            title: string;
+            /**
+             * Origin
+             * @description The library, the folder of this server, or a file it was started with
+             * @enum {string}
+             */
+            origin: "library" | "folder" | "command line";
+            /**
+             * Hash
+             * @description SHA-256 of its text
+             */
+            hash: string;
+        };
+        /**
+         * UnitList
+         * @description Units one may begin with: those of this server, then those of the library.
+         */
+        UnitList: {
+            /** Units */
+            units: components["schemas"]["UnitEntry"][];
+            /**
+             * Refusal
+             * @description Why this person may not bring units of their own; empty: they may
+             */
+            refusal: string;
+        };
+        /**
+         * UnitMistake
+         * @description What is wrong with a text, and where; line and column begin with 1.
+         */
+        UnitMistake: {
+            /** Message */
+            message: string;
+            /** Line */
+            line: number;
+            /** Column */
+            column: number;
+        };
+        /**
+         * UnitSource
+         * @description The text of a unit.
+         */
+        UnitSource: {
+            /** Source */
+            source: string;
+        };
+        /**
+         * UnitText
+         * @description A unit with its text.
+         */
+        UnitText: {
+            /** Family */
+            family: string;
+            /** Name */
+            name: string;
+            /** Title */
+            title: string;
+            /**
+             * Origin
+             * @description The library, the folder of this server, or a file it was started with
+             * @enum {string}
+             */
+            origin: "library" | "folder" | "command line";
+            /**
+             * Hash
+             * @description SHA-256 of its text
+             */
+            hash: string;
+            /** Source */
+            source: string;
+        };
+        /**
          * UnstableRegionMap
          * @description The region where a bench as it is now pulls in; empty if its plant cannot.
          */
@@ -8073,6 +8245,163 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["ScenarioText"];
                 };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_units_api_v1_units_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["UnitList"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    check_unit_api_v1_units_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["UnitDraft"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["UnitCheck"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_unit_api_v1_units__name__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["UnitText"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    keep_unit_api_v1_units__name__put: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["UnitSource"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["UnitEntry"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    delete_unit_api_v1_units__name__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description Refused or failed */
             default: {

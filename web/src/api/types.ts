@@ -15,6 +15,8 @@ export type BenchmarkRow = Benchmark["results"][number]["rows"][number];
 export type Bode = Schemas["Bode"];
 export type Bench = Schemas["Bench"];
 export type BlockCard = Schemas["BlockCard"];
+/** A unit of one's own that can be used. */
+export type CheckedUnit = Schemas["CheckedUnit"];
 export type BodeOf = Schemas["BodeOf"];
 export type Design = Schemas["Design"];
 /** A class. */
@@ -87,6 +89,8 @@ export type Tile = Schemas["Tile"];
 export type Verdict = Schemas["Verdict"];
 export type Trace = Schemas["Trace"];
 export type Turn = Schemas["Turn"];
+export type UnitEntry = Schemas["UnitEntry"];
+export type UnitMistake = Schemas["UnitMistake"];
 export type UnstableRegion = Schemas["UnstableRegionMap"];
 
 /** Which runs and campaigns a list has. */

@@ -1,6 +1,7 @@
 import { may, type Right } from "../api/me";
 import { actions } from "../bench/actions";
 import { focusNextGroup } from "../bench/dock";
+import { openEditor } from "../bench/edit-unit";
 import { cueBefore, lectureRuns, nextCue } from "../bench/lecture";
 import type { PageName } from "../bench/view-store";
 import { askCue } from "../bench/vote";
@@ -62,6 +63,7 @@ const KEYS: KeyBinding[] = [
   { key: "v", shown: "V", does: "record, and stop", group: "Bench", needs: "drive", run: actions.record },
   { key: "f", shown: "F", does: "fork", group: "Bench", needs: "teach", run: actions.fork },
   { key: "k", shown: "K", does: "keep this moment", group: "Bench", needs: "teach", run: actions.keep },
+  { key: "o", shown: "O", does: "write a unit of your own", group: "Bench", needs: "teach", run: openEditor },
   { key: "n", shown: "N", does: "new bench", group: "Bench", needs: "drive", run: actions.newBench },
   {
     key: "z",
@@ -114,6 +116,7 @@ const KEYS: KeyBinding[] = [
 /** Keys that belong to the thing in focus. */
 export const LOCAL_KEYS: { shown: string; does: string }[] = [
   { shown: "Delete", does: "on a tab: close the panel" },
+  { shown: "Escape, Tab", does: "in the editor of units: leave the text" },
   { shown: "← →", does: "on a scope: move through the past" },
   { shown: "+ −", does: "on a scope: zoom" },
   { shown: "drag, wheel", does: "on a scope: look at the past; double click returns to live" },

@@ -7,6 +7,7 @@ import { BehaviourPanel } from "../panels/behaviour/behaviour-panel";
 import { BlindPanel } from "../panels/blind/blind-panel";
 import { CardPanel } from "../panels/card/card-panel";
 import { ControllersPanel } from "../panels/controllers/controllers-panel";
+import { EditorPanel } from "../panels/editor/editor-panel";
 import { EnvironmentPanel } from "../panels/environment/environment-panel";
 import { EventsPanel } from "../panels/events/events-panel";
 import { FaultsPanel } from "../panels/faults/faults-panel";
@@ -63,6 +64,7 @@ export const PANELS: Record<string, PanelKind> = {
   allan: { title: "Allan deviation", only: "axes", component: AllanPanel },
   faults: { title: "Faults", changes: true, component: FaultsPanel },
   card: { title: "Block", component: CardPanel },
+  editor: { title: "Editor", changes: true, component: EditorPanel },
   sets: { title: "Parameter sets", changes: true, component: SetsPanel },
   environment: { title: "Environment", changes: true, component: EnvironmentPanel },
   phase: { title: "Phase plane", component: PhasePanel },

@@ -107,14 +107,18 @@ export function reopenClosed(): boolean {
 
 /** Open another panel of a kind, among the panels of one of another kind if there is one, else beside the active one. */
 export function addPanel(kind: string, among?: string): void {
-  const near = current?.panels.find((p) => p.view.contentComponent === among);
-  const position = near && { referencePanel: near.id, direction: "within" as const };
-  current?.addPanel({ id: `${kind}-${Date.now()}`, component: kind, params: {}, position });
+  current?.addPanel({ id: `${kind}-${Date.now()}`, component: kind, params: {}, position: within(among) });
 }
 
-/** Open a scope on some signals beside the active panel. */
-export function addScope(title: string, signals: string[]): void {
-  current?.addPanel({ id: `scope-${Date.now()}`, component: "scope", title, params: { scope: scopeConfig(signals) } });
+/** Open a scope on some signals, among the panels of a kind if there is one, else beside the active panel. */
+export function addScope(title: string, signals: string[], among?: string): void {
+  const params = { scope: scopeConfig(signals) };
+  current?.addPanel({ id: `scope-${Date.now()}`, component: "scope", title, params, position: within(among) });
+}
+
+function within(among: string | undefined) {
+  const near = current?.panels.find((p) => p.view.contentComponent === among);
+  return near && { referencePanel: near.id, direction: "within" as const };
 }
 
 /** Move the keyboard to the next group of panels. */

@@ -1,4 +1,4 @@
-import { benchExists } from "../api/api";
+import { api, benchExists } from "../api/api";
 import type { Bench, LogEntry, Score } from "../api/types";
 import { setUnits } from "../api/use-catalog";
 import { type Connection, mergeStatus, useBench } from "./bench-store";
@@ -16,6 +16,9 @@ let known: { bench: Bench | undefined; scores: Record<string, Score> } = { bench
 
 const patch = (connection: Partial<Connection>) =>
   useBench.setState((s) => ({ connection: { ...s.connection, ...connection } }));
+
+/** The texts of the units whose cards the page has. */
+let shownUnits: unknown;
 
 const client = new StreamClient({
   onMessage: receive,
@@ -66,6 +69,7 @@ function receive(message: ServerMessage): void {
       if (known.bench) useBench.setState((s) => ({ called: s.called + 1 }));
       known = { bench: message.bench, scores: turned ? {} : known.scores };
       setUnits(message.bench.units);
+      shownUnits = message.bench.parameters.units;
       tell();
       const last = useBench.getState().events.at(-1)?.seq ?? 0;
       if (message.last_event > last) client.send({ type: "resume", after: last });
@@ -73,6 +77,7 @@ function receive(message: ServerMessage): void {
     }
     case "status": {
       const bench = known.bench && mergeStatus(known.bench, message);
+      if (bench && bench.parameters.units !== known.bench?.parameters.units) void refreshUnits(bench);
       const isScored = message.scores && JSON.stringify(message.scores) !== JSON.stringify(known.scores);
       const scores = isScored && message.scores ? message.scores : known.scores;
       if (bench !== known.bench || scores !== known.scores) {
@@ -101,6 +106,14 @@ function receive(message: ServerMessage): void {
     case "ping": // answered where it arrives
       return;
   }
+}
+
+/** After a reset with another text of a unit: its card may say something else. */
+async function refreshUnits({ id, parameters: { units } }: Bench): Promise<void> {
+  if (JSON.stringify(units) === JSON.stringify(shownUnits)) return;
+  shownUnits = units;
+  const bench = await api.bench(id).catch(() => undefined);
+  if (bench && id === benchId) setUnits(bench.units);
 }
 
 function flushEvents(): void {

@@ -9,6 +9,7 @@ import { Weaknesses } from "../../ui/weaknesses";
 import { KindChoice } from "../controllers/generator-form";
 import { BlockEquation } from "./block-equation";
 import styles from "./card.module.css";
+import { EditUnit } from "./edit-unit";
 import { useInstances } from "./instances";
 import { LiveValues } from "./live-values";
 import { ParameterList } from "./parameter-list";
@@ -50,6 +51,7 @@ export function CardPanel() {
           <p className={styles.summary}>
             <Prose text={found.summary} />
           </p>
+          <EditUnit block={found} />
           <Weaknesses of={found} />
           {found.equations.length > 0 && (
             <div className={styles.equations}>

@@ -1,0 +1,145 @@
+"""Units of one's own: what one may begin with, a check as one types, those that this server keeps."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Path
+from pydantic import BaseModel, Field
+
+from core.board.library import IDENTIFIER
+from core.errors import InputError
+from core.own.admission import check_admitted, refusal
+from core.own.text import UnitError
+from core.own.unit import Unit, unit
+from core.registry import BlockCard, card
+from scenarios.own import copies
+from server.api.bodies import Body, StrictRoute
+from server.api.deps import RateLimited, ServiceDep
+from server.bench.making import prepare
+from server.errors import not_found
+
+router = APIRouter(prefix="/units", tags=["units"], route_class=StrictRoute)
+
+USUAL = "first-look"
+Origin = Literal["library", "folder", "command line"]
+Name = Annotated[str, Field(pattern=IDENTIFIER.pattern, description="Small letters, digits and _, a letter first")]
+NamePath = Annotated[str, Path(pattern=IDENTIFIER.pattern)]
+
+
+class UnitEntry(BaseModel):
+    """A unit whose text can be read and copied."""
+
+    family: str
+    name: str
+    title: str
+    origin: Origin = Field(description="The library, the folder of this server, or a file it was started with")
+    hash: str = Field(description="SHA-256 of its text")
+
+
+class UnitList(BaseModel):
+    """Units one may begin with: those of this server, then those of the library."""
+
+    units: list[UnitEntry]
+    refusal: str = Field(description="Why this person may not bring units of their own; empty: they may")
+
+
+class UnitText(UnitEntry):
+    """A unit with its text."""
+
+    source: str
+
+
+class UnitDraft(Body):
+    """A text to check."""
+
+    name: Name
+    source: str
+
+
+class UnitSource(Body):
+    """The text of a unit."""
+
+    source: str
+
+
+class CheckedUnit(BaseModel):
+    """A unit that can be used."""
+
+    card: BlockCard = Field(description="As the catalogue would have it")
+    operations: int = Field(description="Most operations of a sample")
+    hash: str = Field(description="SHA-256 of its text")
+
+
+class UnitMistake(BaseModel):
+    """What is wrong with a text, and where; line and column begin with 1."""
+
+    message: str
+    line: int
+    column: int
+
+
+class UnitCheck(BaseModel):
+    """A unit, or what is wrong with its text."""
+
+    unit: CheckedUnit | None
+    error: UnitMistake | None
+
+
+@router.get("")
+def list_units(service: ServiceDep) -> UnitList:
+    """List the units one may begin with, and say whether one may bring any."""
+    own = [_entry(one, "folder" if service.units.is_kept(one.name) else "command line") for one in service.units.all()]
+    return UnitList(units=[*own, *(_entry(one, "library") for one in copies())], refusal=refusal())
+
+
+@router.get("/{name}")
+def get_unit(name: NamePath, service: ServiceDep) -> UnitText:
+    """Return the text of a unit."""
+    one = service.units.find(name)
+    if one is not None:
+        return _text(one, "folder" if service.units.is_kept(name) else "command line")
+    for one in copies():
+        if one.name == name:
+            return _text(one, "library")
+    raise not_found("unit", name, "list them at /api/v1/units")
+
+
+@router.post("", dependencies=[RateLimited])
+def check_unit(body: UnitDraft) -> UnitCheck:
+    """Check the text of a unit; nothing is compiled and nothing is kept."""
+    check_admitted({"units": {body.name: body.source}})
+    try:
+        one = unit(body.name, body.source)
+    except UnitError as error:
+        return UnitCheck(unit=None, error=UnitMistake(message=error.message, line=error.line, column=error.column))
+    except InputError as error:
+        return UnitCheck(unit=None, error=UnitMistake(message=str(error), line=1, column=1))
+    return UnitCheck(unit=CheckedUnit(card=card(one.block), operations=one.operations, hash=one.hash), error=None)
+
+
+@router.put("/{name}", dependencies=[RateLimited])
+def keep_unit(name: NamePath, body: UnitSource, service: ServiceDep) -> UnitEntry:
+    """Keep a unit in the folder of this server: every new bench has it, and runs that name it."""
+    check_admitted({"units": {name: body.source}})
+    try:
+        one = service.units.check(name, body.source)
+    except UnitError as error:
+        raise error.under("source") from None
+    prepare(USUAL, {f"units.{name}.source": body.source}, None)  # it is compiled now, and every new bench can have it
+    service.units.keep(one)
+    return _entry(one, "folder")
+
+
+@router.delete("/{name}", status_code=204, dependencies=[RateLimited])
+def delete_unit(name: NamePath, service: ServiceDep) -> None:
+    """Delete a unit from the folder of this server; benches that have it keep it."""
+    service.units.remove(name)
+
+
+def _entry(one: Unit, origin: Origin) -> UnitEntry:
+    return UnitEntry(family=one.family, name=one.name, title=one.block.title, origin=origin, hash=one.hash)
+
+
+def _text(one: Unit, origin: Origin) -> UnitText:
+    return UnitText(**dict(_entry(one, origin)), source=one.source)

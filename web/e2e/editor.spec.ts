@@ -1,0 +1,200 @@
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import type { Locator, Page } from "@playwright/test";
+import { expect, test } from "./lab";
+import type { LabServer } from "./lab-server";
+import { expectClean, expectReadable, SCHEMES, SCREENS, showOn } from "./screens";
+import { seriousViolations } from "./serious-violations";
+
+const ROOT = join(import.meta.dirname, "..", "..");
+const PID = readFileSync(join(ROOT, "core", "control", "pid.py"), "utf-8");
+const DOCUMENT = readFileSync(join(ROOT, "docs", "own-units.md"), "utf-8");
+const PI = DOCUMENT.split("```python\n")[1].split("```")[0];
+
+/** Four weeks of ageing make the suspension 1/0.572 times as stiff; so much more voltage is fed forward. */
+const AGED_PI = PI.replace("proportional = p.", "proportional = 1.75 * x.reference + p.");
+const SCENARIO = "ch3-case1-aged-mass";
+
+interface Summary {
+  digest: string;
+  metrics: Record<string, number>;
+}
+
+/** A headless run by REST, when it is done. */
+async function run(server: LabServer, set: Record<string, unknown>): Promise<Summary> {
+  const { id } = await server.ask<{ id: string }>("POST", "/runs", { scenario: SCENARIO, set });
+  let summary: Summary | null = null;
+  await expect
+    .poll(async () => {
+      summary = (await server.ask<{ summary: Summary | null }>("GET", `/runs/${id}`)).summary;
+      return summary;
+    })
+    .not.toBeNull();
+  return summary as unknown as Summary;
+}
+
+/** The same by the command line, with a file. */
+function runByHand(name: string, source: string): Summary {
+  const folder = mkdtempSync(join(tmpdir(), "combbench-unit-"));
+  try {
+    const file = join(folder, `${name}.py`);
+    writeFileSync(file, source);
+    const told = ["run", SCENARIO, "--unit", file, "--set", `controller.kind=${name}`, "--json"];
+    let out: string;
+    try {
+      out = execFileSync(join(ROOT, ".venv", "bin", "combbench"), told, { encoding: "utf-8" });
+    } catch (error) {
+      out = (error as { stdout: string }).stdout; // other expectations are those of the adaptive law
+    }
+    return JSON.parse(out) as Summary;
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+}
+
+const editor = (page: Page): Locator => page.getByRole("region", { name: "Editor" });
+const text = (page: Page): Locator => editor(page).getByRole("textbox", { name: "Text of the unit" });
+const state = (page: Page): Locator => editor(page).getByRole("status");
+
+/** A bench of the scenario with an empty editor beside it. */
+async function openEditor(page: Page, server: LabServer): Promise<void> {
+  await page.request.get(server.url);
+  const { id } = await server.ask<{ id: string }>("POST", "/benches", { scenario: SCENARIO, time_scale: 0.001 });
+  await page.goto(`${server.origin}/?bench=${id}&layout=lab`);
+  await expect(page.getByTestId("bench-state")).toHaveText("running");
+  await page.keyboard.press("o");
+  await expect(text(page)).toBeVisible();
+}
+
+async function paste(page: Page, source: string): Promise<void> {
+  await text(page).click();
+  await page.keyboard.press("ControlOrMeta+a");
+  await page.keyboard.insertText(source);
+}
+
+/** Run the unit headless from the panel; its digest and its error. */
+async function runFromPanel(page: Page): Promise<{ digest: string; error: string }> {
+  const headless = editor(page).getByRole("region", { name: "Headless run" });
+  await headless.getByRole("button", { name: "Use in a run" }).click();
+  const row = (name: string | RegExp) => headless.locator("dl > div").filter({ hasText: name }).locator("dd");
+  await expect(row("Digest")).toHaveText(/^[0-9a-f]{64}$/);
+  return { digest: await row("Digest").innerText(), error: await row(/^rms error/).innerText() };
+}
+
+test("the PID of the library, pasted into an empty editor, runs beside the others and gives its own digest", async ({
+  page,
+  server,
+}) => {
+  await openEditor(page, server);
+  await expect(state(page)).toHaveText("Empty.");
+  await paste(page, PID);
+  await expect(editor(page).getByLabel("Name of the unit")).toHaveValue("pid");
+  await expect(state(page)).toContainText("It runs on this bench");
+  await expect(editor(page).getByRole("heading", { name: "PID" })).toBeVisible();
+  await expect(editor(page).locator(".katex").first()).toBeVisible();
+  const found = await runFromPanel(page);
+  const theirs = await run(server, { "controller.kind": "pid" });
+  const ours = await run(server, { "units.pid.source": PID, "controller.kind": "pid" });
+  const byHand = runByHand("pid", PID);
+  expect([found.digest, ours.digest, byHand.digest]).toEqual([theirs.digest, theirs.digest, theirs.digest]);
+});
+
+test("a PI typed into the editor drives, beats the default PID, and is the same by command line and REST", async ({
+  page,
+  server,
+}) => {
+  await openEditor(page, server);
+  await paste(page, AGED_PI.replace(/x\.error = e\s*$/, ""));
+  await page.keyboard.press("ControlOrMeta+End");
+  await page.keyboard.type("x.error = e");
+  await expect(state(page)).toContainText("It runs on this bench");
+  const typed = await page.evaluate(() => JSON.parse(localStorage.getItem("combbench.unit") ?? "").state.source);
+  await editor(page).getByRole("button", { name: "Let it drive" }).click();
+  await expect(editor(page).getByText("It drives.")).toBeVisible();
+  await editor(page).getByRole("button", { name: "Show its signals" }).click();
+  await expect(page.getByRole("region", { name: "Scope: pi.voltage, pi.error" })).toBeVisible();
+  const found = await runFromPanel(page);
+  const ours = await run(server, { "units.pi.source": typed, "controller.kind": "pi" });
+  const pid = await run(server, { "controller.kind": "pid" });
+  expect(ours.metrics["control.rms_error_um"]).toBeLessThan(pid.metrics["control.rms_error_um"]);
+  expect([ours.digest, runByHand("pi", typed).digest]).toEqual([found.digest, found.digest]);
+});
+
+test("a mistake is said with its place, and the last that worked comes back", async ({ page, server }) => {
+  await openEditor(page, server);
+  await paste(page, PI);
+  await expect(state(page)).toContainText("It runs on this bench");
+  const bench = page.url();
+  const wrong = PI.replace("e = x.model - x.measured", "e = x.model - x.truth");
+  await paste(page, wrong);
+  const line = 1 + wrong.split("\n").indexOf("        e = x.model - x.truth");
+  await expect(state(page)).toContainText(`Line ${line}, column 23: has no truth`);
+  await expect(editor(page).locator(".cm-lintRange-error")).toHaveText("x.truth");
+  await paste(page, PI.replace('"PI"', '"PI of today"'));
+  await expect(state(page)).toContainText("It runs on this bench");
+  expect(page.url(), "the same signals need no other bench").toBe(bench);
+  await expect(page.getByRole("button", { name: /^Controller PI of today/ })).toHaveCount(0);
+  await editor(page).getByLabel("Version").selectOption({ index: 2 });
+  const difference = editor(page).getByRole("region", { name: "Difference" });
+  await expect(difference.locator(".cm-deletedChunk")).toContainText('title = "PI"');
+  await expectClean(page, "the difference of two versions");
+  expect.soft(await seriousViolations(page)).toEqual([]);
+  await difference.getByRole("button", { name: "Close" }).click();
+  await page.reload();
+  await expect(text(page)).toContainText('title = "PI of today"');
+  await editor(page).getByRole("button", { name: "Back to the last that worked" }).click();
+  await expect(text(page)).toContainText('title = "PI"');
+  await expect(state(page)).toContainText("It runs on this bench");
+});
+
+test("a text that trips the bench is marked so, and the version before it runs again", async ({ page, server }) => {
+  await openEditor(page, server);
+  await paste(page, PI);
+  await editor(page).getByRole("button", { name: "Let it drive" }).click();
+  await expect(editor(page).getByText("It drives.")).toBeVisible();
+  await paste(page, PI.replace("x.voltage = proportional", "x.voltage = (e - e) / (e - e)"));
+  await expect(state(page)).toContainText("it has tripped the bench");
+  await expect(page.getByTestId("bench-state")).toHaveText("tripped");
+  await expect(editor(page).getByLabel("Version")).toContainText("tripped the bench");
+  await editor(page).getByRole("button", { name: "Back to the last that worked" }).click();
+  await expect(page.getByTestId("bench-state")).toHaveText("running");
+  await expect(state(page)).toContainText("It runs on this bench");
+  await expect(text(page)).toContainText("x.voltage = proportional");
+});
+
+test("a unit of the library is copied from its block, kept on the server, and taken away", async ({ page, server }) => {
+  await page.request.get(server.url);
+  const { id } = await server.ask<{ id: string }>("POST", "/benches", {
+    scenario: SCENARIO,
+    set: { "controller.kind": "pid" },
+  });
+  await page.goto(`${server.origin}/?bench=${id}&layout=lab`);
+  await page.getByRole("button", { name: /^Controller PID/ }).click();
+  await page.getByRole("button", { name: "Edit a copy" }).click();
+  await expect(editor(page).getByLabel("Name of the unit")).toHaveValue("my_pid");
+  await expect(state(page)).toContainText("It runs on this bench");
+  await editor(page).getByRole("button", { name: "File" }).click();
+  await page.getByRole("menuitem", { name: "Keep on this server" }).click();
+  await expect(page.getByText("my_pid is kept on this server")).toBeVisible();
+  const kept = await server.ask<{ source: string }>("GET", "/units/my_pid");
+  expect(kept.source).toBe(PID);
+  await editor(page).getByRole("button", { name: "File" }).click();
+  await page.getByRole("menuitem", { name: "Delete from this server" }).click();
+  await expect.poll(() => server.ask("GET", "/units/my_pid").catch(() => "gone")).toBe("gone");
+});
+
+test("the editor lies right on a large screen and on a phone, dark and light", async ({ page, server }) => {
+  await openEditor(page, server);
+  await paste(page, PI);
+  await expect(state(page)).toContainText("It runs on this bench");
+  for (const screen of [SCREENS[1], SCREENS[3]]) {
+    await showOn(page, screen);
+    if (screen === SCREENS[3]) await page.getByRole("combobox", { name: "Another panel" }).selectOption("Editor");
+    await expect(text(page)).toBeVisible();
+    await expectClean(page, `the editor at ${screen.width}`);
+    expect.soft(await seriousViolations(page)).toEqual([]);
+    for (const scheme of SCHEMES) await expectReadable(page, `the editor at ${screen.width}`, scheme);
+  }
+});

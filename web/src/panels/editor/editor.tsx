@@ -1,0 +1,138 @@
+import { Button, Switch, TextInput } from "@mantine/core";
+import { useEffect, useState } from "react";
+import { useAnswer } from "../../api/queries";
+import { units } from "../../api/units";
+import { beginWith, isUnitName, nameOfClass, useDraft } from "../../bench/unit-draft";
+import { sourceOnBench } from "../../bench/unit-values";
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { Code } from "./code";
+import { Difference } from "./difference";
+import styles from "./editor.module.css";
+import { Headless } from "./headless";
+import { OnBench } from "./on-bench";
+import { StartFrom } from "./start-from";
+import { UnitFacts } from "./unit-facts";
+import { type Check, type Checked, useCheck } from "./use-check";
+import { type Run, useRun } from "./use-run";
+import { Versions } from "./versions";
+
+/** Write a unit: its text at the left, what it is at the right. */
+export function Editor() {
+  const list = useAnswer(["texts of units"], units.all);
+  if (list.value?.refusal) return <EmptyState title="No units here">{sentence(list.value.refusal)}</EmptyState>;
+  return <Bench list={list} />;
+}
+
+const sentence = (text: string): string => `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
+
+function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
+  const { name, source, asYouType } = useDraft();
+  const versions = useDraft((s) => s.versions[name]);
+  const [chosen, choose] = useState<number | undefined>(undefined);
+  const checked = useCheck();
+  const run = useRun(checked.now);
+  const version = versions?.find((one) => one.at === chosen);
+  const isThere = useBench((s) => sourceOnBench(s.bench?.parameters, name) !== undefined);
+  const { unit } = checked;
+
+  // a text that comes without a name is called as its class
+  useEffect(() => {
+    const found = checked.now?.unit && !name ? nameOfClass(source) : "";
+    if (found) useDraft.setState({ name: found });
+  }, [checked.now, name, source]);
+
+  return (
+    <section className={styles.panel} aria-label="Editor">
+      <div className={styles.bar}>
+        <StartFrom list={list} unit={checked.now?.unit ?? undefined} />
+        <TextInput
+          size="xs"
+          aria-label="Name of the unit"
+          placeholder="name"
+          className={styles.name}
+          value={name}
+          maxLength={32}
+          error={name !== "" && !isUnitName(name)}
+          onChange={(e) => useDraft.setState({ name: e.currentTarget.value })}
+        />
+        <Versions chosen={chosen} onChoose={choose} />
+      </div>
+      <div className={styles.bar}>
+        <State name={name} source={source} checked={checked} run={run} />
+        <Switch
+          size="xs"
+          label="Run as I type"
+          checked={asYouType}
+          onChange={(e) => useDraft.setState({ asYouType: e.currentTarget.checked })}
+        />
+        <Button
+          size="xs"
+          loading={run.busy}
+          disabled={!checked.now?.unit || !isUnitName(name) || run.isOn}
+          onClick={run.start}
+        >
+          Run
+        </Button>
+      </div>
+      <div className={styles.body}>
+        {version ? (
+          <Difference
+            version={version}
+            source={source}
+            onBack={() => {
+              beginWith(name, version.source);
+              choose(undefined);
+            }}
+            onClose={() => choose(undefined)}
+          />
+        ) : (
+          <Code
+            source={source}
+            onChange={(text) => useDraft.setState({ source: text })}
+            mistake={checked.now ? checked.now.error : undefined}
+            card={unit?.card}
+          />
+        )}
+        <aside className={styles.facts} aria-label="The unit">
+          {unit ? (
+            <>
+              {isThere && <OnBench card={unit.card} />}
+              <UnitFacts unit={unit} />
+              <Headless key={unit.card.name} card={unit.card} source={source} ready={Boolean(checked.now?.unit)} />
+            </>
+          ) : (
+            <EmptyState title="No unit yet">
+              Start from a unit of the library, open a file, or type. What the text says of itself appears here: title,
+              equations, parameters and signals.
+            </EmptyState>
+          )}
+        </aside>
+      </div>
+    </section>
+  );
+}
+
+/** How the text stands, in a line. */
+function State({ name, source, checked, run }: { name: string; source: string; checked: Checked; run: Run }) {
+  const { text, isWrong } = stateOf(name, source, checked.now, checked.refusal, run);
+  return (
+    <p role="status" className={styles.state} data-wrong={isWrong}>
+      {text}
+    </p>
+  );
+}
+
+function stateOf(name: string, source: string, check: Check | undefined, refusal: string | undefined, run: Run) {
+  const wrong = (text: string) => ({ text, isWrong: true });
+  const fine = (text: string) => ({ text, isWrong: false });
+  if (!source.trim()) return fine("Empty.");
+  if (name && !isUnitName(name)) return wrong("The name: small letters, digits and _, a letter first, at most 32.");
+  if (check?.error) return wrong(`Line ${check.error.line}, column ${check.error.column}: ${check.error.message}.`);
+  if (run.busy) return fine("Checked. It is being compiled for this bench.");
+  if (run.refusal) return wrong(`Checked, but the bench did not take it: ${run.refusal}.`);
+  if (run.trip) return wrong(`Checked, but it has tripped the bench: ${run.trip}. Change it, or go back.`);
+  if (run.isOn) return fine("Checked. It runs on this bench since tick 0.");
+  if (check) return fine("Checked. It does not run on this bench yet.");
+  return refusal ? wrong(sentence(refusal)) : fine("Being checked.");
+}

@@ -1,0 +1,106 @@
+import { Button } from "@mantine/core";
+import { useState } from "react";
+import { api } from "../../api/api";
+import { useAnswer } from "../../api/queries";
+import type { BlockCard, NewRun, Run } from "../../api/types";
+import { showError } from "../../bench/send";
+import { valuesOf } from "../../bench/unit-values";
+import { setPage } from "../../bench/view-store";
+import { useBench } from "../../stream/bench-store";
+import { formatFigure } from "../../ui/format";
+import { metricScale } from "../../ui/metric-name";
+import styles from "./editor.module.css";
+
+const BUSY_MS = 300;
+
+/** A headless run of the bench's scenario with the unit: its digest, and its figures. */
+export function Headless({ card, source, ready }: { card: BlockCard; source: string; ready: boolean }) {
+  const scenario = useBench((s) => s.bench?.scenario_id);
+  const [started, setStarted] = useState<{ id: string; source: string } | undefined>(undefined);
+  const id = started?.id;
+  const [busy, setBusy] = useState(false);
+  const { value: run } = useAnswer(
+    id === undefined ? undefined : ["run", id],
+    () => api.run(id ?? ""),
+    (found) => (isOver(found) ? undefined : BUSY_MS),
+  );
+  const start = async () => {
+    setBusy(true);
+    try {
+      const { id } = await api.startRun(await wanted(card, source));
+      setStarted({ id, source });
+    } catch (error) {
+      showError(error);
+    } finally {
+      setBusy(false);
+    }
+  };
+  return (
+    <section aria-label="Headless run">
+      <h3>Headless run</h3>
+      <p className={styles.summary}>
+        {scenario} from its start to its end{card.family === "control" && `, ${card.title} drives`}.
+      </p>
+      <Button
+        size="compact-sm"
+        variant="default"
+        loading={busy || (run && !isOver(run))}
+        disabled={!ready}
+        onClick={() => void start()}
+      >
+        Use in a run
+      </Button>
+      {run && started?.source !== source && <p className={styles.summary}>These figures are of an earlier text.</p>}
+      {run && isOver(run) && <Outcome run={run} card={card} />}
+    </section>
+  );
+}
+
+const isOver = (run: Run | undefined): boolean => run !== undefined && !["queued", "running"].includes(run.state);
+
+/** The library's scenario, or what happened on the bench where it is none of the library. */
+async function wanted(card: BlockCard, source: string): Promise<NewRun> {
+  const { bench } = useBench.getState();
+  if (!bench) throw new Error("there is no bench");
+  const isOfLibrary = (await api.scenarios()).some((one) => one.id === bench.scenario_id);
+  const scenario = isOfLibrary ? bench.scenario_id : await api.scenarioToml(bench.id);
+  const set = valuesOf(card, source, isOfLibrary && card.family === "control");
+  return { scenario, set, label: `${card.title} on ${bench.scenario_id}`.slice(0, 120), all: false };
+}
+
+/** Where the figures of a family begin. */
+const figuresOf = ({ family, name }: BlockCard): string =>
+  family === "diagnose" ? `diagnosis.${name}.` : family === "identify" ? `identify.${name}.` : "control.";
+
+function Outcome({ run, card }: { run: Run; card: BlockCard }) {
+  const { digest, metrics = {} } = (run.summary ?? {}) as { digest?: string; metrics?: Record<string, number> };
+  const figures = Object.entries(metrics).filter(([name]) => name.startsWith(figuresOf(card)));
+  const show = () => {
+    const url = new URL(window.location.href);
+    url.searchParams.set("run", run.id);
+    window.history.replaceState(null, "", url);
+    setPage("runs");
+  };
+  return (
+    <>
+      <dl className={styles.list}>
+        {figures.map(([name, value]) => {
+          const { title, shown } = metricScale(name, [value]);
+          return (
+            <div key={name}>
+              <dt>{title}</dt>
+              <dd>{formatFigure(name, shown(value))}</dd>
+            </div>
+          );
+        })}
+        <div>
+          <dt>Digest</dt>
+          <dd className={styles.digest}>{digest ?? run.state}</dd>
+        </div>
+      </dl>
+      <Button size="compact-sm" variant="subtle" onClick={show}>
+        Open under Runs
+      </Button>
+    </>
+  );
+}

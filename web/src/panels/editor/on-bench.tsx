@@ -1,0 +1,69 @@
+import { Button } from "@mantine/core";
+import { useMemo } from "react";
+import type { BlockCard } from "../../api/types";
+import { actions } from "../../bench/actions";
+import { addScope, showPanel } from "../../bench/dock";
+import { useView } from "../../bench/view-store";
+import { useBench } from "../../stream/bench-store";
+import styles from "./editor.module.css";
+
+const MOST_TRACES = 6;
+
+/** What a unit does on the bench, and what can be done with it there. */
+export function OnBench({ card }: { card: BlockCard }) {
+  const signals = useBench((s) => s.bench?.signals);
+  const drives = useBench((s) => Object.values(s.bench?.slots ?? {}).includes(card.name));
+  const isThere = useBench((s) => s.bench?.controllers.includes(card.name));
+  const own = useMemo(
+    () => (signals ?? []).filter((s) => s.block === card.name).map((s) => s.name),
+    [signals, card.name],
+  );
+  return (
+    <div className={styles.row}>
+      {card.family === "control" &&
+        (drives ? (
+          <span>It drives.</span>
+        ) : (
+          isThere && (
+            <>
+              <span>In shadow: it computes, and another controller drives.</span>
+              <Button size="compact-sm" onClick={() => actions.controller(card.name)}>
+                Let it drive
+              </Button>
+            </>
+          )
+        ))}
+      {card.family === "faults" && (
+        <Button size="compact-sm" variant="default" onClick={() => showPanel("faults")}>
+          Inject it under Faults
+        </Button>
+      )}
+      {card.family === "sense" && (
+        <Button size="compact-sm" variant="default" onClick={() => showPanel("environment")}>
+          Choose it under Environment
+        </Button>
+      )}
+      {card.family === "reference" && (
+        <Button
+          size="compact-sm"
+          variant="default"
+          onClick={() => {
+            useView.setState({ card: "reference" });
+            showPanel("card");
+          }}
+        >
+          Choose it in the block of the reference
+        </Button>
+      )}
+      {own.length > 0 && (
+        <Button
+          size="compact-sm"
+          variant="default"
+          onClick={() => addScope(card.title, own.slice(0, MOST_TRACES), "scope")}
+        >
+          Show its signals
+        </Button>
+      )}
+    </div>
+  );
+}
