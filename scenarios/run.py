@@ -22,6 +22,8 @@ from core.errors import InputError
 from core.signals import Signal
 from scenarios.expectation import overall
 from scenarios.measure.metrics import device_metrics, measure
+from scenarios.narrator.narrator import Narrator
+from scenarios.narrator.sentence import Sentence
 from scenarios.samples import Samples, Trace
 from scenarios.schema import Scenario
 from scenarios.signals import PICTURED, figure_signals, traced
@@ -42,6 +44,7 @@ class Result:
     metrics: dict[str, float]
     warnings: list[str]
     trace: dict[str, FloatArray] = field(repr=False)
+    narration: list[Sentence] = field(default_factory=list, repr=False)
 
     @property
     def trip(self) -> Trip | None:
@@ -194,6 +197,7 @@ def run(
     trace: Trace | None = None,
     on_tick: Callable[[int], None] | None = None,
     law: Law | None = None,
+    narrate: bool = False,
 ) -> Result:
     """Run a scenario from start to end, or until the board trips for good.
 
@@ -220,6 +224,8 @@ def run(
     law : callable, optional
         Drives in place of the controller of the scenario: called with each `core.board.hosted.Sample`, it answers with
         a voltage.
+    narrate : bool
+        Let the narrator say what happens.
 
     Raises
     ------
@@ -245,10 +251,14 @@ def run(
     split = board.signals.outputs
     outputs = np.array([one.index for one in kept if one.kind == "output"], dtype=np.int64)
     inner = np.array([one.index - split for one in kept if one.kind == "tap"], dtype=np.int64)
+    narrator = Narrator(board.spec, list(board.signals), split) if narrate else None
+    narration: list[Sentence] = []
     began = time.perf_counter()
     with Samples(len(kept), samples) as stored:
         while board.tick < samples:
             rows = board.advance(samples - board.tick)
+            if narrator is not None:
+                narration += narrator.follow(board.log, rows)
             if rows.count == 0:
                 break  # tripped, and no waiting command would reset it
             stored.add(np.hstack([rows.outputs[:, outputs], rows.taps[:, inner]]))
@@ -273,6 +283,7 @@ def run(
         # a warning that came and went is listed once
         list(dict.fromkeys(entry.text for entry in board.log if entry.kind == "warning")),
         columns,
+        narration,
     )
 
 

@@ -11,7 +11,7 @@ from core.board.library import library_of
 from scenarios.own import with_units
 from scenarios.schema import Scenario
 from server.bench.commands import MAX_SCALE, MIN_SCALE
-from server.bench.replay import Replay, played
+from server.bench.replay import Replay, narrated, played
 from server.bench.session import Session
 from server.bench.tick_source import TickSource
 from server.metrics import Metrics
@@ -57,7 +57,8 @@ class Maker:
         scenario, tape, recorded = played(recording, path)
         pace = min(max(recorded * speed, MIN_SCALE), MAX_SCALE)
         kept = self._kept(tape, self._settings.history_mb)
-        session = Replay(recording, scenario, tape, pace, kept, self._metrics, self._clock)
+        said = narrated(tape, path, recording.events or [])
+        session = Replay(recording, scenario, tape, pace, kept, self._metrics, self._clock, said)
         session.recorded_scale = recorded
         return session
 

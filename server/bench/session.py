@@ -22,6 +22,7 @@ from server.bench.changes import Changes
 from server.bench.events import Event, EventLog
 from server.bench.hiding import BlindView, Hiding
 from server.bench.moment import Moment
+from server.bench.narration import Narration
 from server.bench.pacing import Pacer
 from server.bench.portrait import bench_of, document_now, status_of
 from server.bench.recorder import Recorder
@@ -89,6 +90,7 @@ class Session(Timeline):
         self.changes, self.snapshots = Changes(self, clock), Snapshots(self)
         self.recordings, self.hiding = Recordings(self), Hiding(self)
         self._metrics = metrics
+        self.narration = Narration(board.spec, board.signals, board.signals.outputs)
         self.events = EventLog(self._happened)
         self._closed = False
         self.refresh_status()
@@ -158,6 +160,7 @@ class Session(Timeline):
             if len(self.board.pending) >= commands.MAX_PENDING and not isinstance(command, MakeSafe):
                 raise InputError(f"{commands.MAX_PENDING} commands wait for their moment already", code="limit")
             event = self.changes.apply(command, actor)
+            self.narration.tell()
             self.running.fast_forward.end()
             self.running.stop_if_tripped()
         self.refresh_status()
@@ -175,6 +178,7 @@ class Session(Timeline):
             raise InputError(text, "values", "make a new bench for them", "conflict")
         before = self.moment(with_past=True)
         self._begin_again(scenario, board)
+        self.narration.begin(board.spec)
         self._jumped("the bench was reset", scenario.samples)
         event = self._begun(before, actor, "reset to tick 0")
         self.running.is_started = self.is_started or before_tick is not None
@@ -188,6 +192,7 @@ class Session(Timeline):
         before = self.moment(with_past=True)
         self._begin_again(other.scenario, other.board)
         self.history, self.running.pacer = other.history, other.pacer
+        self.narration.go_to(other.narration.told())
         self._jumped(text, other.running.ends_at)
         event = self._begun(before, actor, text)
         self.running.is_started = start and self.board.trip is None
@@ -213,11 +218,13 @@ class Session(Timeline):
 
     def moment(self, with_past: bool = False) -> Moment:
         """Return what the bench is now, for a jump that empties the history with the past before it."""
-        return replace(super().moment(with_past), last_event=self.events.last)
+        return replace(super().moment(with_past), last_event=self.events.last, told=self.narration.told())
 
     def go_to(self, moment: Moment) -> None:
         """Be what the bench was."""
         self._be_again(moment)
+        if moment.told is not None:
+            self.narration.go_to(moment.told)
         self.events.take_over(self.board)
         self._jumped("the bench was restored", self.scenario.samples)
 
@@ -229,6 +236,8 @@ class Session(Timeline):
         twin.running.ends_at = self.running.ends_at
         if self._branches.share(moment.branch, board.tick) and (past := self._past(board.tick)) is not None:
             twin.history.append(past)
+        if moment.told is not None:
+            twin.narration.go_to(moment.told)
         twin.note("api", "forked", f"forked from bench {self.id}")
         twin.refresh_status()
         return twin
@@ -243,9 +252,11 @@ class Session(Timeline):
         """Run ticks, as many as a slice has; keep them, record them, note what happened; return how many there were."""
         watch = self.watch if self.hiding.blind is None else None  # what holds would tell what is hidden
         rows = self._advance_slice(ticks if watch is None else watch.room(self.board.tick, ticks))
+        self.narration.look(rows)
         if rows.count:
             self._metrics.ticks.inc(rows.count)
             self.recordings.take(rows)
+            self.hiding.look(rows)
             if watch is not None:
                 watch.look(self)
         if self.board.trip is not None and self.is_started and not self._has_due():
@@ -257,6 +268,7 @@ class Session(Timeline):
         """Count an event, tell of it, and write it into the recordings under way."""
         if not self.hiding.hear(event):
             self._metrics.events.labels(event.kind).inc()
+        self.narration.hear(event)
         self.recordings.record(event)
         if self.witness is not None:
             self.witness(self, event)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -30,14 +31,18 @@ class Tape:
         Built from the scenario of the recording; gives its signals and blocks.
     path : Path
         The file of the recording.
+    only : collection of str, optional
+        Reads these signals alone.
     """
 
-    def __init__(self, board: Board, path: Path) -> None:
+    def __init__(self, board: Board, path: Path, only: Collection[str] | None = None) -> None:
         self._board = board
         self._file = pq.ParquetFile(path)
         recorded = set(self._file.schema_arrow.names)
         names = [signal.name for signal in board.signals]
         self._columns = [(at, name) for at, name in enumerate(names) if name in recorded]
+        if only is not None:
+            self._columns = [(at, name) for at, name in self._columns if name in only]
         if not self._columns:
             raise InputError("has no signal this version knows", "recording")
         self._width, self._outputs = len(names), board.signals.outputs

@@ -1,0 +1,104 @@
+"""The narrator: a fold over the rows and the log of a bench, which tells what happens in plain sentences."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+from itertools import takewhile
+
+from core.board.instances import scored
+from core.board.log import Log, LogEntry
+from core.board.rows import Rows
+from core.board.spec import Spec
+from core.signals import Signal
+from scenarios.narrator.doings import MEASURED, MODEL, SCALES, SPAN, TOLD, TRIPS, Doings
+from scenarios.narrator.samples import LastSamples
+from scenarios.narrator.sentence import KINDS, Sentence
+from scenarios.narrator.settling import Settling
+from scenarios.narrator.verdicts import TURNS, Verdicts
+
+
+class Narrator:
+    """Tells faults, healings, switches, verdicts, trips, and when the error is back.
+
+    It reads only the signals it is given and the entries it hears, so it cannot tell what these do not. The sentences
+    do not depend on how many rows it is shown at a time.
+
+    Parameters
+    ----------
+    spec : Spec
+        The bench as it begins.
+    signals : sequence of Signal
+        The signals that may be told of.
+    outputs : int
+        How many of the columns of the rows are outputs.
+    """
+
+    def __init__(self, spec: Spec, signals: Sequence[Signal], outputs: int) -> None:
+        column = {signal.name: signal.index for signal in signals}
+        chosen = [
+            name for name, section in spec.diagnosers.items() if scored(section.block) and f"{name}.winner" in column
+        ]
+        turns = {name: spec.turns(spec.diagnosers[name]) for name in chosen}
+        self._verdicts = [
+            Verdicts(name, spec.diagnosers[name], turns[name], spec.dt_ms, len(chosen) == 1) for name in chosen
+        ]
+        self._doings, self._settling = Doings(spec), Settling(spec.dt_ms)
+        wanted = [MODEL, MEASURED, *SCALES.values(), *(name for one in self._verdicts for name in one.signals)]
+        names = [name for name in wanted if name in column]
+        before = max([SPAN, *((TURNS - 1) * every + 1 for every in turns.values())])
+        self._samples = LastSamples(names, [column[name] for name in names], outputs, before)
+        self._heard: list[LogEntry] = []
+        self._last_heard = 0
+
+    def hear(self, entry: LogEntry) -> None:
+        """Take an entry of the log, before the row of its tick is shown."""
+        if entry.kind in TOLD:
+            self._heard = [*self._heard, entry]
+
+    def follow(self, log: Log, rows: Rows) -> list[Sentence]:
+        """Return what is to be told after some rows more of a board, whose log says what was done meanwhile."""
+        new = list(takewhile(lambda entry: entry.seq > self._last_heard, reversed(log)))
+        self._last_heard = log.last
+        for entry in reversed(new):
+            self.hear(entry)
+        return self.look(rows)
+
+    def look(self, rows: Rows) -> list[Sentence]:
+        """Return what is to be told after some rows more, which may be none."""
+        if not rows.count:
+            return self.tell()
+        self._samples.add(rows)
+        found = self.tell()
+        found += self._settling.look(self._samples, self._samples.end)
+        found += [said for one in self._verdicts for said in one.look(self._samples, rows.first_tick)]
+        return sorted(found, key=lambda said: (said.tick, KINDS.index(said.kind)))
+
+    def tell(self) -> list[Sentence]:
+        """Return what is to be told of the entries heard: a trip at once, anything else when its tick has run."""
+        end = self._samples.end
+        due: list[LogEntry] = []
+        later: list[LogEntry] = []
+        for entry in self._heard:
+            is_due = entry.tick < end or (entry.tick == end and entry.kind in TRIPS)
+            (due if is_due else later).append(entry)
+        self._heard = later
+        found: list[Sentence] = []
+        for entry in sorted(due, key=lambda one: one.tick):
+            if entry.tick >= (self._samples.began or 0) and (said := self._doings.sentence(entry, self._samples)):
+                found += [*self._settling.look(self._samples, said.tick), said]
+                self._settling.follow(said)
+        return found
+
+    def copy(self) -> Narrator:
+        """Return a narrator that goes on from here by itself."""
+        twin = copy.copy(self)
+        twin._verdicts = [copy.copy(one) for one in self._verdicts]
+        twin._doings, twin._settling = copy.copy(self._doings), copy.copy(self._settling)
+        twin._samples = copy.copy(self._samples)
+        return twin
+
+    @property
+    def signals(self) -> list[str]:
+        """The signals it reads."""
+        return self._samples.names
