@@ -6,16 +6,23 @@ import copy
 from collections.abc import Sequence
 from itertools import takewhile
 
+import numpy as np
+
 from core.board.instances import scored
 from core.board.log import Log, LogEntry
+from core.board.observer import follow
 from core.board.rows import Rows
 from core.board.spec import Spec
 from core.signals import Signal
-from scenarios.narrator.doings import MEASURED, MODEL, SCALES, SPAN, TOLD, TRIPS, Doings
-from scenarios.narrator.samples import LastSamples
+from scenarios.narrator.doings import MEASURED, MODEL, SCALES, TOLD, TRIPS, Doings
+from scenarios.narrator.samples import Samples
 from scenarios.narrator.sentence import KINDS, Sentence
 from scenarios.narrator.settling import Settling
-from scenarios.narrator.verdicts import TURNS, Verdicts
+from scenarios.narrator.verdicts import Verdicts
+
+PORTS = ("winner", "truth")
+"""What of a diagnoser is followed from tick to tick, and what is read of it when it turns."""
+EACH = ("probability", "residual", "nis")
 
 
 class Narrator:
@@ -44,10 +51,18 @@ class Narrator:
             Verdicts(name, spec.diagnosers[name], turns[name], spec.dt_ms, len(chosen) == 1) for name in chosen
         ]
         self._doings, self._settling = Doings(spec), Settling(spec.dt_ms)
-        wanted = [MODEL, MEASURED, *SCALES.values(), *(name for one in self._verdicts for name in one.signals)]
-        names = [name for name in wanted if name in column]
-        before = max([SPAN, *((TURNS - 1) * every + 1 for every in turns.values())])
-        self._samples = LastSamples(names, [column[name] for name in names], outputs, before)
+        self._samples = Samples(
+            column, outputs, [name for name in (MODEL, MEASURED, *SCALES.values()) if name in column]
+        )
+        self._followed = [f"{name}.{port}" for name in chosen for port in PORTS if f"{name}.{port}" in column]
+        self._columns = np.array([column[name] for name in self._followed], dtype=np.int64)
+        self._name_of = dict(zip(self._columns.tolist(), self._followed, strict=True))
+        self._last = np.full(len(self._followed), np.nan)
+        self._signals = [
+            *self._followed,
+            *(name for name in (MODEL, MEASURED, *SCALES.values()) if name in column),
+            *(name for name in column if name.split(".")[0] in chosen and name.split(".")[1] in EACH),
+        ]
         self._heard: list[LogEntry] = []
         self._last_heard = 0
 
@@ -68,11 +83,29 @@ class Narrator:
         """Return what is to be told after some rows more, which may be none."""
         if not rows.count:
             return self.tell()
-        self._samples.add(rows)
+        self._samples.show(rows)
         found = self.tell()
         found += self._settling.look(self._samples, self._samples.end)
-        found += [said for one in self._verdicts for said in one.look(self._samples, rows.first_tick)]
+        changes = self._changes(rows)
+        found += [said for one in self._verdicts for said in one.look(self._samples, changes)]
+        self._samples.hide()
         return sorted(found, key=lambda said: (said.tick, KINDS.index(said.kind)))
+
+    def _changes(self, rows: Rows) -> dict[str, list[tuple[int, int]]]:
+        """Return tick and new value of each change of the winners and truths."""
+        last, found = self._last, np.zeros((64, 2), dtype=np.int64)
+        while True:
+            self._last = last.copy()
+            count = follow(rows.outputs, rows.taps, self._columns, self._last, found)
+            if count <= len(found):
+                break
+            found = np.zeros((count, 2), dtype=np.int64)
+        changes: dict[str, list[tuple[int, int]]] = {}
+        for column, row in found[:count].tolist():
+            changes.setdefault(self._name_of[column], []).append(
+                (rows.first_tick + row, int(rows.outputs[row, column]))
+            )
+        return changes
 
     def tell(self) -> list[Sentence]:
         """Return what is to be told of the entries heard: a trip at once, anything else when its tick has run."""
@@ -95,10 +128,10 @@ class Narrator:
         twin = copy.copy(self)
         twin._verdicts = [copy.copy(one) for one in self._verdicts]
         twin._doings, twin._settling = copy.copy(self._doings), copy.copy(self._settling)
-        twin._samples = copy.copy(self._samples)
+        twin._samples = self._samples.copy()
         return twin
 
     @property
     def signals(self) -> list[str]:
         """The signals it reads."""
-        return self._samples.names
+        return self._signals

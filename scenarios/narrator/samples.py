@@ -1,68 +1,91 @@
-"""The last samples of a few signals, as a recording would have them."""
+"""The samples a narrator looks at: all signals of the rows it is shown, and of a few the last ticks before them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from core.block import FloatArray
+from core.block import FloatArray, IntArray
 from core.board.rows import Rows
+from core.kernel import kernel
+
+PLACES = 128
+"""Ticks before the rows that are kept."""
 
 
-class LastSamples:
-    """Keeps the rows of one look and as many before them as sentences speak of.
+@kernel
+def _keep(ring: Any, outputs: FloatArray, taps: FloatArray, columns: IntArray, first: int) -> None:
+    """Write the last rows of some columns into a ring, in single precision."""
+    places, width = ring.shape[1], outputs.shape[1]
+    for i in range(max(0, len(outputs) - places), len(outputs)):
+        for k in range(len(columns)):
+            value = outputs[i, columns[k]] if columns[k] < width else taps[i, columns[k] - width]
+            ring[k, (first + i) % places] = value
 
-    Values are rounded to single precision, as recordings and the history keep them, so that a replay tells the same.
+
+class Samples:
+    """Gives signals by their names, rounded to single precision as recordings and the history keep them.
+
+    So a replay tells the same as the bench did.
 
     Parameters
     ----------
-    names : sequence of str
-        The signals.
-    columns : sequence of int
-        Their columns in the rows, outputs first.
+    columns : dict
+        Column of each signal in the rows, outputs first.
     outputs : int
-        How many of the columns of a board are outputs.
-    before : int
-        Rows kept before those of the last look.
+        How many of the columns are outputs.
+    kept : sequence of str
+        The signals that are kept beyond the rows.
     """
 
-    def __init__(self, names: Sequence[str], columns: Sequence[int], outputs: int, before: int) -> None:
-        order = sorted(range(len(names)), key=lambda at: columns[at])
-        self._place = {names[at]: place for place, at in enumerate(order)}
-        chosen = np.array([columns[at] for at in order], dtype=np.int64)
-        self._outputs, self._taps = chosen[chosen < outputs], chosen[chosen >= outputs] - outputs
-        self._before = before
-        self._kept = np.empty((0, len(names)), np.float32)
+    def __init__(self, columns: dict[str, int], outputs: int, kept: Sequence[str]) -> None:
+        self._columns, self._outputs = columns, outputs
+        self._places = {name: place for place, name in enumerate(kept)}
+        self._kept = np.array([columns[name] for name in kept], dtype=np.int64)
+        self._ring = np.zeros((len(kept), PLACES), np.float32)
+        self._rows: Rows | None = None
         self.began: int | None = None
-        """The first tick that was ever added."""
-        self.end = 0
-        """The tick behind the last row."""
+        """The first tick that was ever shown."""
+        self.first = self.end = 0
+        """The ticks of the rows of now: from the first to before the end."""
 
     def __contains__(self, name: object) -> bool:
-        return name in self._place
+        return name in self._columns
 
-    @property
-    def names(self) -> list[str]:
-        """The signals that are kept."""
-        return list(self._place)
+    def show(self, rows: Rows) -> None:
+        """Look at rows that follow the last."""
+        self._rows, self.first, self.end = rows, rows.first_tick, rows.first_tick + rows.count
+        self.began = self.first if self.began is None else self.began
 
-    def add(self, rows: Rows) -> None:
-        """Add rows that follow the last."""
-        if self.began is None:
-            self.began = rows.first_tick
-        new = np.hstack([rows.outputs[:, self._outputs], rows.taps[:, self._taps]]).astype(np.float32)
-        self._kept = np.vstack([self._kept[-self._before :], new])
-        self.end = rows.first_tick + rows.count
+    def hide(self) -> None:
+        """Let the rows go; the last of them are kept."""
+        if (rows := self._rows) is not None:
+            _keep(self._ring, rows.outputs, rows.taps, self._kept, rows.first_tick)
+        self._rows, self.first = None, self.end
+
+    def copy(self) -> Samples:
+        """Return what goes on from here by itself."""
+        twin = Samples(self._columns, self._outputs, list(self._places))
+        twin._ring, twin.began, twin.first, twin.end = self._ring.copy(), self.began, self.end, self.end
+        return twin
 
     def values(self, name: str, first: int, end: int, every: int = 1) -> FloatArray:
-        """Return a signal from a tick to before another, as far as it is kept."""
-        start = self.end - len(self._kept)
-        kept = self._kept[max(0, first - start) : max(0, end - start) : every, self._place[name]]
-        return kept.astype(np.float64)
+        """Return a signal from a tick to before another: of the rows of now, or of a kept one."""
+        parts = []
+        if first < self.first:
+            ticks = np.arange(first, min(end, self.first))
+            parts.append(self._ring[self._places[name], ticks % PLACES])
+        if end > self.first and self._rows is not None:
+            column, rows = self._columns[name], slice(max(first - self.first, 0), end - self.first)
+            is_output = column < self._outputs
+            values = self._rows.outputs[rows, column] if is_output else self._rows.taps[rows, column - self._outputs]
+            parts.append(values.astype(np.float32))
+        return np.concatenate(parts)[::every].astype(np.float64) if parts else np.empty(0)
 
     def at(self, name: str, tick: int) -> float:
-        """Return the value at a tick that is kept."""
+        """Return the value at a tick."""
         return float(self.values(name, tick, tick + 1)[0])
 
 

@@ -2,15 +2,40 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
+import numpy as np
+
+from core.block import FloatArray
+from core.kernel import kernel
 from scenarios.narrator.doings import MEASURED, MODEL, SPAN
-from scenarios.narrator.samples import LastSamples, rms
+from scenarios.narrator.samples import Samples
 from scenarios.narrator.sentence import Sentence
 from scenarios.narrator.words import figure, length, moment
 
 BAND = 0.05
 """Share of the motion of the model under which an error counts as settled."""
+COUNT, ERROR, MOTION, WAS_OVER = range(4)
+"""Samples of the block under way, the sums of its squares, and whether one was over the band."""
+
+
+@kernel
+def _settle(model: FloatArray, measured: FloatArray, sums: FloatArray, span: int, band: float) -> int:
+    """Add samples up, block by block; return how many there are to the end of the block that settles, or 0."""
+    for i in range(len(model)):
+        if sums[COUNT] == span:
+            sums[COUNT] = sums[ERROR] = sums[MOTION] = 0.0
+        error = model[i] - measured[i]
+        sums[COUNT] += 1.0
+        sums[ERROR] += error * error
+        sums[MOTION] += model[i] * model[i]
+        if sums[COUNT] == span:
+            if sums[ERROR] > band * band * sums[MOTION]:
+                sums[WAS_OVER] = 1.0
+            elif sums[WAS_OVER] != 0.0:
+                return i + 1
+    return 0
 
 
 class Settling:
@@ -29,26 +54,25 @@ class Settling:
     def __init__(self, dt_ms: float) -> None:
         self._dt_ms = dt_ms
         self._after: tuple[int, str] | None = None
-        self._at, self._was_over = 0, False
+        self._at, self._sums = 0, np.zeros(4)
 
     def follow(self, told: Sentence) -> None:
         """Follow what comes of what was told."""
         self._after = None if told.kind == "trip" else (told.tick, "healing" if told.kind == "heal" else told.kind)
-        self._at, self._was_over = told.tick, False
+        self._at, self._sums = told.tick, np.zeros(4)
 
-    def look(self, samples: LastSamples, until: int) -> Iterator[Sentence]:
+    def look(self, samples: Samples, until: int) -> Iterator[Sentence]:
         """Tell whether the error came back before a tick."""
-        if MODEL not in samples or MEASURED not in samples:
+        if self._after is None or self._at >= until or MODEL not in samples or MEASURED not in samples:
             return
-        while self._after is not None and self._at + SPAN <= until:
-            first, self._at = self._at, self._at + SPAN
-            model = samples.values(MODEL, first, self._at)
-            error, limit = rms(model - samples.values(MEASURED, first, self._at)), BAND * rms(model)
-            if error > limit:
-                self._was_over = True
-            elif self._was_over and error <= limit:
-                yield self._sentence(error, limit)
-                self._after = None
+        model, measured = (samples.values(name, self._at, until) for name in (MODEL, MEASURED))
+        self._sums = self._sums.copy()  # a copy of this goes on alone
+        settled = _settle(model, measured, self._sums, SPAN, BAND)
+        self._at = self._at + settled if settled else until
+        if settled:
+            error, motion = (math.sqrt(self._sums[which] / SPAN) for which in (ERROR, MOTION))
+            yield self._sentence(error, BAND * motion)
+            self._after = None
 
     def _sentence(self, error: float, limit: float) -> Sentence:
         assert self._after is not None

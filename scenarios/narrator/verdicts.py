@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from core.block import FloatArray
 from core.board.spec import Section
 from core.diagnose.hypothesis import ModelList
 from core.format import format_count, format_percent
 from core.loop.score import HELD
-from scenarios.narrator.samples import LastSamples, rms
+from scenarios.narrator.samples import Samples, rms
 from scenarios.narrator.sentence import Sentence
 from scenarios.narrator.words import figure, hypothesis_words, length, moment
 
@@ -52,61 +53,64 @@ class Verdicts:
         self._winner, self._since = -1, 0
         self._truth: int | None = None
         self._changed: int | None = None
+        self._missed: list[list[FloatArray]] = []
 
-    @property
-    def signals(self) -> list[str]:
-        """The signals it looks at, where there are such."""
-        ports = ("probability", "residual", "nis")
-        each = [f"{self._name}.{port}.{model}" for port in ports for model in self._models]
-        return [f"{self._name}.winner", f"{self._name}.truth", *each]
-
-    def look(self, samples: LastSamples, first: int) -> Iterator[Sentence]:
-        """Tell the verdicts from a tick on."""
-        if first == 0:
+    def look(self, samples: Samples, changes: Mapping[str, list[tuple[int, int]]]) -> Iterator[Sentence]:
+        """Tell the verdicts in the rows of now, by tick and value of each change of winner and truth."""
+        if samples.first == 0:
             self._held = self._nominal
-        truths = self._truths(samples, first)
-        winners = samples.values(f"{self._name}.winner", first, samples.end).astype(np.int64)
-        turns = np.flatnonzero(np.diff(winners, prepend=self._winner)).tolist()
+        turns = changes.get(f"{self._name}.winner", [])
+        truths = [(-1, self._truth, self._changed), *self._truths(samples, changes.get(f"{self._name}.truth", []))]
         need = (TURNS - 1) * self._every
-        for at, stop in zip([-1, *turns], [*turns, len(winners)], strict=True):
+        for at in range(-1, len(turns)):
             if at >= 0:
-                self._winner, self._since = int(winners[at]), first + at
-            tick = self._since + need
-            if self._winner in (-1, self._held) or not first <= tick < first + stop:
+                self._since, self._winner = turns[at]
+                self._missed = []
+            if self._winner in (-1, self._held):
+                continue
+            last = self._since + need
+            stop = min(turns[at + 1][0] if at + 1 < len(turns) else samples.end, last + 1)
+            self._gather(samples, stop)
+            if not samples.first <= last < stop:
                 continue
             old, self._held = self._held, self._winner
             if old is not None:
-                truth = next((one for one in reversed(truths) if one[0] <= tick), None)
-                yield self._sentence(samples, tick, old, truth)
+                yield self._sentence(samples, last, old, next(one for one in reversed(truths) if one[0] <= last))
 
-    def _truths(self, samples: LastSamples, first: int) -> list[tuple[int, int, int | None]]:
-        """Return tick and value of the truth at the beginning and where it changes, and when it had changed last."""
-        name = f"{self._name}.truth"
-        if name not in samples:
-            return []
-        values = samples.values(name, first, samples.end).astype(np.int64)
-        before = int(values[0]) if self._truth is None else self._truth
-        found = [(first - 1, before, self._changed)]
-        for at in np.flatnonzero(np.diff(values, prepend=before)).tolist():
-            self._changed = first + at
-            found.append((first + at, int(values[at]), self._changed))
-        self._truth = int(values[-1])
-        return found
+    def _truths(self, samples: Samples, changes: list[tuple[int, int]]) -> Iterator[tuple[int, int, int | None]]:
+        """Return tick and value of each change of the truth, and when it changed last; the beginning is no change."""
+        for tick, value in changes:
+            self._changed = tick if tick != samples.began else None
+            self._truth = value
+            yield tick, value, self._changed
 
-    def _sentence(
-        self, samples: LastSamples, tick: int, old: int, truth: tuple[int, int, int | None] | None
-    ) -> Sentence:
+    def _gather(self, samples: Samples, stop: int) -> None:
+        """Gather by how much the model misses that wins now, and the one whose verdict holds."""
+        first = samples.first + (self._since - samples.first) % self._every
+        first = max(first, self._since)
+        port = self._port(samples)
+        if port and self._held is not None:
+            names = [f"{self._name}.{port}.{self._models[model]}" for model in (self._winner, self._held)]
+            self._missed = [*self._missed, [samples.values(name, first, stop, self._every) for name in names]]
+
+    def _port(self, samples: Samples) -> str:
+        """Return the signal by which models miss: residuals, or else normalised ones."""
+        ports = ("residual", "nis")
+        return next((port for port in ports if f"{self._name}.{port}.{self._models[0]}" in samples), "")
+
+    def _sentence(self, samples: Samples, tick: int, old: int, truth: tuple[int, int | None, int | None]) -> Sentence:
         """Say a verdict."""
         new, numbers = self._winner, {"time_ms": tick * self._dt_ms}
         probability = samples.at(f"{self._name}.probability.{self._models[new]}", tick)
         numbers["probability"] = probability
         signals = [f"{self._name}.probability.{self._models[at]}" for at in (new, old)]
-        missed = self._missed(samples, tick, new, old, numbers, signals)
+        missed = self._misses(samples, new, old, numbers, signals)
         turned = f"{self._whose} {self._words[new]} ({format_percent(probability)})"
         text = f"At {moment(tick * self._dt_ms)} {missed}{turned}."
-        is_false, start = truth is not None and truth[1] != new, self._since
-        if truth is not None:
-            text, start = f"{text} {self._judged(new, truth, numbers)}", min(start, truth[2] or start)
+        _, true, changed = truth
+        is_false, start = true is not None and true != new, self._since
+        if true is not None:
+            text, start = f"{text} {self._judged(new, true, changed, numbers)}", min(start, changed or start)
         return Sentence(
             tick=tick,
             kind="false_verdict" if is_false else "verdict",
@@ -116,29 +120,25 @@ class Verdicts:
             numbers=numbers,
         )
 
-    def _missed(
-        self, samples: LastSamples, tick: int, new: int, old: int, numbers: dict[str, float], signals: list[str]
-    ) -> str:
+    def _misses(self, samples: Samples, new: int, old: int, numbers: dict[str, float], signals: list[str]) -> str:
         """Say by how much the model misses that wins, and the one that won before."""
-        port = next((port for port in ("residual", "nis") if f"{self._name}.{port}.{self._models[new]}" in samples), "")
+        port, said = self._port(samples), []
         if not port:
             return ""
-        first, said = tick - (TURNS - 1) * self._every, []
-        for which, at in (("new", new), ("old", old)):
-            name = f"{self._name}.{port}.{self._models[at]}"
-            values = samples.values(name, first, tick + 1, self._every)
-            signals.append(name)
+        for which, model, parts in zip(("new", "old"), (new, old), zip(*self._missed, strict=True), strict=True):
+            values = np.concatenate(parts)
+            signals.append(f"{self._name}.{port}.{self._models[model]}")
             if port == "residual":
                 size = numbers[f"{which}_um"] = rms(values)
                 said.append(figure(size, "um"))
             else:
                 size = numbers[f"{which}_normalised"] = float(np.sqrt(np.mean(values)))
                 said.append(f"{figure(size, '')} times what noise explains")
-        return f"the {self._words[new]} model misses by {said[0]}, the {self._words[old]} one by {said[1]}: "
+        words = f"the {self._words[new]} model misses the measurement by {said[0]}"
+        return f"{words}, the {self._words[old]} one by {said[1]}: "
 
-    def _judged(self, new: int, truth: tuple[int, int, int | None], numbers: dict[str, float]) -> str:
+    def _judged(self, new: int, true: int, changed: int | None, numbers: dict[str, float]) -> str:
         """Say whether a verdict is right, and how long after the change."""
-        _, true, changed = truth
         numbers["truth"] = float(true)
         if true != new:
             return f"That is wrong: {f'the truth is {self._words[true]}' if true >= 0 else 'no lane has the truth'}."

@@ -47,7 +47,7 @@ def narrated(tape: Tape, path: Path, events: list[dict[str, Any]]) -> list[Sente
     events : list of dict
         Its events.
     """
-    narrator = Narrator(tape.spec, list(tape.signals), tape.signals.outputs)
+    narrator = Narrator(tape.spec, tape.recorded, tape.signals.outputs)
     for number, event in enumerate(events, 1):
         narrator.hear(LogEntry(seq=number, **{name: event.get(name) for name in RECORDED}))
     own, found = Tape(tape.recorded_board, path, narrator.signals), []

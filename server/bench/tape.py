@@ -16,7 +16,7 @@ from core.board.pending import Queue
 from core.board.rows import Rows
 from core.board.spec import Section, Spec
 from core.errors import InputError
-from core.signals import SignalTable
+from core.signals import Signal, SignalTable
 from server.store.recording import first_tick
 
 REFUSAL = "this bench plays a recording"
@@ -55,6 +55,11 @@ class Tape:
         self.trip = None
         self.pending = Queue()
         self.faults: dict[str, Any] = {}
+
+    @property
+    def recorded(self) -> list[Signal]:
+        """The signals of the board that were recorded."""
+        return [self._board.signals[at] for at, _ in self._columns]
 
     @property
     def recorded_board(self) -> Board:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from core.board.commands import parse_command
 from core.format import format_percent, format_short, format_si
 from scenarios.library import get
 from scenarios.narrator.narrator import Narrator
@@ -131,7 +132,7 @@ def test_the_numbers_of_a_verdict_follow_from_the_trace(seed: int) -> None:
         assert said.kind == ("verdict" if truth[said.tick] == new else "false_verdict")
         assert said.span == (min(start, changes[-1]) if changes else start, said.tick)
         for which in ("new_um", "old_um"):
-            assert f"misses by {format_si(numbers['new_um'], 'um', 3)}" in said.text
+            assert f"misses the measurement by {format_si(numbers['new_um'], 'um', 3)}" in said.text
             assert format_si(numbers[which], "um", 3) in said.text
         assert format_percent(numbers["probability"]) in said.text
 
@@ -198,10 +199,25 @@ def test_a_copy_goes_on_alone(seed: int) -> None:
     narrator = Narrator(board.spec, list(board.signals), board.signals.outputs)
     said: list[Sentence] = []
     while (rows := board.advance(min(307, (scenario.samples or 0) - board.tick))).count:
-        said += narrator.follow(board.log, rows)
-        narrator.copy().look(rows)  # would disturb the rest if it shared anything
-        narrator = narrator.copy()
+        twin = narrator.copy()
+        first = twin.follow(board.log, rows)  # would disturb the other if they shared anything
+        assert narrator.follow(board.log, rows) == first
+        said += first
     assert said == result(seed).narration
+
+
+def test_what_is_done_while_time_stands_is_told_when_its_tick_has_run_and_a_trip_at_once() -> None:
+    board = build(get("first-look"))
+    narrator = Narrator(board.spec, list(board.signals), board.signals.outputs)
+    narrator.follow(board.log, board.advance(300))
+    board.apply(parse_command({"fault": "added_mass", "severity": 0.05}))
+    board.apply(parse_command({"switch": "mrac"}))
+    assert narrator.follow(board.log, board.advance(0)) == []
+    said = narrator.follow(board.log, board.advance(1))
+    assert [(one.tick, one.kind) for one in said] == [(300, "switch"), (300, "fault")]
+    board.apply(parse_command({"make_safe": "the driver has gone"}))
+    (trip,) = narrator.follow(board.log, board.advance(0))
+    assert (trip.tick, trip.kind) == (301, "trip") and "the driver has gone" in trip.text
 
 
 @pytest.mark.parametrize("scenario", ["ch5-seven-step", "first-look"])

@@ -4,6 +4,7 @@ import { setUnits } from "../api/use-catalog";
 import { type Connection, mergeStatus, useBench } from "./bench-store";
 import { DrawLoop } from "./draw-loop";
 import { appendEvent } from "./event-log";
+import { NOTHING_SAID, narrate } from "./narration";
 import { StreamClient } from "./stream-client";
 import type { ServerMessage } from "./wire";
 
@@ -41,7 +42,7 @@ function open(id: string): void {
   client.head = { tick: 0, dtMs: 0, running: false };
   known = { bench: undefined, scores: {} };
   tell();
-  useBench.setState({ events: [], droppedFrames: 0, notice: undefined });
+  useBench.setState({ events: [], narration: NOTHING_SAID, droppedFrames: 0, notice: undefined });
   patch({ phase: "connecting", reason: undefined, retryAt: undefined, staleSince: undefined });
   const url = new URL(`./api/v1/benches/${encodeURIComponent(id)}/stream`, document.baseURI);
   client.connect(url.href.replace(/^http/, "ws"));
@@ -81,6 +82,9 @@ function receive(message: ServerMessage): void {
     case "events":
       if (pendingEvents.length === 0) setTimeout(flushEvents, 30);
       pendingEvents.push(...message.events);
+      return;
+    case "narration":
+      useBench.setState((s) => ({ narration: narrate(s.narration, message) }));
       return;
     case "notice":
       if (message.code === "ask_me") useBench.setState((s) => ({ called: s.called + 1 }));
