@@ -1,5 +1,5 @@
 import { expect, test } from "./lab";
-import { expectClean, expectReadable, SCHEMES, showOn } from "./screens";
+import { expectClean, expectFits, expectReadable, SCHEMES, SCREENS, showOn } from "./screens";
 
 /** What the seven steps say after their faults begin. */
 const STEPS = [
@@ -76,12 +76,19 @@ test("a replay has the sentences as its captions, wherever it is", async ({ page
   await server.ask("POST", `/benches/${id}/recordings/${made.id}/stop`);
   const replay = await server.ask<{ id: string }>("POST", `/recordings/${made.id}/replay`, { paused: true });
   await page.request.get(server.url);
-  await page.goto(`${server.origin}/?bench=${replay.id}&layout=lab`);
+  await page.goto(`${server.origin}/?bench=${replay.id}&layout=lecture`);
   const caption = page.getByRole("region", { name: "Narrator" });
   await expect(caption).toContainText("Each lane of Diagnosis");
   const go = (tick: number) => server.ask("POST", `/benches/${replay.id}/commands`, { kind: "seek", tick });
   await go(3100);
   await expect(caption).toContainText("belief turns to the lane mass +10\u00a0%", { timeout: 10_000 });
+  await expectFits(page, "a verdict as a caption", "section[aria-label='Narrator']");
+  if (process.env.SHOTS)
+    for (const screen of SCREENS) {
+      await showOn(page, screen);
+      await page.screenshot({ path: `${process.env.SHOTS}/verdict-${screen.width}.png` });
+    }
+  await showOn(page, SCREENS[0]);
   await go(2050);
   await expect(caption).toContainText("belief turns to the lane mass +5\u00a0%", { timeout: 10_000 });
   await go(100);

@@ -35,8 +35,8 @@ export function Announcer() {
   }, [event, narrates]);
 
   useEffect(() => {
-    if (caption && narrates)
-      announce(caption.more ? `${moreText(caption.more)} ${caption.sentence.text}` : caption.sentence.text);
+    if (!caption || !narrates || caption.sentence.kind === "trip") return; // a trip is an alarm already
+    announce(caption.more ? `${moreText(caption.more)} ${caption.sentence.text}` : caption.sentence.text);
   }, [caption, narrates]);
 
   useEffect(() => {
