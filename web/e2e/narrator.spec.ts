@@ -20,9 +20,9 @@ test("the seven steps are told, shown on the scopes, spoken, and remembered to b
   });
   await page.request.get(server.url);
   await page.goto(`${server.origin}/?bench=${id}&layout=lecture`);
-  const caption = page.getByRole("region", { name: "Narrator" });
+  const caption = page.getByRole("region", { name: "What happens now" });
   await expect(caption).toContainText("Each lane of Diagnosis is one guess at the device");
-  await expectClean(page, "the narrator before anything is said", "section[aria-label='Narrator']");
+  await expectClean(page, "the narrator before anything is said", "section[aria-label='What happens now']");
   await page.keyboard.press("Space");
   const spoken = page.getByRole("status").filter({ hasText: "belief turns to the lane" });
   await expect(spoken.first()).toBeAttached({ timeout: 60_000 });
@@ -38,10 +38,10 @@ test("the seven steps are told, shown on the scopes, spoken, and remembered to b
   ] as const) {
     await showOn(page, { width, height });
     for (const scheme of SCHEMES) {
-      await expectReadable(page, `the narrator, ${width} wide`, scheme, "section[aria-label='Narrator']");
+      await expectReadable(page, `the narrator, ${width} wide`, scheme, "section[aria-label='What happens now']");
       if (process.env.SHOTS) await page.screenshot({ path: `${process.env.SHOTS}/caption-${width}-${scheme}.png` });
     }
-    await expectClean(page, `the narrator, ${width} wide`, "section[aria-label='Narrator']");
+    await expectClean(page, `the narrator, ${width} wide`, "section[aria-label='What happens now']");
   }
   await showOn(page, { width: 1440, height: 900 });
 
@@ -77,12 +77,12 @@ test("a replay has the sentences as its captions, wherever it is", async ({ page
   const replay = await server.ask<{ id: string }>("POST", `/recordings/${made.id}/replay`, { paused: true });
   await page.request.get(server.url);
   await page.goto(`${server.origin}/?bench=${replay.id}&layout=lecture`);
-  const caption = page.getByRole("region", { name: "Narrator" });
+  const caption = page.getByRole("region", { name: "What happens now" });
   await expect(caption).toContainText("Each lane of Diagnosis");
   const go = (tick: number) => server.ask("POST", `/benches/${replay.id}/commands`, { kind: "seek", tick });
   await go(3100);
   await expect(caption).toContainText("belief turns to the lane mass +10\u00a0%", { timeout: 10_000 });
-  await expectFits(page, "a verdict as a caption", "section[aria-label='Narrator']");
+  await expectFits(page, "a verdict as a caption", "section[aria-label='What happens now']");
   if (process.env.SHOTS)
     for (const screen of SCREENS) {
       await showOn(page, screen);
@@ -93,5 +93,11 @@ test("a replay has the sentences as its captions, wherever it is", async ({ page
   await expect(caption).toContainText("belief turns to the lane mass +5\u00a0%", { timeout: 10_000 });
   await go(100);
   await expect(caption).toContainText("Each lane of Diagnosis");
+  await page.keyboard.press("3");
+  await page.getByRole("tab", { name: "Narrator" }).click();
+  const ahead = page.getByRole("button", { name: /At 60.64/ });
+  await expect(ahead).toHaveAttribute("data-ahead", "true");
+  await ahead.click();
+  await expect(caption).toContainText("a fault changes: added mass", { timeout: 10_000 });
   await server.ask("DELETE", `/recordings/${made.id}`);
 });

@@ -15,7 +15,7 @@ export function Caption() {
   if (!on || !(isWanted || replay)) return null;
   return (
     // spoken by the page's live region, not here a second time
-    <section className={styles.caption} aria-label="Narrator" data-kind={caption?.sentence.kind}>
+    <section className={styles.caption} aria-label="What happens now" data-kind={caption?.sentence.kind}>
       {caption ? (
         <button type="button" title="Show it on the scopes" onClick={() => showSentence(caption.sentence)}>
           {caption.more > 0 && <small>{moreText(caption.more)} </small>}

@@ -3,6 +3,7 @@ import { useMe } from "../api/me";
 import type { Sentence } from "../api/types";
 import { useBench } from "../stream/bench-store";
 import { jump } from "../ui/hover";
+import { send } from "./send";
 import { useVote } from "./vote";
 
 const STORED = "combbench.narrator";
@@ -26,10 +27,12 @@ export function toggleNarrator(): void {
   useNarrator.setState({ on });
 }
 
-/** Take the scopes to what a sentence speaks of. */
+/** Take the scopes to what a sentence speaks of; a replay that has not come there goes there first. */
 export function showSentence(sentence: Sentence): void {
   useNarrator.setState({ chosen: sentence });
-  jump.to({ tick: sentence.tick });
+  const { bench } = useBench.getState();
+  if (bench?.replay_of && sentence.tick > bench.tick) void send({ kind: "seek", tick: sentence.span[0] });
+  else jump.to({ tick: sentence.tick });
 }
 
 /** Whether a vote is open: what happens is its answer. */
