@@ -22,6 +22,8 @@ from core.board.parse import changed
 from core.errors import InputError
 from core.signals import Signal
 from scenarios.measure.metrics import device_metrics, measure
+from scenarios.narrator.narrator import Narrator
+from scenarios.narrator.sentence import Sentence
 from scenarios.samples import Samples, Trace
 from scenarios.schema import Scenario
 from scenarios.signals import PICTURED, figure_signals, traced
@@ -43,6 +45,7 @@ class Result:
     metrics: dict[str, float]
     warnings: list[str]
     trace: dict[str, FloatArray] = field(repr=False)
+    narration: list[Sentence] = field(default_factory=list, repr=False)
 
     @property
     def trip(self) -> Trip | None:
@@ -157,6 +160,7 @@ def run(
     law: Law | None = None,
     diagnosers: Mapping[str, Conclusion] = NOTHING,
     identifiers: Mapping[str, Conclusion] = NOTHING,
+    narrate: bool = False,
 ) -> Result:
     """Run a scenario from start to end, or until the board trips for good.
 
@@ -187,6 +191,8 @@ def run(
         Callables by id, in place of those of the scenario or beside them: called with each
         `core.board.outside.Observation`, they answer with the probability of each hypothesis, or with mass, stiffness
         and damping over nominal.
+    narrate : bool
+        Let the narrator say what happens.
 
     Raises
     ------
@@ -214,10 +220,14 @@ def run(
     split = board.signals.outputs
     outputs = np.array([one.index for one in kept if one.kind == "output"], dtype=np.int64)
     inner = np.array([one.index - split for one in kept if one.kind == "tap"], dtype=np.int64)
+    narrator = Narrator(board.spec, list(board.signals), split) if narrate else None
+    narration: list[Sentence] = []
     began = time.perf_counter()
     with Samples(len(kept), samples) as stored:
         while board.tick < samples:
             rows = board.advance(samples - board.tick)
+            if narrator is not None:
+                narration += narrator.follow(board.log, rows)
             if rows.count == 0:
                 break  # tripped, and no waiting command would reset it
             stored.add(np.hstack([rows.outputs[:, outputs], rows.taps[:, inner]]))
@@ -242,6 +252,7 @@ def run(
         # a warning that came and went is listed once
         list(dict.fromkeys(entry.text for entry in board.log if entry.kind == "warning")),
         columns,
+        narration,
     )
 
 

@@ -82,6 +82,7 @@ def run(
             "those of sensors that are never in use as well. No figure and no digest depends on it.",
         ),
     ] = False,
+    narrate: Annotated[bool, typer.Option("--narrate", help="Also say in plain sentences what happens.")] = False,
     controller_process: Annotated[
         str | None,
         typer.Option(metavar="COMMAND", help="A program that drives, asked over a pipe (docs/other-languages.md)."),
@@ -101,6 +102,8 @@ def run(
         raise InputError("traces are written for one seed; use --seed", "--out")
     if seeds is not None and everything:
         raise InputError("is for the trace of one seed; use --seed", "--all")
+    if seeds is not None and narrate:
+        raise InputError("tells of one seed; use --seed", "--narrate")
     if seeds is not None and controller_process is not None:
         raise InputError("drives one run; use --seed", "--controller-process")
     try:
@@ -111,17 +114,22 @@ def run(
             if seeds is not None:
                 summary = run_seeds(chosen, parse_seeds(seeds))
             elif out is None:
-                summary = run_scenario(chosen, seed, figures_only=True, everything=everything, law=law).summary()
+                result = run_scenario(chosen, seed, figures_only=True, everything=everything, law=law, narrate=narrate)
+                summary = result.summary()
             else:
                 stem = out / f"{chosen.id}-seed{chosen.spec.seed if seed is None else seed}"
                 with TraceFile(stem.with_suffix(".parquet"), chosen.document) as trace:
-                    result = run_scenario(chosen, seed, taps=True, everything=everything, trace=trace, law=law)
+                    result = run_scenario(
+                        chosen, seed, taps=True, everything=everything, trace=trace, law=law, narrate=True
+                    )
                     if law is None:
                         summary = beside(result)
                         keep(result, summary, [result.seed], stem)
                     else:  # no report and no script: they would tell of the scenario's own controller
                         summary = result.summary()
                         write_json(stem.with_suffix(".json"), summary)
+            if narrate:
+                summary["narration"] = [said.model_dump() for said in result.narration]
     except OSError as error:
         folder, field = (temporary_folder(), "TMPDIR") if out is None else (out, "--out")
         raise InputError(f"cannot write to {folder}: {error.strerror}", field) from None

@@ -102,6 +102,16 @@ class Track:
         """The first tick that can be computed again."""
         return self._marks[0].tick
 
+    @property
+    def ticks(self) -> set[int]:
+        """Where it has checkpoints."""
+        return {mark.tick for mark in self._marks}
+
+    @property
+    def last_tick(self) -> int:
+        """The tick of the newest checkpoint."""
+        return self._marks[-1].tick
+
     def follow(self, board: Board) -> None:
         """Take a checkpoint if one is due; called after the board has advanced."""
         if board.tick >= self._due:

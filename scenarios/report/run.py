@@ -56,6 +56,8 @@ def run_report(result: Result, summary: dict[str, Any]) -> str:
         expectations=[_expectation(entry) for entry in summary["expectations"]],
         charts=_charts(result),
         verdicts=_verdicts(result),
+        narration=[said.text for said in result.narration[:MOST_EVENTS]],
+        told=len(result.narration),
         figures=[_figure(name, value, spread) for name, value in summary["metrics"].items()],
         has_spread=bool(spread),
         events=[

@@ -24,6 +24,7 @@ def run_text(summary: dict[str, Any]) -> str:
     if trip := summary["trip"]:
         lines.append(f"  tripped  at {format_in(trip['time_ms'], 'ms', 3)}: {trip['reason']}")
     lines += [f"  warning  {text}" for text in summary["warnings"]]
+    lines += [line for said in summary.get("narration", ()) for line in _wrapped(said["text"], 2)]
     for name, value in summary["metrics"].items():
         spread = summary.get("metrics_std", {}).get(name)
         after = f" ± {format_short(spread, '', 2)}" if spread else ""

@@ -109,6 +109,8 @@ def forked(session: Session, snapshot_id: str | None, maker: Maker) -> Session:
         twin.track = track.until(board)
         if rows is not None:
             twin.history.append(rows)
+    if moment.told is not None:
+        twin.narration.go_to(moment.told)
     twin.note("api", "forked", f"forked from bench {session.id}")
     twin.refresh_status()
     return twin

@@ -8,10 +8,12 @@ from typing import Any, Protocol
 from core.board.commands import Heal, Set, Switch, Trip
 from core.board.document import Document
 from core.board.history import History
+from core.board.rows import Rows
 from core.errors import unknown
 from core.signals import Signal
 from server.bench.blind import ACTOR, MAY_SET, Blind
 from server.bench.events import Event, EventLog
+from server.bench.narration import Narration
 from server.bench.portrait import ShownBench, bench_of, document_now
 from server.bench.status import Bench, BenchStatus
 from server.people.person import Person
@@ -99,6 +101,11 @@ class Hiding:
         self._bench.note(actor, "revealed", "what was hidden was shown")
         self._bench.refresh_status()
 
+    def look(self, rows: Rows) -> None:
+        """Let the narrator of the view see the signals of some rows that people may see."""
+        if self.view is not None:
+            self.view.narration.look(rows)
+
     def hear(self, event: Event) -> bool:
         """Put an event of the bench into the log of the view, if it may go there; return whether a fault is hidden."""
         if self.view is not None:
@@ -120,6 +127,8 @@ class BlindView:
     def __init__(self, bench: HidingBench, blind: Blind) -> None:
         self._bench, self.blind = bench, blind
         self.events = EventLog(lambda _event: None)
+        signals = bench.board.signals
+        self.narration = Narration(bench.board.spec, self.signals, signals.outputs)
         self._known: tuple[BenchStatus, int] | None = None
         self._status: BenchStatus | None = None
 
@@ -207,7 +216,8 @@ class BlindView:
         return next(one for one in reversed(self.events.after(0)[1]) if one.at == event.at)
 
     def _keep(self, event: Event, **told: Any) -> None:
-        self.events.keep(tick=event.tick, actor=event.actor, kind=event.kind, at=event.at, **told)
+        self.narration.hear(self.events.keep(tick=event.tick, actor=event.actor, kind=event.kind, at=event.at, **told))
+        self.narration.tell()
 
     def _told(self, whole: BenchStatus) -> BenchStatus:
         """Return the parts of a status that people may see."""

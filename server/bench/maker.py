@@ -9,7 +9,7 @@ from core.board.board import Board
 from core.board.history import History
 from scenarios.schema import Scenario
 from server.bench.commands import MAX_SCALE, MIN_SCALE
-from server.bench.replay import Replay, played
+from server.bench.replay import Replay, narrated, played
 from server.bench.session import STUDENT_TRACK_BYTES, Session
 from server.bench.tick_source import TickSource
 from server.bench.timeline import TRACK_BYTES
@@ -59,7 +59,8 @@ class Maker:
         scenario, tape, recorded = played(recording, path)
         pace = min(max(recorded * speed, MIN_SCALE), MAX_SCALE)
         kept = self._kept(tape, self._settings.history_mb, 0)
-        session = Replay(recording, scenario, tape, pace, kept, self._metrics, self._clock)
+        said = narrated(tape, path, recording.events or [])
+        session = Replay(recording, scenario, tape, pace, kept, self._metrics, self._clock, said)
         session.recorded_scale = recorded
         return session
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from core.board.board import Checkpoint
 from core.board.rows import Rows
 from scenarios.schema import Scenario
+from server.bench.narration import Told
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,8 @@ class Moment:
         The ticks before it, for when the history has them no more.
     last_event : int
         Number of the last event before it.
+    told : Told, optional
+        What the narrator had said by then.
     """
 
     scenario: Scenario
@@ -33,6 +36,7 @@ class Moment:
     branch: int
     past: Rows | None = None
     last_event: int = 0
+    told: Told | None = None
 
 
 class Branches:

@@ -11,6 +11,7 @@ from core.errors import InputError
 from scenarios.schema import Scenario
 from server.bench.events import Event
 from server.bench.maker import Maker
+from server.bench.narration import Told
 from server.bench.session import Session
 from server.bench.status import Origin
 
@@ -29,6 +30,8 @@ class Past:
         The track of the bench, not followed any further.
     events : list of Event
         What has happened on the bench, also after the moment.
+    told : Told
+        What the narrator had said where the way begins.
     time_scale : float or None
         Its pace.
     origin : Origin
@@ -39,6 +42,7 @@ class Past:
     passage: Passage
     track: Track
     events: list[Event]
+    told: Told
     time_scale: float | None
     origin: Origin
 
@@ -68,11 +72,13 @@ class Past:
         now = session.board.tick
         if tick > now:
             raise InputError(f"tick {tick} has not come yet, the bench is at {now}", "tick")
+        passage = track.to(tick, window_ticks, is_before=is_before)
         return cls(
             scenario=session.scenario,
-            passage=track.to(tick, window_ticks, is_before=is_before),
+            passage=passage,
             track=track.copy(),
             events=session.events.after(0)[1],
+            told=session.narration.told_at(passage.checkpoint.tick),
             time_scale=session.pacer.scale,
             origin=Origin(bench=session.id, tick=tick, window_ticks=window_ticks),
         )
@@ -81,8 +87,11 @@ class Past:
         """Compute the moment again, and return a bench that is there and can go on."""
         board = Board.restore(self.passage.checkpoint)
         session = maker.around(self.scenario, board, self.time_scale)
+        session.narration.go_to(self.told)
         for rows in self.passage.walk(board):
             session.history.append(rows)
+            session.narration.follow(board.log, rows)
+        session.narration.follow(board.log)
         board.log = Log()  # the log of the bench has it all
         session.events.go_on(self.events)
         session.taken_over = session.events.last

@@ -6,16 +6,22 @@ import json
 from collections.abc import Callable
 from concurrent.futures import Future
 from pathlib import Path
+from typing import Any
 
 import pyarrow.parquet as pq
 
+from core.board.log import LogEntry
+from core.board.rows import Rows
 from core.errors import InputError
 from core.own.admission import kept
+from scenarios.narrator.narrator import Narrator
+from scenarios.narrator.sentence import Sentence
 from scenarios.run import build
 from scenarios.schema import Scenario
 from server.bench.commands import DEFAULT_SCALE, Loop, RunsTime, Seek, Start
 from server.bench.events import Event
 from server.bench.live_bench import LiveBench
+from server.bench.narration import Narration
 from server.bench.running import Running
 from server.bench.session import Session
 from server.bench.tape import Tape
@@ -23,8 +29,31 @@ from server.errors import ApiError
 from server.metrics import Metrics
 from server.store.recordings import RecordingDetail
 
+RECORDED = ("tick", "actor", "kind", "text", "command", "old", "new")
+"""Fields of an event that a recording has."""
 LEAST_LOOP = 100
 """Ticks of the shortest span that can be looped."""
+
+
+def narrated(tape: Tape, path: Path, events: list[dict[str, Any]]) -> list[Sentence]:
+    """Return what the narrator says of a recording, made of its samples and its events.
+
+    Parameters
+    ----------
+    tape : Tape
+        The recording.
+    path : Path
+        Its file.
+    events : list of dict
+        Its events.
+    """
+    narrator = Narrator(tape.spec, tape.recorded, tape.signals.outputs)
+    for number, event in enumerate(events, 1):
+        narrator.hear(LogEntry(seq=number, **{name: event.get(name) for name in RECORDED}))
+    own, found = Tape(tape.recorded_board, path, narrator.signals), []
+    while (rows := own.advance(own.chunk)).count:
+        found += narrator.look(rows)
+    return found
 
 
 def played(recording: RecordingDetail, path: Path) -> tuple[Scenario, Tape, float]:
@@ -123,6 +152,16 @@ class Playing(Running):
             super()._finish()
 
 
+class Transcript(Narration):
+    """What the narrator says of a whole recording; playing it adds nothing."""
+
+    def hear(self, event: Event) -> None:
+        """Leave it as it is."""
+
+    def look(self, rows: Rows) -> None:
+        """Leave it as it is."""
+
+
 class Replay(Session):
     """A recording in the place of a board.
 
@@ -142,6 +181,8 @@ class Replay(Session):
         Where ticks and overruns are counted.
     clock : callable
         The engine's clock.
+    sentences : list of Sentence
+        What the narrator says of it, from its beginning to its end.
     """
 
     def __init__(
@@ -153,10 +194,12 @@ class Replay(Session):
         history_ticks: int,
         metrics: Metrics,
         clock: Callable[[], float],
+        sentences: list[Sentence],
     ) -> None:
         super().__init__(scenario, tape, time_scale, history_ticks, metrics, clock)
         self.running = Playing(self, tape, time_scale, metrics, self._rewind_history)
         self.replay_of = recording.id
-        names = ("tick", "actor", "kind", "text", "command", "old", "new")
         for event in recording.events or []:
-            self.events.keep(**{name: event.get(name) for name in names})
+            self.events.keep(**{name: event.get(name) for name in RECORDED})
+        self.narration = Transcript(scenario.spec, [], 0)
+        self.narration.say(sentences)

@@ -23,6 +23,7 @@ from server.bench.changes import Changes
 from server.bench.events import Event, EventLog
 from server.bench.hiding import BlindView, Hiding
 from server.bench.moment import Moment
+from server.bench.narration import Narration
 from server.bench.pacing import Pacer
 from server.bench.portrait import bench_of, document_now, status_of
 from server.bench.recorder import Recorder
@@ -94,6 +95,8 @@ class Session(Timeline):
         self.changes, self.snapshots = Changes(self, clock), Snapshots(self)
         self.recordings, self.hiding = Recordings(self), Hiding(self)
         self._metrics = metrics
+        self.narration = Narration(board.spec, board.signals, board.signals.outputs)
+        self._remember()
         self.events = EventLog(self._happened)
         self._closed = False
         self.refresh_status()
@@ -137,6 +140,7 @@ class Session(Timeline):
         self.past_ticks, self.track_bytes = STUDENT_PAST_TICKS, STUDENT_TRACK_BYTES
         if isinstance(self.board, Board):
             self.track = Track(self.board, self.track_bytes)
+            self._remember()
         self.running.limit(most_ticks_per_s * self.dt_ms * 1e-3)
 
     def begin(self, start: bool) -> None:
@@ -166,6 +170,7 @@ class Session(Timeline):
             if len(self.board.pending) >= commands.MAX_PENDING and not isinstance(command, MakeSafe):
                 raise InputError(f"{commands.MAX_PENDING} commands wait for their moment already", code="limit")
             event = self.changes.apply(command, actor)
+            self.narration.tell()
             self.running.fast_forward.end()
             self.running.stop_if_tripped()
         self.refresh_status()
@@ -183,6 +188,7 @@ class Session(Timeline):
             raise InputError(text, "values", "make a new bench for them", "conflict")
         before = self.moment(with_past=True)
         self._begin_again(scenario, board)
+        self.narration.begin(board.spec)
         self._jumped("the bench was reset", scenario.samples)
         event = self._begun(before, actor, "reset to tick 0")
         self.running.is_started = self.is_started or before_tick is not None
@@ -196,6 +202,7 @@ class Session(Timeline):
         before = self.moment(with_past=True)
         self._begin_again(other.scenario, other.board)
         self.history, self.track, self.running.pacer = other.history, other.track, other.pacer
+        self.narration.go_to(other.narration.told())
         self._jumped(text, other.running.ends_at)
         event = self._begun(before, actor, text)
         self.running.is_started = start and self.board.trip is None
@@ -209,6 +216,7 @@ class Session(Timeline):
         assert isinstance(other.board, Board)
         self._begin_again(other.scenario, other.board)
         self.history, self.track, self.origin = other.history, other.track, other.origin
+        self.narration.go_to(other.narration.told())
         self._jumped("another moment is shown", other.scenario.samples)
         other.board.log = self.events
         event = self.look_back(actor)
@@ -240,11 +248,13 @@ class Session(Timeline):
 
     def moment(self, with_past: bool = False) -> Moment:
         """Return what the bench is now, for a jump that empties the history with the past before it."""
-        return replace(super().moment(with_past), last_event=self.events.last)
+        return replace(super().moment(with_past), last_event=self.events.last, told=self.narration.told())
 
     def go_to(self, moment: Moment) -> None:
         """Be what the bench was."""
         self._be_again(moment)
+        if moment.told is not None:
+            self.narration.go_to(moment.told)
         self.events.take_over(self.board)
         self._jumped("the bench was restored", self.scenario.samples)
 
@@ -258,9 +268,12 @@ class Session(Timeline):
         """Run ticks, as many as a slice has; keep them, record them, note what happened; return how many there were."""
         watch = self.watch if self.hiding.blind is None else None  # what holds would tell what is hidden
         rows = self._advance_slice(ticks if watch is None else watch.room(self.board.tick, ticks))
+        self.narration.look(rows)
+        self._remember()
         if rows.count:
             self._metrics.ticks.inc(rows.count)
             self.recordings.take(rows)
+            self.hiding.look(rows)
             if watch is not None:
                 watch.look(self)
         if self.board.trip is not None and self.is_started and not self._has_due():
@@ -272,6 +285,7 @@ class Session(Timeline):
         """Count an event, tell of it, and write it into the recordings under way."""
         if not self.hiding.hear(event):
             self._metrics.events.labels(event.kind).inc()
+        self.narration.hear(event)
         self.recordings.record(event)
         if self.witness is not None:
             self.witness(self, event)
@@ -280,8 +294,19 @@ class Session(Timeline):
         """Follow a jump in time to a scenario that ends at a tick: recordings end, the clock is anchored anew."""
         self.running.jumped(ends_at)
         self.recordings.close(why)
+        self._remember()
         if self.watch is not None:
             self.watch.jumped(self.board.tick)
+
+    def done_otherwise(self) -> None:
+        """Note for the past that the board has become another in a way that no command says."""
+        super().done_otherwise()
+        self._remember()
+
+    def _remember(self) -> None:
+        """Let the narrator remember this moment if the past has a checkpoint of it."""
+        if self.track is not None and self.track.last_tick == self.board.tick:
+            self.narration.remember(self.board.tick, self.track.ticks)
 
     def note(self, actor: str, kind: str, text: str, command: Document | None = None, tick: int | None = None) -> Event:
         """Add an event of the bench itself, of now unless a tick is given."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -15,7 +16,7 @@ from core.board.pending import Queue
 from core.board.rows import Rows
 from core.board.spec import Section, Spec
 from core.errors import InputError
-from core.signals import SignalTable
+from core.signals import Signal, SignalTable
 from server.store.recording import first_tick
 
 REFUSAL = "this bench plays a recording"
@@ -30,14 +31,18 @@ class Tape:
         Built from the scenario of the recording; gives its signals and blocks.
     path : Path
         The file of the recording.
+    only : collection of str, optional
+        Reads these signals alone.
     """
 
-    def __init__(self, board: Board, path: Path) -> None:
+    def __init__(self, board: Board, path: Path, only: Collection[str] | None = None) -> None:
         self._board = board
         self._file = pq.ParquetFile(path)
         recorded = set(self._file.schema_arrow.names)
         names = [signal.name for signal in board.signals]
         self._columns = [(at, name) for at, name in enumerate(names) if name in recorded]
+        if only is not None:
+            self._columns = [(at, name) for at, name in self._columns if name in only]
         if not self._columns:
             raise InputError("has no signal this version knows", "recording")
         self._width, self._outputs = len(names), board.signals.outputs
@@ -50,6 +55,11 @@ class Tape:
         self.trip = None
         self.pending = Queue()
         self.faults: dict[str, Any] = {}
+
+    @property
+    def recorded(self) -> list[Signal]:
+        """The signals of the board that were recorded."""
+        return [self._board.signals[at] for at, _ in self._columns]
 
     @property
     def recorded_board(self) -> Board:

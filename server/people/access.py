@@ -87,6 +87,7 @@ _DOORS = {
     Need.WATCH: f"""
         GET {BENCH}  *
         GET {BENCH}/events  *
+        GET {BENCH}/narration  *
         GET {BENCH}/scenario
         GET {BENCH}/digest
         GET {BENCH}/trace  *

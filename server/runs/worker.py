@@ -62,7 +62,14 @@ class Keep:
         try:
             with TraceFile(stem.with_suffix(".parquet"), scenario.document) as trace:
                 result = run(
-                    scenario, seed, taps=taps, figures_only=few, everything=everything, trace=trace, on_tick=tell
+                    scenario,
+                    seed,
+                    taps=taps,
+                    figures_only=few,
+                    everything=everything,
+                    trace=trace,
+                    on_tick=tell,
+                    narrate=True,
                 )
                 runs, told = _summary(result, others)
                 keep(result, told, [one.seed for one in runs], stem)

@@ -13,6 +13,7 @@ from collections import deque
 
 from pydantic import BaseModel
 
+from server.bench.narration import Mark
 from server.bench.session import Seen
 from server.metrics import Sent
 from server.people.person import TEACHER, Person
@@ -77,7 +78,7 @@ class Client:
         self.closing: tuple[int, str] | None = None
         self.closed = asyncio.Event()
         self._cursor = last_event
-        self._edition = 0
+        self._edition, self._said = 0, Mark()
         self._outbox: deque[bytes] = deque()
         self._wants_events = self._wants_status = self._wants_frame = False
         self._frame = self._acked = 0
@@ -160,6 +161,8 @@ class Client:
         self._outbox.clear()
         if self._wants_events:
             due += self._events()
+        said, self._said = self._news.narration(self._said)
+        due += said
         if self._wants_status:
             due += self._status()
         if self._wants_frame and self._has_room:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from server.bench.narration import Mark
 from server.bench.session import Seen
 from server.stream.line import text_message
-from server.stream.wire import Events, Notice, Status
+from server.stream.wire import Events, Narrated, Notice, Status
 
 EVENTS_AT_ONCE = 100
+MARKS_KEPT = 16
 UNKNOWN_DROPPED = '"dropped_frames":-1'
 
 
@@ -33,6 +35,7 @@ class News:
         self._texts: dict[bool, str] = {}
         self._statuses: dict[tuple[bool, int], bytes] = {}
         self._events: dict[int, tuple[list[bytes], int]] = {}
+        self._narration: dict[Mark, tuple[list[bytes], Mark]] = {}
         self._last = -1
 
     def status(self, known_edition: int, dropped: int) -> bytes:
@@ -68,6 +71,19 @@ class News:
             last = events[-1].seq if events else after
             self._events[after] = ([text_message(message.model_dump_json()) for message in messages], last)
         return self._events[after]
+
+    def narration(self, known: Mark) -> tuple[list[bytes], Mark]:
+        """Return the message with the sentences a page does not know yet, if there are any, and how far they go."""
+        now = self._session.narration.mark
+        if known == now:
+            return [], now
+        if known not in self._narration or self._narration[known][1] != now:
+            if len(self._narration) > MARKS_KEPT:
+                self._narration = {}
+            mark, after, sentences = self._session.narration.after(known)
+            message = Narrated(after=after, sentences=sentences)
+            self._narration[known] = [text_message(message.model_dump_json())], mark
+        return self._narration[known]
 
     def _text(self, with_parameters: bool) -> str:
         """Return the status without the one number that differs from page to page."""

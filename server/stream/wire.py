@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, model_validator
 
+from scenarios.narrator.sentence import Sentence
 from server.bench.commands import Command
 from server.bench.events import Event
 from server.bench.status import Bench, BenchStatus
@@ -138,6 +139,14 @@ class Events(BaseModel):
     events: list[Event]
 
 
+class Narrated(BaseModel):
+    """What the narrator says: the sentences behind the first ``after`` of the present run; any others are void."""
+
+    type: Literal["narration"] = "narration"
+    after: int
+    sentences: list[Sentence]
+
+
 class Reply(BaseModel):
     """The answer to a command."""
 
@@ -171,4 +180,4 @@ class Ping(BaseModel):
     type: Literal["ping"] = "ping"
 
 
-ServerMessage = Hello | Status | Events | Reply | ErrorMessage | Notice | Ping
+ServerMessage = Hello | Status | Events | Narrated | Reply | ErrorMessage | Notice | Ping

@@ -155,3 +155,22 @@ def test_the_past_of_a_bench_that_runs_is_shown_while_it_runs(live: Any) -> None
     time.sleep(0.2)
     assert live.get(made)["tick"] == 20_000
     assert live.get(bench)["tick"] > 30_000 and live.get(bench)["state"] == "running"
+
+
+def test_a_branch_has_been_told_and_tells_what_a_straight_run_tells(live: Any, ran: str) -> None:
+    def told(bench: str) -> list[dict[str, Any]]:
+        answer: list[dict[str, Any]] = live.http.get(f"/api/v1/benches/{bench}/narration").json()["sentences"]
+        return answer
+
+    whole = told(ran)
+    assert {"fault", "switch", "verdict"} <= {one["kind"] for one in whole}
+    places = [one["tick"] + delta for one in whole for delta in (-1, 0, 1)]
+    made = fork(live, ran, tick=9_500, window_ticks=700, paused=True).json()["id"]
+    for tick in sorted(set(places)):
+        live.command(made, "seek", tick=tick)
+        assert [one for one in told(made) if one["tick"] < tick] == [one for one in whole if one["tick"] < tick]
+        assert all(one in whole for one in told(made))
+    for tick in (9_500, 60_001):
+        branch = fork(live, ran, tick=tick, paused=True).json()["id"]
+        forward(live, branch, FAR)
+        assert told(branch) == whole

@@ -433,6 +433,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/benches/{bench_id}/narration": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Narration
+         * @description List what the narrator has said after a sentence; all of it if the bench has jumped since.
+         */
+        get: operations["list_narration_api_v1_benches__bench_id__narration_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/benches/{bench_id}/identification": {
         parameters: {
             query?: never;
@@ -5067,6 +5087,29 @@ export interface components {
             second: string;
         };
         /**
+         * NarrationList
+         * @description Sentences of the present run of a bench behind a number; those of a recording are there from its beginning.
+         */
+        NarrationList: {
+            /** Sentences */
+            sentences: components["schemas"]["Sentence"][];
+            /**
+             * After
+             * @description Number before the first of them: what the caller asked for, 0 after a jump
+             */
+            after: number;
+            /**
+             * Last
+             * @description Number of the last sentence
+             */
+            last: number;
+            /**
+             * Jumps
+             * @description How often the bench was reset or went back; what was said before a jump is void
+             */
+            jumps: number;
+        };
+        /**
          * NewBallot
          * @description The answer of a student.
          */
@@ -6310,6 +6353,44 @@ export interface components {
             kind?: "seek";
             /** Tick */
             tick: number;
+        };
+        /**
+         * Sentence
+         * @description Something that happened, in one sentence with the numbers it was made of.
+         */
+        Sentence: {
+            /**
+             * Tick
+             * @description When it could be told
+             */
+            tick: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "trip" | "switch" | "heal" | "fault" | "verdict" | "false_verdict" | "settled";
+            /** Text */
+            text: string;
+            /**
+             * Signals
+             * @description Where it shows
+             */
+            signals: string[];
+            /**
+             * Span
+             * @description First and last tick of what it speaks of
+             */
+            span: [
+                number,
+                number
+            ];
+            /**
+             * Numbers
+             * @description The figures it is made of: um, ms, ticks, shares
+             */
+            numbers: {
+                [key: string]: number;
+            };
         };
         /**
          * Set
@@ -7678,6 +7759,22 @@ export interface components {
             last_event: number;
         };
         /**
+         * Narrated
+         * @description What the narrator says: the sentences behind the first ``after`` of the present run; any others are void.
+         */
+        Narrated: {
+            /**
+             * Type
+             * @default narration
+             * @constant
+             */
+            type?: "narration";
+            /** After */
+            after: number;
+            /** Sentences */
+            sentences: components["schemas"]["Sentence"][];
+        };
+        /**
          * Notice
          * @description Something the person should know about this connection.
          */
@@ -7916,7 +8013,7 @@ export interface components {
              */
             dropped_frames: number;
         };
-        ServerMessage: components["schemas"]["Hello"] | components["schemas"]["Status"] | components["schemas"]["Events"] | components["schemas"]["Reply"] | components["schemas"]["ErrorMessage"] | components["schemas"]["Notice"] | components["schemas"]["Ping"];
+        ServerMessage: components["schemas"]["Hello"] | components["schemas"]["Status"] | components["schemas"]["Events"] | components["schemas"]["Narrated"] | components["schemas"]["Reply"] | components["schemas"]["ErrorMessage"] | components["schemas"]["Notice"] | components["schemas"]["Ping"];
         /**
          * ErrorReply
          * @description The one error shape of every answer.
@@ -8755,6 +8852,41 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Bench"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_narration_api_v1_benches__bench_id__narration_get: {
+        parameters: {
+            query?: {
+                after?: number;
+                /** @description Those of the answer before */
+                jumps?: number | null;
+            };
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NarrationList"];
                 };
             };
             /** @description Refused or failed */

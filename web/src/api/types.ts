@@ -64,6 +64,7 @@ export type ProcessSpread = Schemas["ProcessSpread"];
 export type LectureCard = Schemas["LectureCard"];
 export type Lecture = Schemas["LectureDetail"];
 export type Cue = Schemas["CueDetail"];
+export type Sentence = Schemas["Sentence"];
 export type Vote = Schemas["Vote"];
 export type NewVote = Schemas["NewVote"];
 export type OpenVote = Schemas["OpenVote"];

@@ -2,11 +2,18 @@ import { notifications } from "@mantine/notifications";
 import { useEffect } from "react";
 import { alarm, announce, useAnnouncements } from "../bench/announce";
 import { eventTone } from "../bench/flag-words";
+import { useNarrator } from "../bench/narrator";
 import { useBench } from "../stream/bench-store";
+import { moreText, useCaption } from "./use-caption";
+
+/** Events that the narrator says. */
+const SAID = new Set(["inject", "recognised"]);
 
 /** The page's live regions: faults, trips and a lost connection as alarms, findings politely. */
 export function Announcer() {
   const { polite, alarm: loud } = useAnnouncements();
+  const narrates = useNarrator((s) => s.on);
+  const caption = useCaption();
   const event = useBench((s) => s.events.at(-1));
   const blind = useBench((s) => s.blind);
   const notice = useBench((s) => s.notice);
@@ -21,10 +28,16 @@ export function Announcer() {
 
   useEffect(() => {
     if (!event) return;
+    if (narrates && SAID.has(event.kind)) return;
     const tone = eventTone(event);
     if (tone === "alarm") alarm(event.text);
     if (tone === "found") announce(event.text);
-  }, [event]);
+  }, [event, narrates]);
+
+  useEffect(() => {
+    if (!caption || !narrates || caption.sentence.kind === "trip") return; // a trip is an alarm already
+    announce(caption.more ? `${moreText(caption.more)} ${caption.sentence.text}` : caption.sentence.text);
+  }, [caption, narrates]);
 
   useEffect(() => {
     if (quiet) return;

@@ -12,6 +12,7 @@ import { closeReason } from "../stream/close-reason";
 import { EmptyState } from "../ui/empty-state";
 import { Announcer } from "./announcer";
 import { Banner } from "./banner";
+import { Caption } from "./caption";
 import { ClassLines } from "./class-lines";
 import { Ended } from "./ended";
 import { comeBack, openFirstBench } from "./first-bench";
@@ -118,6 +119,7 @@ export function App() {
           {!phone && <View3dHost />}
         </div>
       )}
+      {!failure && page === "bench" && <Caption />}
       {!failure && !phone && page === "bench" && <TimeBar />}
       {!failure && <LectureStrip />}
       <KeySheet />

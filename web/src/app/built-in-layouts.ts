@@ -95,6 +95,7 @@ export const BUILT_IN: Layouts = {
     addTo(api, "lanes", "lanes", { below: "voltage" });
     addTo(api, "sheet", "sheet", { within: "lanes", inactive: true });
     addTo(api, "events", "events", { within: "lanes", inactive: true });
+    addTo(api, "narrator", "narrator", { within: "lanes", inactive: true });
     addTo(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
     addTo(api, "twins", "twins", { within: "lanes", inactive: true });
     addTo(api, "hypotheses", "hypotheses", { within: "lanes", inactive: true });
@@ -120,6 +121,7 @@ export const BUILT_IN: Layouts = {
     addTo(api, "why", "why", { within: "card", inactive: true });
     addTo(api, "scores", "scores", { within: "card", inactive: true });
     addTo(api, "events", "events", { within: "card", inactive: true });
+    addTo(api, "narrator", "narrator", { within: "card", inactive: true });
     addTo(api, "environment", "environment", { within: "faults", inactive: true });
     addTo(api, "labs", "labs", { within: "faults", inactive: true });
     addTo(api, "blind", "blind", { within: "faults", inactive: true });

@@ -3,6 +3,7 @@ import { actions } from "../bench/actions";
 import { focusNextGroup } from "../bench/dock";
 import { openEditor } from "../bench/edit-unit";
 import { cueBefore, lectureRuns, nextCue } from "../bench/lecture";
+import { toggleNarrator } from "../bench/narrator";
 import type { PageName } from "../bench/view-store";
 import { askCue } from "../bench/vote";
 import { askLatest } from "../bench/why";
@@ -98,6 +99,7 @@ const KEYS: KeyBinding[] = [
   { key: "3", shown: "3", does: "research layout", group: "Look", run: () => setLayout("research") },
   { key: "w", shown: "W", does: "why the newest verdict", group: "Look", run: askLatest },
   { key: "p", shown: "P", does: "present: panels only, on the whole screen", group: "Look", run: togglePresent },
+  { key: "t", shown: "T", does: "narrator on or off", group: "Look", run: toggleNarrator },
   { key: "d", shown: "D", does: "dark or light", group: "Look", run: () => themeSwitch.flip() },
   { key: "F6", shown: "F6", does: "next group of panels", group: "Look", run: focusNextGroup },
   { key: "?", shown: "?", does: "this sheet", group: "Look", run: actions.keys },

@@ -16,6 +16,7 @@ import { IdentifyPanel } from "../panels/identify/identify-panel";
 import { LabsPanel } from "../panels/labs/labs-panel";
 import { LanesPanel } from "../panels/lanes/lanes-panel";
 import { LocusPanel } from "../panels/locus/locus-panel";
+import { NarratorPanel } from "../panels/narrator/narrator-panel";
 import { PhasePanel } from "../panels/phase/phase-panel";
 import { RecordingsPanel } from "../panels/recordings/recordings-panel";
 import { SchematicPanel } from "../panels/schematic/schematic-panel";
@@ -72,6 +73,7 @@ export const PANELS: Record<string, PanelKind> = {
   identify: { title: "Swept sine", only: "displacement", changes: true, component: IdentifyPanel },
   recordings: { title: "Recordings", component: RecordingsPanel },
   events: { title: "Events", whileBlind: true, component: EventsPanel },
+  narrator: { title: "Narrator", whileBlind: true, component: NarratorPanel },
   scores: { title: "Scoreboard", component: ScoreboardPanel },
   vote: { title: "Vote", whileBlind: true, component: VotePanel },
   view3d: { title: "3D", component: View3dPanel },

@@ -1,6 +1,7 @@
 import { create } from "zustand";
 import type { Bench, LogEntry, Score } from "../api/types";
 import type { CloseReason } from "./close-reason";
+import { type Narration, NOTHING_SAID } from "./narration";
 
 export type Phase = "idle" | "connecting" | "open" | "waiting" | "closed";
 
@@ -18,6 +19,8 @@ export interface BenchStore {
   bench: Bench | undefined;
   scores: Record<string, Score>;
   events: LogEntry[];
+  /** What the narrator says of the present run. */
+  narration: Narration;
   /** A hidden fault is to be found: the server serves little else, and panels that need more show one line. */
   blind: boolean;
   droppedFrames: number;
@@ -33,6 +36,7 @@ export const useBench = create<BenchStore>(() => ({
   bench: undefined,
   scores: {},
   events: [],
+  narration: NOTHING_SAID,
   blind: false,
   droppedFrames: 0,
   notice: undefined,

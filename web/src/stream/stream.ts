@@ -4,6 +4,7 @@ import { setUnits } from "../api/use-catalog";
 import { type Connection, mergeStatus, useBench } from "./bench-store";
 import { DrawLoop } from "./draw-loop";
 import { appendEvent } from "./event-log";
+import { NOTHING_SAID, narrate } from "./narration";
 import { StreamClient } from "./stream-client";
 import type { ServerMessage } from "./wire";
 
@@ -46,7 +47,7 @@ function open(id: string, keep = false): void {
   known = { bench: undefined, scores: {} };
   if (!keep) {
     tell();
-    useBench.setState({ events: [] });
+    useBench.setState({ events: [], narration: NOTHING_SAID });
   }
   useBench.setState({ droppedFrames: 0, notice: undefined });
   patch({ phase: "connecting", reason: undefined, retryAt: undefined, staleSince: undefined });
@@ -90,6 +91,9 @@ function receive(message: ServerMessage): void {
     case "events":
       if (pendingEvents.length === 0) setTimeout(flushEvents, 30);
       pendingEvents.push(...message.events);
+      return;
+    case "narration":
+      useBench.setState((s) => ({ narration: narrate(s.narration, message) }));
       return;
     case "notice":
       if (message.code === "ask_me") useBench.setState((s) => ({ called: s.called + 1 }));

@@ -30,6 +30,7 @@ export type ServerMessage =
   | Schemas["Hello"]
   | Status
   | Schemas["Events"]
+  | Schemas["Narrated"]
   | Schemas["Reply"]
   | Schemas["ErrorMessage"]
   | Schemas["Notice"]

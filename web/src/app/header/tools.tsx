@@ -9,6 +9,8 @@ import {
   IconGitFork,
   IconKeyboard,
   IconLayoutDashboard,
+  IconMessage,
+  IconMessageOff,
   IconMoon,
   IconPlayerRecord,
   IconPlayerRecordFilled,
@@ -22,6 +24,7 @@ import { may, type Right, useMay, useMe } from "../../api/me";
 import { useClasses } from "../../api/use-classes";
 import { actions } from "../../bench/actions";
 import { useCompany } from "../../bench/driving";
+import { toggleNarrator, useNarrator } from "../../bench/narrator";
 import { showError } from "../../bench/send";
 import { benchChange } from "../../bench/undo";
 import { LECTURE_PX, useView } from "../../bench/view-store";
@@ -56,6 +59,7 @@ export function Tools() {
   const recording = useBench((s) => (s.bench?.recording.length ?? 0) > 0);
   const undo = useBench((s) => s.bench?.undo?.seq !== undefined && benchChange("undo")?.text);
   const redo = useBench((s) => s.bench?.redo?.seq !== undefined && benchChange("redo")?.text);
+  const narrates = useNarrator((s) => s.on);
   const role = useMe((s) => s.me?.role);
   useMay("drive"); // which depends on the bench, too
   const all: Tool[] = [
@@ -100,6 +104,11 @@ export function Tools() {
   ];
   const keep = all.filter(({ needs }) => !needs || may(needs, role));
   const page: Tool[] = [
+    {
+      label: narrates ? "Narrator off (T)" : "Narrator on: say in sentences what happens (T)",
+      icon: narrates ? <IconMessageOff size={19} /> : <IconMessage size={19} />,
+      run: toggleNarrator,
+    },
     {
       label: scheme === "dark" ? "Light theme (D)" : "Dark theme (D)",
       icon: scheme === "dark" ? <IconSun size={19} /> : <IconMoon size={19} />,

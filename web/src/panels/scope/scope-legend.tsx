@@ -1,6 +1,7 @@
 import { Popover } from "@mantine/core";
 import { IconX } from "@tabler/icons-react";
 import { type RefObject, useEffect, useRef } from "react";
+import { useNarrator } from "../../bench/narrator";
 import { stream } from "../../stream/stream";
 import { formatOn, formatSi } from "../../ui/format";
 import { SignalName, TraceSwatch } from "../../ui/trace-swatch";
@@ -70,8 +71,9 @@ function LegendEntry({ trace, index, hidden, plot, onRemove }: LegendEntryProps)
       if (value.current.textContent !== text) value.current.textContent = text;
     });
   }, [trace, index, hidden, plot]);
+  const told = useNarrator((s) => s.chosen?.signals.includes(trace.name) ?? false);
   return (
-    <li className={styles.trace} data-hidden={hidden}>
+    <li className={styles.trace} data-hidden={hidden} data-told={told}>
       <TraceSwatch colour={trace.colour} dash={trace.dash} />
       <SignalName name={trace.name} />
       <span className={styles.value} ref={value} />

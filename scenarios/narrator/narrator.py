@@ -1,0 +1,137 @@
+"""The narrator: a fold over the rows and the log of a bench, which tells what happens in plain sentences."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+from itertools import takewhile
+
+import numpy as np
+
+from core.board.instances import scored
+from core.board.log import Log, LogEntry
+from core.board.observer import follow
+from core.board.rows import Rows
+from core.board.spec import Spec
+from core.signals import Signal
+from scenarios.narrator.doings import MEASURED, MODEL, SCALES, TOLD, TRIPS, Doings
+from scenarios.narrator.samples import Samples
+from scenarios.narrator.sentence import KINDS, Sentence
+from scenarios.narrator.settling import Settling
+from scenarios.narrator.verdicts import Verdicts
+
+PORTS = ("winner", "truth")
+"""What of a diagnoser is followed from tick to tick, and what is read of it when it turns."""
+EACH = ("probability", "residual", "nis")
+
+
+class Narrator:
+    """Tells faults, healings, switches, verdicts, trips, and when the error is back.
+
+    It reads only the signals it is given and the entries it hears, so it cannot tell what these do not. The sentences
+    do not depend on how many rows it is shown at a time.
+
+    Parameters
+    ----------
+    spec : Spec
+        The bench as it begins.
+    signals : sequence of Signal
+        The signals that may be told of.
+    outputs : int
+        How many of the columns of the rows are outputs.
+    """
+
+    def __init__(self, spec: Spec, signals: Sequence[Signal], outputs: int) -> None:
+        column = {signal.name: signal.index for signal in signals}
+        chosen = [
+            name for name, section in spec.diagnosers.items() if scored(section.block) and f"{name}.winner" in column
+        ]
+        turns = {name: spec.turns(spec.diagnosers[name]) for name in chosen}
+        self._verdicts = [
+            Verdicts(name, spec.diagnosers[name], turns[name], spec.dt_ms, len(chosen) == 1) for name in chosen
+        ]
+        self._doings, self._settling = Doings(spec), Settling(spec.dt_ms)
+        self._samples = Samples(
+            column, outputs, [name for name in (MODEL, MEASURED, *SCALES.values()) if name in column]
+        )
+        self._followed = [f"{name}.{port}" for name in chosen for port in PORTS if f"{name}.{port}" in column]
+        self._columns = np.array([column[name] for name in self._followed], dtype=np.int64)
+        self._name_of = dict(zip(self._columns.tolist(), self._followed, strict=True))
+        self._last = np.full(len(self._followed), np.nan)
+        self._signals = [
+            *self._followed,
+            *(name for name in (MODEL, MEASURED, *SCALES.values()) if name in column),
+            *(name for name in column if name.split(".")[0] in chosen and name.split(".")[1] in EACH),
+        ]
+        self._heard: list[LogEntry] = []
+        self._last_heard = 0
+
+    def hear(self, entry: LogEntry) -> None:
+        """Take an entry of the log, before the row of its tick is shown."""
+        if entry.kind in TOLD:
+            self._heard = [*self._heard, entry]
+
+    def follow(self, log: Log, rows: Rows | None = None) -> list[Sentence]:
+        """Return what is to be told after some rows more, or none, of a board whose log says what was done."""
+        new = list(takewhile(lambda entry: entry.seq > self._last_heard, reversed(log)))
+        self._last_heard = log.last
+        for entry in reversed(new):
+            self.hear(entry)
+        return self.tell() if rows is None else self.look(rows)
+
+    def look(self, rows: Rows) -> list[Sentence]:
+        """Return what is to be told after some rows more, which may be none."""
+        if not rows.count:
+            return self.tell()
+        self._samples.show(rows)
+        found = self.tell()
+        found += self._settling.look(self._samples, self._samples.end)
+        changes = self._changes(rows)
+        found += [said for one in self._verdicts for said in one.look(self._samples, changes)]
+        self._samples.hide()
+        return sorted(found, key=lambda said: (said.tick, KINDS.index(said.kind)))
+
+    def _changes(self, rows: Rows) -> dict[str, list[tuple[int, int]]]:
+        """Return tick and new value of each change of the winners and truths."""
+        last, found = self._last, np.zeros((64, 2), dtype=np.int64)
+        while True:
+            self._last = last.copy()
+            count = follow(rows.outputs, rows.taps, self._columns, self._last, found)
+            if count <= len(found):
+                break
+            found = np.zeros((count, 2), dtype=np.int64)
+        changes: dict[str, list[tuple[int, int]]] = {}
+        for column, row in found[:count].tolist():
+            changes.setdefault(self._name_of[column], []).append(
+                (rows.first_tick + row, int(rows.outputs[row, column]))
+            )
+        return changes
+
+    def tell(self) -> list[Sentence]:
+        """Return what is to be told of the entries heard: a trip at once, anything else when its tick has run."""
+        end = self._samples.end
+        due: list[LogEntry] = []
+        later: list[LogEntry] = []
+        for entry in self._heard:
+            is_due = entry.tick < end or (entry.tick == end and entry.kind in TRIPS)
+            (due if is_due else later).append(entry)
+        self._heard = later
+        found: list[Sentence] = []
+        for entry in sorted(due, key=lambda one: one.tick):
+            if entry.tick >= (self._samples.began or 0) and (said := self._doings.sentence(entry, self._samples)):
+                found += [*self._settling.look(self._samples, said.tick), said]
+                self._settling.follow(said)
+        return found
+
+    def copy(self) -> Narrator:
+        """Return a narrator that goes on from here by itself."""
+        twin = copy.copy(self)
+        twin._verdicts = [copy.copy(one) for one in self._verdicts]
+        twin._doings, twin._settling = copy.copy(self._doings), copy.copy(self._settling)
+        twin._samples = self._samples.copy()
+        return twin
+
+    @property
+    def signals(self) -> list[str]:
+        """The signals it reads."""
+        return self._signals

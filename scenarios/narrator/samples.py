@@ -1,0 +1,94 @@
+"""The samples a narrator looks at: all signals of the rows it is shown, and of a few the last ticks before them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from core.block import FloatArray, IntArray
+from core.board.rows import Rows
+from core.kernel import kernel
+
+PLACES = 128
+"""Ticks before the rows that are kept."""
+
+
+@kernel
+def _keep(ring: Any, outputs: FloatArray, taps: FloatArray, columns: IntArray, first: int) -> None:
+    """Write the last rows of some columns into a ring, in single precision."""
+    places, width = ring.shape[1], outputs.shape[1]
+    for i in range(max(0, len(outputs) - places), len(outputs)):
+        for k in range(len(columns)):
+            value = outputs[i, columns[k]] if columns[k] < width else taps[i, columns[k] - width]
+            ring[k, (first + i) % places] = value
+
+
+class Samples:
+    """Gives signals by their names, rounded to single precision as recordings and the history keep them.
+
+    So a replay tells the same as the bench did.
+
+    Parameters
+    ----------
+    columns : dict
+        Column of each signal in the rows, outputs first.
+    outputs : int
+        How many of the columns are outputs.
+    kept : sequence of str
+        The signals that are kept beyond the rows.
+    """
+
+    def __init__(self, columns: dict[str, int], outputs: int, kept: Sequence[str]) -> None:
+        self._columns, self._outputs = columns, outputs
+        self._places = {name: place for place, name in enumerate(kept)}
+        self._kept = np.array([columns[name] for name in kept], dtype=np.int64)
+        self._ring = np.zeros((len(kept), PLACES), np.float32)
+        self._rows: Rows | None = None
+        self.began: int | None = None
+        """The first tick that was ever shown."""
+        self.first = self.end = 0
+        """The ticks of the rows of now: from the first to before the end."""
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._columns
+
+    def show(self, rows: Rows) -> None:
+        """Look at rows that follow the last."""
+        self._rows, self.first, self.end = rows, rows.first_tick, rows.first_tick + rows.count
+        self.began = self.first if self.began is None else self.began
+
+    def hide(self) -> None:
+        """Let the rows go; the last of them are kept."""
+        if (rows := self._rows) is not None:
+            _keep(self._ring, rows.outputs, rows.taps, self._kept, rows.first_tick)
+        self._rows, self.first = None, self.end
+
+    def copy(self) -> Samples:
+        """Return what goes on from here by itself."""
+        twin = Samples(self._columns, self._outputs, list(self._places))
+        twin._ring, twin.began, twin.first, twin.end = self._ring.copy(), self.began, self.end, self.end
+        return twin
+
+    def values(self, name: str, first: int, end: int, every: int = 1) -> FloatArray:
+        """Return a signal from a tick to before another: of the rows of now, or of a kept one."""
+        parts = []
+        if first < self.first:
+            ticks = np.arange(first, min(end, self.first))
+            parts.append(self._ring[self._places[name], ticks % PLACES])
+        if end > self.first and self._rows is not None:
+            column, rows = self._columns[name], slice(max(first - self.first, 0), end - self.first)
+            is_output = column < self._outputs
+            values = self._rows.outputs[rows, column] if is_output else self._rows.taps[rows, column - self._outputs]
+            parts.append(values.astype(np.float32))
+        return np.concatenate(parts)[::every].astype(np.float64) if parts else np.empty(0)
+
+    def at(self, name: str, tick: int) -> float:
+        """Return the value at a tick."""
+        return float(self.values(name, tick, tick + 1)[0])
+
+
+def rms(values: FloatArray) -> float:
+    """Return the root mean square, 0 of nothing."""
+    return float(np.sqrt(np.mean(values * values))) if len(values) else 0.0

@@ -1,0 +1,22 @@
+"""A sentence of the narrator: data first, and the words made of it."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import BaseModel, Field
+
+Kind = Literal["trip", "switch", "heal", "fault", "verdict", "false_verdict", "settled"]
+KINDS: tuple[Kind, ...] = ("trip", "switch", "heal", "fault", "verdict", "false_verdict", "settled")
+"""The kinds in the order in which sentences of one tick are told."""
+
+
+class Sentence(BaseModel):
+    """Something that happened, in one sentence with the numbers it was made of."""
+
+    tick: int = Field(description="When it could be told")
+    kind: Kind
+    text: str
+    signals: list[str] = Field(description="Where it shows")
+    span: tuple[int, int] = Field(description="First and last tick of what it speaks of")
+    numbers: dict[str, float] = Field(description="The figures it is made of: um, ms, ticks, shares")

@@ -1,0 +1,58 @@
+"""The words of sentences: moments, hypotheses, lists."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from core.diagnose.hypothesis import NamedModel
+from core.format import MINUS, format_short, format_si
+
+NOUNS = {"gain": "drive gain", "second_stiffness": "stiffness along y"}
+"""Factors whose name says too little."""
+
+
+def moment(ms: float) -> str:
+    """Write a moment of device time."""
+    return format_si(ms, "ms", 4)
+
+
+def length(ms: float) -> str:
+    """Write a stretch of device time."""
+    return format_short(ms, "ms", 3)
+
+
+def figure(value: float, unit: str) -> str:
+    """Write a measured figure."""
+    return format_si(value, unit, 3)
+
+
+def change(share: float) -> str:
+    """Write a share that was added, in percent with its sign."""
+    text = format_short(share * 100.0, "%", 3)
+    return text if text.startswith(MINUS) or share == 0.0 else f"+{text}"
+
+
+def uncapital(title: str) -> str:
+    """Write a title within a sentence; one that begins with an abbreviation stays."""
+    return title if title[1:2].isupper() else title[:1].lower() + title[1:]
+
+
+def listed(parts: Sequence[str]) -> str:
+    """Join words to a list."""
+    return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
+
+
+def hypothesis_words(model: NamedModel) -> str:
+    """Say a hypothesis in words: "m+5" reads "mass +5 %"; a name that is no abbreviation stays."""
+    said = model.model_dump(exclude_defaults=True, exclude={"name"})
+    if not said or not any(letter.isdigit() for letter in model.name):
+        return model.name
+    return ", ".join(_factor(name, value) for name, value in said.items())
+
+
+def _factor(name: str, value: float) -> str:
+    """Say a factor on the nominal device, or what is added to it in its unit."""
+    if name.endswith("_dps"):
+        sign = "+" if value > 0.0 else ""
+        return f"{name[:-4].replace('_', ' ')} {sign}{format_short(value, 'deg/s', 3)}"
+    return f"{NOUNS.get(name, name.replace('_', ' '))} {change(value - 1.0)}"

@@ -1,0 +1,36 @@
+"""What the narrator says of a live bench."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+from pydantic import BaseModel, Field
+
+from scenarios.narrator.sentence import Sentence
+from server.api.bodies import StrictRoute
+from server.api.deps import SeenDep
+from server.bench.narration import Mark
+
+router = APIRouter(prefix="/benches", tags=["benches"], route_class=StrictRoute)
+
+
+class NarrationList(BaseModel):
+    """Sentences of the present run of a bench behind a number; those of a recording are there from its beginning."""
+
+    sentences: list[Sentence]
+    after: int = Field(description="Number before the first of them: what the caller asked for, 0 after a jump")
+    last: int = Field(description="Number of the last sentence")
+    jumps: int = Field(description="How often the bench was reset or went back; what was said before a jump is void")
+
+
+@router.get("/{bench_id}/narration")
+async def list_narration(
+    session: SeenDep,
+    after: Annotated[int, Query(ge=0, le=2**53)] = 0,
+    jumps: Annotated[int | None, Query(ge=0, le=2**53, description="Those of the answer before")] = None,
+) -> NarrationList:
+    """List what the narrator has said after a sentence; all of it if the bench has jumped since."""
+    known = Mark(session.narration.mark.jumps if jumps is None else jumps, after)
+    mark, first, sentences = session.narration.after(known)
+    return NarrationList(sentences=sentences, after=first, last=mark.last, jumps=mark.jumps)

@@ -1,0 +1,142 @@
+"""What the narrator says of a live bench; the event loop reads it."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
+
+from core.board.log import Log
+from core.board.rows import Rows
+from core.board.spec import Spec
+from core.signals import Signal
+from scenarios.narrator.narrator import Narrator
+from scenarios.narrator.sentence import Sentence
+from server.bench.events import Event
+
+KEPT = 2000
+"""Sentences kept of a run."""
+
+
+@dataclass(frozen=True)
+class Told:
+    """What was said up to a moment, and a narrator that goes on from there.
+
+    Parameters
+    ----------
+    narrator : Narrator
+        Goes on from the moment.
+    sentences : tuple of Sentence
+        The last sentences before it.
+    last : int
+        Number of the last of them.
+    earlier : dict
+        The narrator at ticks before it, with the number of the last sentence said by then.
+    """
+
+    narrator: Narrator
+    sentences: tuple[Sentence, ...]
+    last: int
+    earlier: dict[int, tuple[Narrator, int]]
+
+
+@dataclass(frozen=True)
+class Mark:
+    """How far a narration is: how often the bench has jumped, and the number of the last sentence since it began."""
+
+    jumps: int = -1
+    last: int = 0
+
+
+class Narration:
+    """The sentences of the present run of a bench, numbered 1, 2, 3, ...; a jump takes back what it undoes.
+
+    Parameters
+    ----------
+    spec : Spec
+        The bench as it begins.
+    signals : sequence of Signal
+        The signals that may be told of.
+    outputs : int
+        How many of the columns of its rows are outputs.
+    """
+
+    def __init__(self, spec: Spec, signals: Iterable[Signal], outputs: int) -> None:
+        self._signals, self._outputs = list(signals), outputs
+        self._lock = threading.Lock()
+        self._sentences: deque[Sentence] = deque(maxlen=KEPT)
+        self._narrator = Narrator(spec, self._signals, outputs)
+        self._earlier: dict[int, tuple[Narrator, int]] = {}
+        self.mark = Mark(0, 0)
+
+    def hear(self, event: Event) -> None:
+        """Take an event of the bench."""
+        self._narrator.hear(event)
+
+    def look(self, rows: Rows) -> None:
+        """Say what is to be said after some rows more."""
+        if said := self._narrator.look(rows):
+            self.say(said)
+
+    def follow(self, log: Log, rows: Rows | None = None) -> None:
+        """Say what is to be said after some rows more of a board that is computed again, which has a log of its own."""
+        if said := self._narrator.follow(log, rows):
+            self.say(said)
+
+    def tell(self) -> None:
+        """Say at once what waits for no row, as that the board was stopped."""
+        if said := self._narrator.tell():
+            self.say(said)
+
+    def say(self, sentences: Sequence[Sentence]) -> None:
+        """Add sentences."""
+        with self._lock:
+            self._sentences.extend(sentences)
+            self.mark = Mark(self.mark.jumps, self.mark.last + len(sentences))
+
+    def begin(self, spec: Spec) -> None:
+        """Begin again with the bench."""
+        self._jump(Told(Narrator(spec, self._signals, self._outputs), (), 0, {}))
+
+    def remember(self, tick: int, kept: Collection[int]) -> None:
+        """Remember how far it is at a tick; of the ticks before, those that are kept."""
+        earlier = {one: known for one, known in self._earlier.items() if one in kept and one < tick}
+        self._earlier = {**earlier, tick: (self._narrator.copy(), self.mark.last)}
+
+    def told(self) -> Told:
+        """Return what was said so far, to go on from."""
+        return Told(self._narrator.copy(), tuple(self._sentences), self.mark.last, self._earlier)
+
+    def told_at(self, tick: int) -> Told:
+        """Return what was said by a tick that is remembered, to go on from there."""
+        narrator, last = self._earlier[tick]
+        known = last - (self.mark.last - len(self._sentences))
+        earlier = {one: then for one, then in self._earlier.items() if one <= tick}
+        return Told(narrator, tuple(islice(self._sentences, max(known, 0))), last, earlier)
+
+    def go_to(self, told: Told) -> None:
+        """Go on from what was said at a moment."""
+        self._jump(replace(told, narrator=told.narrator.copy()))
+
+    def _jump(self, told: Told) -> None:
+        with self._lock:
+            self._narrator = told.narrator
+            self._sentences = deque(told.sentences, maxlen=KEPT)
+            self._earlier = told.earlier
+            self.mark = Mark(self.mark.jumps + 1, told.last)
+
+    def after(self, known: Mark) -> tuple[Mark, int, list[Sentence]]:
+        """Return how far the narration is, the number before the first sentence returned, and those not known yet.
+
+        Parameters
+        ----------
+        known : Mark
+            How far the caller is; after a jump it knows nothing.
+        """
+        with self._lock:
+            have = known.last if known.jumps == self.mark.jumps else 0
+            first = self.mark.last - len(self._sentences)
+            start = max(have - first, 0)
+            return self.mark, min(first + start, self.mark.last), list(islice(self._sentences, start, None))

@@ -1,0 +1,52 @@
+import { useEffect, useRef } from "react";
+import { showSentence, useNarrator, useSaid, useVoting } from "../../bench/narrator";
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { formatCount } from "../../ui/format";
+import styles from "./narrator.module.css";
+
+const SHOWN = 300;
+
+/** What has happened, in sentences, newest last; a click takes the scopes there. A replay lists what is to come as well. */
+export function NarratorPanel() {
+  const { before, sentences } = useBench((s) => s.narration);
+  const said = useSaid();
+  const voting = useVoting();
+  const chosen = useNarrator((s) => s.chosen);
+  const list = useRef<HTMLOListElement>(null);
+  useEffect(() => {
+    list.current?.children[Math.max(0, said - 1)]?.scrollIntoView({ block: "nearest" });
+  }, [said]);
+  if (voting)
+    return (
+      <EmptyState title="Not while a vote is open">What happens is the answer. It stands here afterwards.</EmptyState>
+    );
+  if (sentences.length === 0)
+    return (
+      <EmptyState title="Nothing to tell yet">
+        A sentence stands here for each fault, switch, verdict and trip, with its numbers. Inject a fault to hear one.
+      </EmptyState>
+    );
+  const first = Math.max(0, sentences.length - SHOWN);
+  return (
+    <ol ref={list} className={styles.list} aria-label="What the narrator says, newest last">
+      {before + first > 0 && <li className={styles.earlier}>{formatCount(before + first, "sentence")} before</li>}
+      {sentences.slice(first).map((sentence, at) => (
+        <li key={`${sentence.tick} ${sentence.text}`}>
+          <button
+            type="button"
+            className={styles.sentence}
+            data-kind={sentence.kind}
+            data-chosen={sentence === chosen}
+            data-ahead={first + at >= said}
+            aria-current={first + at === said - 1 ? "step" : undefined}
+            onClick={() => showSentence(sentence)}
+            title={`Tick ${sentence.tick}: show it on the scopes`}
+          >
+            {sentence.text}
+          </button>
+        </li>
+      ))}
+    </ol>
+  );
+}
