@@ -6,7 +6,7 @@ test("the controller changes live", async ({ page, openBench }) => {
   await page.getByRole("combobox", { name: "Controller" }).click();
   await page.getByRole("option", { name: /^Direct MRAC Direct model/ }).click();
   await page.getByRole("tab", { name: "Events" }).click();
-  await expect(page.getByRole("button", { name: /switch to mrac/ })).toBeVisible();
+  await expect(page.getByRole("button", { name: /^\d.*switch to mrac/ })).toBeVisible();
   await expect(page.getByTestId("bench-state")).toHaveText("running");
 });
 
@@ -53,7 +53,7 @@ test("a parameter changes live, a wrong one is refused in words, and what happen
   await noise.fill("0.2");
   await noise.press("Enter");
   await page.getByRole("tab", { name: "Events" }).click();
-  await expect(page.getByRole("button", { name: /set sensors?\..*noise_um = 0\.2/ })).toBeVisible();
+  await expect(page.getByRole("button", { name: /^\d.*set sensors?\..*noise_um = 0\.2/ })).toBeVisible();
   await noise.fill("-1");
   await noise.press("Enter");
   await expect(page.getByRole("alert").filter({ hasText: "at least 0" })).toBeVisible();

@@ -11,7 +11,7 @@ test("an injected fault is found, the delay is printed, and healing clears it", 
 
   await page.getByRole("tab", { name: "Events" }).click();
   await expect(page.getByRole("button", { name: /kalman found m\+5 after \d+\ssamples/ })).toBeVisible();
-  await page.getByRole("button", { name: /inject added_mass/ }).click();
+  await page.getByRole("button", { name: /^\d.*inject added_mass/ }).click();
   await expect(page.getByRole("button", { name: "LIVE" }).first()).toHaveAttribute("aria-pressed", "false");
   await page.keyboard.press("l");
   await expect(page.getByRole("button", { name: "LIVE" }).first()).toHaveAttribute("aria-pressed", "true");

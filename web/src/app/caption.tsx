@@ -24,7 +24,7 @@ export function Caption() {
       ) : (
         <p>{diagnosed ? LANES : "Faults, switches and trips are told here."}</p>
       )}
-      <CloseButton size="sm" aria-label="Turn the narrator off (T)" onClick={toggleNarrator} />
+      <CloseButton size="sm" aria-label="Turn the narrator off (Q)" onClick={toggleNarrator} />
     </section>
   );
 }

@@ -99,7 +99,7 @@ const KEYS: KeyBinding[] = [
   { key: "3", shown: "3", does: "research layout", group: "Look", run: () => setLayout("research") },
   { key: "w", shown: "W", does: "why the newest verdict", group: "Look", run: askLatest },
   { key: "p", shown: "P", does: "present: panels only, on the whole screen", group: "Look", run: togglePresent },
-  { key: "t", shown: "T", does: "narrator on or off", group: "Look", run: toggleNarrator },
+  { key: "q", shown: "Q", does: "narrator on or quiet", group: "Look", run: toggleNarrator },
   { key: "d", shown: "D", does: "dark or light", group: "Look", run: () => themeSwitch.flip() },
   { key: "F6", shown: "F6", does: "next group of panels", group: "Look", run: focusNextGroup },
   { key: "?", shown: "?", does: "this sheet", group: "Look", run: actions.keys },

@@ -38,3 +38,10 @@ test("nobody may anything before it is known who it is", () => {
   expect(may("drive")).toBe(false);
   expect(may("teach")).toBe(false);
 });
+
+test("each key does one thing", () => {
+  be("teacher");
+  const bound = keymap().map(({ key, shown }) => `${key} (${shown})`);
+  expect(bound).toEqual([...new Set(bound)]);
+  expect(keys()).toEqual([...new Set(keys())]);
+});

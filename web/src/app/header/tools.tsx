@@ -105,7 +105,7 @@ export function Tools() {
   const keep = all.filter(({ needs }) => !needs || may(needs, role));
   const page: Tool[] = [
     {
-      label: narrates ? "Narrator off (T)" : "Narrator on: say in sentences what happens (T)",
+      label: narrates ? "Narrator off (Q)" : "Narrator on: say in sentences what happens (Q)",
       icon: narrates ? <IconMessageOff size={19} /> : <IconMessage size={19} />,
       run: toggleNarrator,
     },
