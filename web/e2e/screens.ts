@@ -31,7 +31,16 @@ export async function showOn(page: Page, { width, height }: Screen): Promise<voi
   sessions.set(page, session);
   await session.send("Emulation.setTouchEmulationEnabled", { enabled: width < 1000 });
   await page.setViewportSize({ width, height });
+  await expect.poll(() => dockFollows(page)).toBe(true); // a layout chosen earlier would be that of the screen before
 }
+
+/** Whether the panels, if there are any, stand as wide as the place they have. */
+const dockFollows = (page: Page): Promise<boolean> =>
+  page.evaluate(() => {
+    const dock = document.querySelector<HTMLElement>(".dockview-theme-combbench");
+    const root = dock?.querySelector<HTMLElement>(".dv-grid-view, .dv-split-view-container");
+    return !dock || !root || Math.abs(dock.clientWidth - root.clientWidth) < 2;
+  });
 
 /** Nothing overlaps or is cut in either scheme; what comes or goes may do so for a moment. */
 export async function expectClean(page: Page, where: string, within?: string): Promise<void> {
