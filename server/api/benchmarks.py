@@ -8,7 +8,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from scenarios.benchmark import results
-from scenarios.benchmark.results import LeftOut, Row
+from scenarios.benchmark.results import Cost, LeftOut, Row
 from scenarios.benchmark.seeds import BENCHMARK, COMMITMENT, LISTS
 from scenarios.benchmark.track import tracks
 from server.api.bodies import StrictRoute
@@ -55,6 +55,7 @@ class BenchmarkDetail(BenchmarkCard):
     within_samples: list[int] = Field(description="Delays of `found_within`")
     results: list[TrackResults]
     left_out: list[LeftOut]
+    costs: dict[str, Cost] = Field(description="Of each diagnoser, on the machine that computed the table")
 
 
 @router.get("")
@@ -99,4 +100,5 @@ def _detail() -> BenchmarkDetail:
             for name, one in tracks().items()
         ],
         left_out=kept.left_out,
+        costs=kept.costs,
     )

@@ -18,6 +18,7 @@ def test_a_benchmark_has_every_row_in_the_order_of_its_rank(live):
     found = live.http.get(f"{BASE}/mems-diag-1").json()
     kept = results.kept()
     assert found["commitment"] == COMMITMENT and found["cases"] == 100
+    assert set(found["costs"]) == {row.unit for row in kept.rows} and found["costs"]["mmae"]["over_mmae"] == 1.0
     assert sum(len(track["rows"]) for track in found["results"]) == len(kept.rows)
     for track in found["results"]:
         scored = [row["log_score"]["mean"] for row in track["rows"] if row["log_score"]]

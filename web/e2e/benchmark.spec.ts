@@ -4,6 +4,7 @@ import { seriousViolations } from "./serious-violations";
 interface Detail {
   results: { id: string; title: string; question: string; rows: { unit: string; digest: string }[] }[];
   cases: number;
+  costs: Record<string, { ns_per_sample: number; over_mmae: number }>;
 }
 
 test("the benchmark shows each track: its question, its table best first, and its curves", async ({
@@ -13,13 +14,15 @@ test("the benchmark shows each track: its question, its table best first, and it
 }) => {
   await openBench();
   await page.keyboard.press("j");
-  const { results } = await server.ask<Detail>("GET", "/benchmarks/mems-diag-1");
+  const { results, costs } = await server.ask<Detail>("GET", "/benchmarks/mems-diag-1");
   for (const track of results) {
     await page.getByRole("combobox", { name: "Track" }).selectOption(track.id);
     await expect(page.getByRole("heading", { name: track.question })).toBeVisible();
     const table = page.getByRole("region", { name: `Results of ${track.title}` });
     await expect(table.getByRole("rowheader")).toHaveText(track.rows.map((row) => row.unit));
     await expect(table.getByRole("row").nth(1)).toContainText(track.rows[0]?.digest.slice(0, 8) ?? "nothing");
+    const kalman = table.getByRole("row", { name: /\bmmae\b/ });
+    await expect(kalman).toContainText(`${costs.mmae?.ns_per_sample.toFixed(0)} (1.00)`);
   }
   const curves = page.getByRole("region", { name: "Curves" });
   await expect(

@@ -3122,6 +3122,13 @@ export interface components {
             results: components["schemas"]["TrackResults"][];
             /** Left Out */
             left_out: components["schemas"]["LeftOut"][];
+            /**
+             * Costs
+             * @description Of each diagnoser, on the machine that computed the table
+             */
+            costs: {
+                [key: string]: components["schemas"]["Cost"];
+            };
         };
         /**
          * BenchmarkList
@@ -3549,6 +3556,16 @@ export interface components {
             layout?: {
                 [key: string]: unknown;
             } | null;
+        };
+        /**
+         * Cost
+         * @description What a sample of a diagnoser costs, on the machine that measured it: no part of what is recomputed to the bit.
+         */
+        Cost: {
+            /** Ns Per Sample */
+            ns_per_sample: number;
+            /** Over Mmae */
+            over_mmae: number;
         };
         /**
          * CueDetail

@@ -55,13 +55,14 @@ function Track({ track, benchmark }: { track: Benchmark["results"][number]; benc
       <section className={styles.card} aria-label={track.title}>
         <h2>{track.question}</h2>
         <p>{track.note}</p>
-        <ResultsTable rows={track.rows} label={`Results of ${track.title}`} />
+        <ResultsTable rows={track.rows} costs={benchmark.costs} label={`Results of ${track.title}`} />
         <p>
           {formatNumber(benchmark.cases, 0)} cases from public seeds; thresholds give one false alarm in{" "}
           {formatNumber(benchmark.false_alarm_samples, 0)} healthy samples on average. The rank is that of the log
           score, then of the Brier score. Diagnosers without probabilities have no rank.
           {out.map((one) => ` ${one.unit} is not scored: it ${one.reason}.`)} <code>{benchmark.command}</code> computes
-          the table again, to the bit.
+          the table again, to the bit; the times are those of the machine that computed it, with their ratio to the
+          Kalman bank.
         </p>
       </section>
       <section className={styles.card} aria-label="Curves">

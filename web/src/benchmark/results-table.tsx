@@ -1,4 +1,4 @@
-import type { BenchmarkRow } from "../api/types";
+import type { Benchmark, BenchmarkRow } from "../api/types";
 import { formatNumber, formatPercent } from "../ui/format";
 import styles from "./benchmark.module.css";
 
@@ -16,6 +16,9 @@ interface Column {
 const withError = (figure: Figure, decimals: number) =>
   figure ? `${formatNumber(figure.mean, decimals)}\u00a0±\u00a0${formatNumber(WIDE * figure.error, decimals)}` : "–";
 const share = (figure: Figure) => (figure ? formatPercent(figure.mean, 1) : "–");
+
+const costText = (cost: Benchmark["costs"][string]) =>
+  `${formatNumber(cost.ns_per_sample, 0)} (${formatNumber(cost.over_mmae, 2)})`;
 
 const COLUMNS: Column[] = [
   {
@@ -52,8 +55,17 @@ const COLUMNS: Column[] = [
   },
 ];
 
+const COST =
+  "Time of a sample, and over that of the Kalman bank in the same run. Measured on the machine that computed the table.";
+
+interface Results {
+  rows: readonly BenchmarkRow[];
+  costs: Benchmark["costs"];
+  label: string;
+}
+
 /** The diagnosers of a track, best first, with the half width of the 95 % intervals. */
-export function ResultsTable({ rows, label }: { rows: readonly BenchmarkRow[]; label: string }) {
+export function ResultsTable({ rows, costs, label }: Results) {
   return (
     // biome-ignore lint/a11y/noNoninteractiveTabindex: a region that scrolls is reached by the keyboard
     <section className={styles.scroll} aria-label={label} tabIndex={0}>
@@ -67,6 +79,9 @@ export function ResultsTable({ rows, label }: { rows: readonly BenchmarkRow[]; l
                 {column.title}
               </th>
             ))}
+            <th scope="col" title={COST}>
+              time, ns
+            </th>
             <th scope="col">digest</th>
           </tr>
         </thead>
@@ -78,6 +93,7 @@ export function ResultsTable({ rows, label }: { rows: readonly BenchmarkRow[]; l
               {COLUMNS.map((column) => (
                 <td key={column.title}>{column.say(row)}</td>
               ))}
+              <td>{costs[row.unit] ? costText(costs[row.unit]) : "–"}</td>
               <td title={row.digest}>
                 <code>{row.digest.slice(0, 8)}</code>
               </td>
