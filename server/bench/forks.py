@@ -9,12 +9,15 @@ from functools import partial
 from typing import Any, Protocol
 
 from core.board.board import Board
+from core.errors import InputError
 from server.bench.engine import Engine
 from server.bench.events import Event
 from server.bench.maker import Maker
 from server.bench.past import Past
 from server.bench.portrait import design_of
+from server.bench.running import STATUS_S
 from server.bench.session import Session
+from server.bench.status import Travel
 
 
 class Registry(Protocol):
@@ -64,23 +67,40 @@ class Forks:
             For a tick that is not kept.
         """
         past = await self._engine.call(partial(Past.of, session, tick, window_ticks, is_before=is_before))
-        coming = asyncio.to_thread(past.session, self._benches.maker)
-        return await self._benches.admit(coming, session.is_started and not paused)
+        return await self._benches.admit(self._computed(past, session), session.is_started and not paused)
 
     async def seek(self, session: Session, tick: int, actor: str) -> Event:
-        """Show another tick of the past on a bench that shows one.
+        """Show another tick of the past on a bench that shows one; what it computes for another is given up.
 
         Raises
         ------
         InputError
-            For a tick that is not kept, and when the bench has gone on.
+            For a tick that is not kept, when the bench has gone on, and when another tick is sought meanwhile.
         """
         assert session.origin is not None
         of = self._benches.find(session.origin.bench) or session
         past = await self._engine.call(Past.of, of, tick, session.origin.window_ticks)
         past = replace(past, origin=session.origin.model_copy(update={"tick": tick}))
-        other = await asyncio.to_thread(past.session, self._benches.maker)
-        return await self._engine.call(session.show, other, actor)
+        return await self._engine.call(session.show, await self._computed(past, session), actor)
+
+    async def _computed(self, past: Past, asked: Session) -> Session:
+        """Compute a moment of the past; the bench that was asked for it tells how far it is."""
+        travel = asked.travel = Travel(tick=past.origin.tick, share=0.0)
+
+        def go(share: float) -> None:
+            if asked.is_past and asked.travel not in (None, travel):
+                raise InputError("another moment is sought by now", "tick", code="conflict")
+            travel.share = share
+
+        computing = asyncio.create_task(asyncio.to_thread(past.session, self._benches.maker, go))
+        try:
+            while not (await asyncio.wait([computing], timeout=STATUS_S))[0]:
+                await self._engine.call(asked.refresh_status)
+            return await computing
+        finally:
+            if asked.travel is travel:
+                asked.travel = None
+                await self._engine.call(asked.refresh_status)
 
     async def variant(self, session: Session, values: dict[str, Any]) -> Session:
         """Make a bench that begins as another is set now, with values written over it.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from core.board.board import Board
@@ -83,14 +84,23 @@ class Past:
             origin=Origin(bench=session.id, tick=tick, window_ticks=window_ticks),
         )
 
-    def session(self, maker: Maker) -> Session:
-        """Compute the moment again, and return a bench that is there and can go on."""
+    def session(self, maker: Maker, on_share: Callable[[float], None]) -> Session:
+        """Compute the moment again, and return a bench that is there and can go on.
+
+        Parameters
+        ----------
+        maker : Maker
+            Makes the bench.
+        on_share : callable
+            Called with the share of the ticks that is done; it may raise to end it.
+        """
         board = Board.restore(self.passage.checkpoint)
         session = maker.around(self.scenario, board, self.time_scale)
         session.narration.go_to(self.told)
         for rows in self.passage.walk(board):
             session.history.append(rows)
             session.narration.follow(board.log, rows)
+            on_share(1.0 - (self.passage.tick - board.tick) / self.passage.ticks)
         session.narration.follow(board.log)
         board.log = Log()  # the log of the bench has it all
         session.events.go_on(self.events)

@@ -17,7 +17,17 @@ from server.bench.commands import MAX_PENDING
 from server.bench.live_bench import LiveBench
 from server.bench.recordings import Recordings
 from server.bench.running import Running
-from server.bench.status import ActiveFault, Bench, BenchStatus, DiagnoserInfo, Opened, Origin, Pending, State
+from server.bench.status import (
+    ActiveFault,
+    Bench,
+    BenchStatus,
+    DiagnoserInfo,
+    Opened,
+    Origin,
+    Pending,
+    State,
+    Travel,
+)
 
 
 class ShownBench(LiveBench, Protocol):
@@ -35,6 +45,7 @@ class ShownBench(LiveBench, Protocol):
     opened: Opened | None
     keep: bool
     origin: Origin | None
+    travel: Travel | None
     track: Track | None
 
     @property
@@ -97,6 +108,7 @@ def status_of(bench: ShownBench) -> BenchStatus:
         recording=list(bench.recordings.under_way),
         armed=list(bench.recordings.armed),
         earliest_tick=bench.track and bench.track.first_tick,
+        travel=bench.travel and bench.travel.model_copy(),
         origin=bench.origin and bench.origin.model_copy(update={"is_past": bench.is_past}),
     )
 

@@ -30,7 +30,7 @@ from server.bench.recorder import Recorder
 from server.bench.recordings import Recordings
 from server.bench.running import Running
 from server.bench.snapshots import Snapshots
-from server.bench.status import Bench, Opened
+from server.bench.status import Bench, Opened, Travel
 from server.bench.tick_source import TickSource
 from server.bench.timeline import Timeline
 from server.bench.watch import Watch
@@ -68,6 +68,8 @@ class Session(Timeline):
     """The recording it plays, if it does."""
     recorded_scale: float | None = None
     """Device seconds per wall second of the recording."""
+    travel: Travel | None = None
+    """The moment of its past that is being computed, if one is."""
     opened: Opened | None = None
     """The experiment it was opened from, if it was."""
     keep = False

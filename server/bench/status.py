@@ -84,6 +84,13 @@ class Origin(BaseModel):
     is_past: bool = Field(True, description="It shows that moment still and may seek another; it has not gone on")
 
 
+class Travel(BaseModel):
+    """A moment of the past that is computed again now, because it was asked for."""
+
+    tick: int
+    share: float = Field(description="Of the ticks that it takes, those that are done")
+
+
 class BenchStatus(BaseModel):
     """The changing part of a bench."""
 
@@ -111,6 +118,9 @@ class BenchStatus(BaseModel):
     armed: list[str] = Field(description="Recordings that wait for their condition")
     earliest_tick: int | None = Field(None, description="The first tick that can be computed again; null: none can")
     origin: Origin | None = Field(None, description="Where it goes on from, if it was forked at a tick")
+    travel: Travel | None = Field(
+        None, description="A moment of its past that is being computed; seeking another ends it"
+    )
     watchers: int = 0
     company: Company | None = Field(None, description="Who is there; null while it is one person")
     loop_lag_ms: float = Field(0.0, description="99th percentile of the event loop's lateness, last minute")

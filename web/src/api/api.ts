@@ -120,6 +120,8 @@ export const api = {
   createBench: (body: NewBench) => data(client.POST("/api/v1/benches", { body })),
   start: (id: string) =>
     data(client.POST("/api/v1/benches/{bench_id}/commands", { ...bench(id), body: { kind: "start" } })),
+  seek: (id: string, tick: number) =>
+    data(client.POST("/api/v1/benches/{bench_id}/commands", { ...bench(id), body: { kind: "seek", tick } })),
   reopenBench: (id: string) => data(client.POST("/api/v1/benches/{bench_id}/reopen", bench(id))),
   links: async (kind: "experiment" | "layout") =>
     (await data(client.GET("/api/v1/links", { params: { query: { kind } } }))).links,

@@ -2946,6 +2946,8 @@ export interface components {
             earliest_tick?: number | null;
             /** @description Where it goes on from, if it was forked at a tick */
             origin?: components["schemas"]["Origin"] | null;
+            /** @description A moment of its past that is being computed; seeking another ends it */
+            travel?: components["schemas"]["Travel"] | null;
             /**
              * Watchers
              * @default 0
@@ -7150,6 +7152,19 @@ export interface components {
             denominator: number[];
         };
         /**
+         * Travel
+         * @description A moment of the past that is computed again now, because it was asked for.
+         */
+        Travel: {
+            /** Tick */
+            tick: number;
+            /**
+             * Share
+             * @description Of the ticks that it takes, those that are done
+             */
+            share: number;
+        };
+        /**
          * Trip
          * @description Why the board stopped.
          */
@@ -7988,6 +8003,11 @@ export interface components {
              * @default null
              */
             origin?: components["schemas"]["Origin"] | null;
+            /**
+             * @description A moment of its past that is being computed; seeking another ends it
+             * @default null
+             */
+            travel?: components["schemas"]["Travel"] | null;
             /**
              * Watchers
              * @default 0

@@ -9,7 +9,7 @@ import { backToNow, goOn, lookBack } from "../bench/past";
 import { send } from "../bench/send";
 import { useBench } from "../stream/bench-store";
 import { currentEvents } from "../stream/event-log";
-import { formatMoment } from "../ui/format";
+import { formatMoment, formatPercent } from "../ui/format";
 import styles from "./time-bar.module.css";
 
 const MOST_MARKS = 200;
@@ -34,7 +34,7 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
     setNewest((n) => ({ of, tick: isPast ? Math.max(n.of === of ? n.tick : 0, bench.tick) : bench.tick }));
   }, [bench, isPast]);
   const end = Math.max(isPast ? newest.tick : bench.tick, first + 1);
-  const shown = Math.min(held ?? bench.tick, end);
+  const shown = Math.min(held ?? bench.travel?.tick ?? bench.tick, end);
   const place = (tick: number) => `${((tick - first) / (end - first)) * 100}%`;
   const marks = (isPast ? events : currentEvents(events)).filter(
     (e) => e.tick >= first && e.tick <= end && eventTone(e) !== "quiet",
@@ -48,6 +48,9 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
     <section className={styles.bar} data-past={isPast} aria-label="Timeline">
       <p className={styles.words}>
         {isPast ? <strong>As it was at {formatMoment(shown * bench.dt_ms)}</strong> : <strong>Timeline</strong>}
+        {bench.travel && (
+          <span role="status"> computed again: {formatPercent(0.1 * Math.floor(10 * bench.travel.share), 0)}</span>
+        )}
       </p>
       <div className={styles.track}>
         <Slider

@@ -1,12 +1,15 @@
 import { api } from "../api/api";
 import { useBench } from "../stream/bench-store";
-import { stream } from "../stream/stream";
 import { announce } from "./announce";
 import { openBench, openOwn } from "./open-bench";
 import { send, showError } from "./send";
 
 /** Ticks before a moment of the past that its panels can show. */
 const WINDOW_TICKS = 20_000;
+/** A moment further back is computed for so long that the bench that shows the past is made first, and says how far it is. */
+const FAR_TICKS = 1_000_000;
+/** Between two looks whether another moment is wanted while one is computed. */
+const LOOK_MS = 50;
 /** How long a bench may take to say hello. */
 const HELLO_MS = 10_000;
 
@@ -27,11 +30,13 @@ async function follow(): Promise<void> {
       wanted = undefined;
       const bench = useBench.getState().bench;
       if (!bench) return;
-      if (bench.origin?.is_past) await stream.client.command({ kind: "seek", tick });
+      if (bench.origin?.is_past) await seek(bench.id, tick);
       else {
-        const past = await api.fork(bench.id, { tick, paused: true, window_ticks: WINDOW_TICKS });
+        const first = bench.tick - tick > FAR_TICKS ? bench.tick : tick;
+        const past = await api.fork(bench.id, { tick: first, paused: true, window_ticks: WINDOW_TICKS });
         openBench(past.id, false, true);
         await helloOf(past.id);
+        if (first !== tick) wanted ??= tick;
       }
     }
   } catch (error) {
@@ -41,6 +46,19 @@ async function follow(): Promise<void> {
     following = false;
   }
 }
+
+/** Let a bench show another moment; ends when it does, or when another is wanted, which the server computes instead. */
+async function seek(id: string, tick: number): Promise<void> {
+  let isThere = false;
+  const shown = api.seek(id, tick).finally(() => {
+    isThere = true;
+  });
+  while (!isThere && wanted === undefined) await Promise.race([shown, pause(LOOK_MS)]);
+  if (isThere) await shown;
+  else shown.catch(() => {}); // given up
+}
+
+const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
 /** Wait until the page shows a bench. */
 function helloOf(id: string): Promise<void> {

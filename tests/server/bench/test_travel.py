@@ -1,0 +1,110 @@
+"""A moment of the past that takes long to compute: the bench says how far it is, and gives it up for another."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from core.errors import InputError
+from server.bench import forks as module
+from server.bench.forks import Forks
+from server.bench.past import Past
+from server.bench.session import Session
+from tests.server.bench.test_session import advance, session
+
+
+class Slow:
+    """A moment of the past whose last half waits until the test lets it go on."""
+
+    def __init__(self, tick: int) -> None:
+        self.origin = SimpleNamespace(tick=tick)
+        self.half, self.goes_on = threading.Event(), threading.Event()
+
+    def session(self, maker: Any, on_share: Callable[[float], None]) -> str:
+        on_share(0.5)
+        self.half.set()
+        self.goes_on.wait()
+        on_share(1.0)
+        return f"{maker}: {self.origin.tick}"
+
+
+class Asked:
+    """A bench that shows the past; it keeps each status it is told to have."""
+
+    def __init__(self) -> None:
+        self.is_past, self.travel = True, None
+        self.told: list[Any] = []
+        self.half_is_told = threading.Event()
+
+    def refresh_status(self) -> None:
+        self.told.append(self.travel and self.travel.model_copy())
+        if self.travel and self.travel.share == 0.5:
+            self.half_is_told.set()
+
+
+async def at_once(job: Callable[..., Any], *args: Any) -> Any:
+    return job(*args)
+
+
+@pytest.fixture
+def forks(monkeypatch: pytest.MonkeyPatch) -> Any:
+    monkeypatch.setattr(module, "STATUS_S", 0.01)
+    return Forks(SimpleNamespace(maker="made"), SimpleNamespace(call=at_once))  # type: ignore[arg-type]
+
+
+def test_a_bench_says_how_far_the_moment_is_that_is_asked_for(forks: Any) -> None:
+    async def ask() -> str:
+        computing = asyncio.create_task(forks._computed(past, bench))
+        await asyncio.to_thread(past.half.wait)
+        await asyncio.to_thread(bench.half_is_told.wait)
+        past.goes_on.set()
+        made: str = await computing
+        return made
+
+    past, bench = Slow(7), Asked()
+    assert asyncio.run(ask()) == "made: 7"
+    assert {one.tick for one in bench.told if one} == {7}
+    assert bench.travel is None and bench.told[-1] is None
+
+
+@pytest.mark.parametrize("is_past", [True, False])
+def test_a_bench_that_shows_the_past_gives_a_moment_up_for_another(forks: Any, is_past: bool) -> None:
+    async def ask() -> list[Any]:
+        bench = Asked()
+        bench.is_past = is_past
+        one, other = Slow(1), Slow(2)
+        first = asyncio.create_task(forks._computed(one, bench))
+        await asyncio.to_thread(one.half.wait)
+        second = asyncio.create_task(forks._computed(other, bench))
+        await asyncio.to_thread(other.half.wait)
+        for past in (one, other):
+            past.goes_on.set()
+        return await asyncio.gather(first, second, return_exceptions=True)
+
+    first, second = asyncio.run(ask())
+    assert second == "made: 2"
+    if is_past:
+        assert isinstance(first, InputError) and first.code == "conflict" and first.field == "tick"
+    else:  # two people fork a bench
+        assert first == "made: 1"
+
+
+def test_the_share_grows_to_the_whole_way() -> None:
+    bench = session("first-look", samples=100_000)
+    advance(bench, 9000)
+    shares: list[float] = []
+
+    def around(scenario: Any, board: Any, _scale: Any) -> Session:
+        other = session("first-look", samples=100_000)
+        other.scenario, other.board = scenario, board
+        return other
+
+    way = Past.of(bench, 8000, 500)
+    made = way.session(SimpleNamespace(around=around), shares.append)  # type: ignore[arg-type]
+    assert made.board.tick == 8000 and way.passage.checkpoint.tick == 0
+    assert shares == sorted(shares) and 0.0 < shares[0] < shares[-1] == 1.0
