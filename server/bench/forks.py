@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Coroutine
+from collections.abc import Callable, Coroutine
 from dataclasses import replace
 from functools import partial
 from typing import Any, Protocol
@@ -81,14 +81,16 @@ class Forks:
         of = self._benches.find(session.origin.bench) or session
         past = await self._engine.call(Past.of, of, tick, session.origin.window_ticks)
         past = replace(past, origin=session.origin.model_copy(update={"tick": tick}))
-        return await self._engine.call(session.show, await self._computed(past, session), actor)
+        session.sought = past
+        other = await self._computed(past, session, lambda: session.sought is past)
+        return await self._engine.call(session.show, other, actor)
 
-    async def _computed(self, past: Past, asked: Session) -> Session:
-        """Compute a moment of the past; the bench that was asked for it tells how far it is."""
+    async def _computed(self, past: Past, asked: Session, is_wanted: Callable[[], bool] = lambda: True) -> Session:
+        """Compute a moment of the past while it is wanted; the bench that was asked for it tells how far it is."""
         travel = asked.travel = Travel(tick=past.origin.tick, share=0.0)
 
         def go(share: float) -> None:
-            if asked.is_past and asked.travel not in (None, travel):
+            if not is_wanted():
                 raise InputError("another moment is sought by now", "tick", code="conflict")
             travel.share = share
 

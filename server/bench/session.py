@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Future
-from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Any, get_args
 
@@ -22,7 +21,7 @@ from server.bench import commands
 from server.bench.changes import Changes
 from server.bench.events import Event, EventLog
 from server.bench.hiding import BlindView, Hiding
-from server.bench.moment import Moment
+from server.bench.jumping import Jumping
 from server.bench.narration import Narration
 from server.bench.pacing import Pacer
 from server.bench.portrait import bench_of, document_now, status_of
@@ -32,8 +31,6 @@ from server.bench.running import Running
 from server.bench.snapshots import Snapshots
 from server.bench.status import Bench, Opened, Travel
 from server.bench.tick_source import TickSource
-from server.bench.timeline import Timeline
-from server.bench.watch import Watch
 from server.errors import not_found
 from server.metrics import Metrics
 
@@ -43,7 +40,7 @@ STUDENT_TRACK_BYTES = 1_500_000
 """Memory of the checkpoints of a student's bench."""
 
 
-class Session(Timeline):
+class Session(Jumping):
     """A live bench.
 
     Parameters
@@ -62,12 +59,12 @@ class Session(Timeline):
         The engine's clock.
     """
 
-    taken_over = 0
-    """Number of the last event that is of the bench whose past it shows."""
     replay_of = ""
     """The recording it plays, if it does."""
     recorded_scale: float | None = None
     """Device seconds per wall second of the recording."""
+    sought: object = None
+    """The moment of the past that was asked for last."""
     travel: Travel | None = None
     """The moment of its past that is being computed, if one is."""
     opened: Opened | None = None
@@ -78,8 +75,6 @@ class Session(Timeline):
     """The class whose student has it."""
     witness: Callable[[Session, Event], None] | None = None
     """Hears of every event."""
-    watch: Watch | None = None
-    """Looks at the bench for a step of a lab sheet."""
 
     def __init__(
         self,
@@ -183,83 +178,6 @@ class Session(Timeline):
         if self._closed:
             raise not_found("bench", self.id)
 
-    def reset(self, scenario: Scenario, board: Board, actor: str, before_tick: int | None = None) -> Event:
-        """Begin again with a new board of the same signals; given a tick, run at once to shortly before it."""
-        if not self.has_signals_of(board):
-            text = "these values give the bench other signals"
-            raise InputError(text, "values", "make a new bench for them", "conflict")
-        before = self.moment(with_past=True)
-        self._begin_again(scenario, board)
-        self.narration.begin(board.spec)
-        self._jumped("the bench was reset", scenario.samples)
-        event = self._begun(before, actor, "reset to tick 0")
-        self.running.is_started = self.is_started or before_tick is not None
-        self.running.fast_forward.begin(before_tick)
-        self.refresh_status()
-        return event
-
-    def become(self, other: Session, actor: str, text: str, start: bool) -> Event:
-        """Go on as another bench of the same signals that nobody has, with its past and its pace."""
-        assert isinstance(other.board, Board)
-        before = self.moment(with_past=True)
-        self._begin_again(other.scenario, other.board)
-        self.history, self.track, self.running.pacer = other.history, other.track, other.pacer
-        self.narration.go_to(other.narration.told())
-        self._jumped(text, other.running.ends_at)
-        event = self._begun(before, actor, text)
-        self.running.is_started = start and self.board.trip is None
-        self.refresh_status()
-        return event
-
-    def show(self, other: Session, actor: str) -> Event:
-        """Show another moment of the past, a bench that nobody has."""
-        if not self.is_past:
-            raise InputError("it has gone on from its past", "kind", "fork the bench at a tick", "conflict")
-        assert isinstance(other.board, Board)
-        self._begin_again(other.scenario, other.board)
-        self.history, self.track, self.origin = other.history, other.track, other.origin
-        self.narration.go_to(other.narration.told())
-        self._jumped("another moment is shown", other.scenario.samples)
-        other.board.log = self.events
-        event = self.look_back(actor)
-        self.refresh_status()
-        return event
-
-    def look_back(self, actor: str) -> Event:
-        """Note which moment of the past it shows; what came after it is not of its past."""
-        tick = self.board.tick
-        led = [event.seq for event in self.events.after(0)[1] if event.seq <= self.taken_over and event.tick <= tick]
-        return self.events.add(tick, actor, "restored", f"shows tick {tick} as it was", new=max(led, default=0))
-
-    def _begun(self, before: Moment, actor: str, text: str) -> Event:
-        """Note at tick 0 that another board has begun, and take its log over."""
-        event = self.note(actor, "reset", text, tick=0)
-        self.events.take_over(self.board)
-        self.changes.jumped(event, before)
-        return event
-
-    def restore(self, snapshot_id: str, actor: str) -> Event:
-        """Go back to a snapshot."""
-        kept, before = self.snapshots.get(snapshot_id), self.moment(with_past=True)
-        self.go_to(kept.moment)
-        text = f"went back to {kept.snapshot.name or kept.snapshot.id}"
-        event = self.events.add(self.board.tick, actor, "restored", text, new=kept.moment.last_event)
-        self.changes.jumped(event, before)
-        self.refresh_status()
-        return event
-
-    def moment(self, with_past: bool = False) -> Moment:
-        """Return what the bench is now, for a jump that empties the history with the past before it."""
-        return replace(super().moment(with_past), last_event=self.events.last, told=self.narration.told())
-
-    def go_to(self, moment: Moment) -> None:
-        """Be what the bench was."""
-        self._be_again(moment)
-        if moment.told is not None:
-            self.narration.go_to(moment.told)
-        self.events.take_over(self.board)
-        self._jumped("the bench was restored", self.scenario.samples)
-
     def close(self) -> list[Recorder]:
         """Stop for good; return the recordings that were under way."""
         self._closed = True
@@ -291,28 +209,6 @@ class Session(Timeline):
         self.recordings.record(event)
         if self.witness is not None:
             self.witness(self, event)
-
-    def _jumped(self, why: str, ends_at: int | None) -> None:
-        """Follow a jump in time to a scenario that ends at a tick: recordings end, the clock is anchored anew."""
-        self.running.jumped(ends_at)
-        self.recordings.close(why)
-        self._remember()
-        if self.watch is not None:
-            self.watch.jumped(self.board.tick)
-
-    def done_otherwise(self) -> None:
-        """Note for the past that the board has become another in a way that no command says."""
-        super().done_otherwise()
-        self._remember()
-
-    def _remember(self) -> None:
-        """Let the narrator remember this moment if the past has a checkpoint of it."""
-        if self.track is not None and self.track.last_tick == self.board.tick:
-            self.narration.remember(self.board.tick, self.track.ticks)
-
-    def note(self, actor: str, kind: str, text: str, command: Document | None = None, tick: int | None = None) -> Event:
-        """Add an event of the bench itself, of now unless a tick is given."""
-        return self.events.add(self.board.tick if tick is None else tick, actor, kind, text, command)
 
     @property
     def document(self) -> Document:

@@ -37,7 +37,7 @@ class Asked:
     """A bench that shows the past; it keeps each status it is told to have."""
 
     def __init__(self) -> None:
-        self.is_past, self.travel = True, None
+        self.travel = None
         self.told: list[Any] = []
         self.half_is_told = threading.Event()
 
@@ -72,26 +72,36 @@ def test_a_bench_says_how_far_the_moment_is_that_is_asked_for(forks: Any) -> Non
     assert bench.travel is None and bench.told[-1] is None
 
 
-@pytest.mark.parametrize("is_past", [True, False])
-def test_a_bench_that_shows_the_past_gives_a_moment_up_for_another(forks: Any, is_past: bool) -> None:
+@pytest.mark.parametrize("last_is_first", [True, False])
+def test_a_moment_is_given_up_when_another_is_sought(forks: Any, last_is_first: bool) -> None:
     async def ask() -> list[Any]:
-        bench = Asked()
-        bench.is_past = is_past
-        one, other = Slow(1), Slow(2)
-        first = asyncio.create_task(forks._computed(one, bench))
+        one, other, bench = Slow(1), Slow(2), Asked()
+        wanted = one
+        first = asyncio.create_task(forks._computed(one, bench, lambda: wanted is one))
         await asyncio.to_thread(one.half.wait)
-        second = asyncio.create_task(forks._computed(other, bench))
+        wanted = other
+        second = asyncio.create_task(forks._computed(other, bench, lambda: wanted is other))
         await asyncio.to_thread(other.half.wait)
-        for past in (one, other):
+        for past, task in ((other, second), (one, first)) if last_is_first else ((one, first), (other, second)):
             past.goes_on.set()
+            await asyncio.wait([task])
+        assert bench.travel is None
         return await asyncio.gather(first, second, return_exceptions=True)
 
     first, second = asyncio.run(ask())
     assert second == "made: 2"
-    if is_past:
-        assert isinstance(first, InputError) and first.code == "conflict" and first.field == "tick"
-    else:  # two people fork a bench
-        assert first == "made: 1"
+    assert isinstance(first, InputError) and first.code == "conflict" and first.field == "tick"
+
+
+def test_two_who_fork_a_bench_both_have_their_moment(forks: Any) -> None:
+    async def ask() -> list[str]:
+        bench, pasts = Asked(), [Slow(1), Slow(2)]
+        tasks = [asyncio.create_task(forks._computed(past, bench)) for past in pasts]
+        for past in pasts:
+            past.goes_on.set()
+        return await asyncio.gather(*tasks)
+
+    assert asyncio.run(ask()) == ["made: 1", "made: 2"]
 
 
 def test_the_share_grows_to_the_whole_way() -> None:
