@@ -117,7 +117,7 @@ def test_all_that_is_due_goes_out_in_one_write() -> None:
         bench.hub.publish()
         assert len(line.written) == 1
         kinds = [message["type"] if isinstance(message, dict) else "frame" for message in line.messages()]
-        assert kinds == ["events", "status", "frame"]
+        assert kinds == ["events", "narration", "status", "frame"]
 
     on_loop(play)
 
