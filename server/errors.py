@@ -97,9 +97,9 @@ class Elsewhere(Exception):
         self.shard = shard
 
 
-def not_found(noun: str, name: str, hint: str = "") -> ApiError:
+def not_found(noun: str, name: str, hint: str = "", field: str = "") -> ApiError:
     """Refuse an unknown name."""
-    return ApiError(404, "not_found", f"there is no {noun} '{name}'", hint=hint)
+    return ApiError(404, "not_found", f"there is no {noun} '{name}'", field, hint)
 
 
 def body_of(error: Exception) -> ErrorBody:

@@ -20,6 +20,8 @@ from server.bench.portrait import document_of
 from server.bench.status import Bench
 from server.errors import ApiError
 
+MAX_NAME = 80
+
 router = APIRouter(prefix="/benches", tags=["benches"], route_class=StrictRoute)
 
 
@@ -104,6 +106,7 @@ class ForkFrom(StrictBody):
         20_000, ge=0, le=1_000_000, description="Ticks before it that are computed too, for its panels"
     )
     paused: bool = Field(False, description="It waits, and may seek other ticks until something is done on it")
+    name: str = Field("", max_length=MAX_NAME, description="What it is called beside its title")
 
     @model_validator(mode="after")
     def _has_one_moment(self) -> Self:
@@ -112,6 +115,12 @@ class ForkFrom(StrictBody):
         if self.tick is None and self.before:
             raise ValueError("before needs a tick")
         return self
+
+
+class BenchName(StrictBody):
+    """What a bench is called."""
+
+    name: str = Field(max_length=MAX_NAME, description="Empty: by the title of its scenario alone")
 
 
 class Variant(StrictBody):
@@ -149,6 +158,13 @@ async def list_benches(service: ServiceDep, person: PersonDep) -> BenchList:
 @router.get("/{bench_id}")
 async def get_bench(session: SessionDep, service: ServiceDep, person: PersonDep) -> Bench:
     """Describe a bench."""
+    return service.views.of(session, person)
+
+
+@router.patch("/{bench_id}", dependencies=[RateLimited])
+async def name_bench(body: BenchName, session: SessionDep, service: ServiceDep, person: PersonDep) -> Bench:
+    """Call a bench something, as a branch by what differs in it."""
+    session.name = body.name
     return service.views.of(session, person)
 
 
@@ -224,6 +240,7 @@ async def fork_bench(
         twin = await forks.now(session, body.snapshot, paused=body.paused)
     else:
         twin = await forks.at(session, body.tick, body.window_ticks, is_before=body.before, paused=body.paused)
+    twin.name = body.name
     response.headers["Location"] = f"/api/v1/benches/{twin.id}"
     return await service.views.opened(twin, person)
 

@@ -176,6 +176,14 @@ async def get_run_thumbnail(run_id: str, service: ServiceDep) -> Response:
     return FileResponse(path, media_type=SVG, headers={"Cache-Control": "private, max-age=3600"})
 
 
+@router.get("/{run_id}/scenario", response_class=Response, responses={200: {"content": {"text/plain": {}}}})
+async def get_run_scenario(run_id: str, service: ServiceDep) -> Response:
+    """Return what a run carries out as a scenario in TOML; a bench made of it has the same bits."""
+    scenario = await service.jobs.scenario(run_id)
+    name = f'attachment; filename="{scenario.id}.toml"'
+    return Response(scenario.toml(), media_type="text/plain", headers={"Content-Disposition": name})
+
+
 @router.get("/{run_id}/script", response_class=Response, responses={200: {"content": {PYTHON: {}}}})
 async def get_run_script(run_id: str, service: ServiceDep) -> Response:
     """Download a Python script that repeats a run over REST and checks that it gives the same bits."""

@@ -12,15 +12,17 @@ from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from pydantic import BaseModel, ValidationError
 
 from core.errors import InputError
+from core.format import format_short
 from server.api.bodies import strict_json
 from server.api.deps import SocketServiceDep, rate_limited
 from server.bench.events import Event
-from server.bench.session import Session
-from server.errors import ApiError, ErrorBody, body_of, clear_line
+from server.bench.session import Seen, Session
+from server.errors import ApiError, ErrorBody, body_of, clear_line, not_found
 from server.people.access import Need
 from server.people.person import Person
 from server.security.limits import Bucket
 from server.service import Service
+from server.stream.behind import Behind
 from server.stream.client import CLOSE_FAILED, Client
 from server.stream.hub import CLOSE_FULL, CLOSE_NO_BENCH
 from server.stream.line import Line
@@ -31,6 +33,7 @@ from server.stream.wire import (
     MAX_POINTS,
     SUBPROTOCOL,
     Ack,
+    BehindSpec,
     CommandMessage,
     ErrorMessage,
     Hello,
@@ -242,13 +245,32 @@ class Conversation:
         others = [panel for number, panel in client.panels.items() if number != message.panel]
         if len(others) >= MAX_PANELS:
             raise InputError(f"{MAX_PANELS} panels are shown, the limit", "panel")
-        points = sum(panel.points for panel in others) + len(indices) * message.width
+        behind = [self._behind(spec, at, message.signals) for at, spec in enumerate(message.behind)]
+        points = sum(panel.points for panel in others) + len(indices) * message.width * (1 + len(behind))
         if points > MAX_POINTS:
             raise InputError(f"all panels together have {points} points; at most {MAX_POINTS}", "width")
         revision = self._subscribed[message.panel] = self._subscribed.get(message.panel, 0) + 1
         client.cuts.refresh()
-        client.panels[message.panel] = Panel(client.cuts.view(message, indices, trigger), revision)
+        client.panels[message.panel] = Panel(client.cuts.view(message, indices, trigger, behind), revision)
         client.offer(frame=True)
+
+    def _behind(self, spec: BehindSpec, at: int, names: list[str]) -> Behind:
+        """Return a bench behind a panel, as this person may see it at any time."""
+        service, person = self._service, self._person
+
+        def find() -> Seen | None:
+            session = service.benches.find(spec.bench)
+            if session is None or not service.people.may(person, Need.WATCH, spec.bench):
+                return None
+            return service.views.seen(session, person)
+
+        other = find()
+        if other is None:
+            raise not_found("bench", spec.bench, field=f"behind.{at}.bench")
+        if other.dt_ms != self._bench.dt_ms:
+            rate = format_short(1.0 / other.dt_ms, "kHz")
+            raise InputError(f"bench {spec.bench} runs at {rate}, this one does not", f"behind.{at}.bench")
+        return Behind(names, spec.shift_ticks, find)
 
     def _refuse(self, document: Any, error: ErrorBody) -> None:
         """Answer a command by a reply with its id, any other message by an error."""

@@ -75,10 +75,11 @@ class Jumping(Timeline):
         self.refresh_status()
         return event
 
-    def look_back(self, actor: str) -> Event:
-        """Note which moment of the past it shows; what came after it is not of its past."""
+    def look_back(self, actor: str, *, is_before: bool = False) -> Event:
+        """Note which moment of the past it shows, or the one before what was done then; later events are not of it."""
         tick = self.board.tick
-        led = [event.seq for event in self.events.after(0)[1] if event.seq <= self.taken_over and event.tick <= tick]
+        end = tick if is_before else tick + 1
+        led = [event.seq for event in self.events.after(0)[1] if event.seq <= self.taken_over and event.tick < end]
         return self.events.add(tick, actor, "restored", f"shows tick {tick} as it was", new=max(led, default=0))
 
     def _begun(self, before: Moment, actor: str, text: str) -> Event:

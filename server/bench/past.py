@@ -37,6 +37,8 @@ class Past:
         Its pace.
     origin : Origin
         The bench and the tick.
+    is_before : bool
+        What was done at that very tick is left out.
     """
 
     scenario: Scenario
@@ -46,6 +48,7 @@ class Past:
     told: Told
     time_scale: float | None
     origin: Origin
+    is_before: bool = False
 
     @classmethod
     def of(cls, session: Session, tick: int, window_ticks: int, *, is_before: bool = False) -> Past:
@@ -82,6 +85,7 @@ class Past:
             told=session.narration.told_at(passage.checkpoint.tick),
             time_scale=session.pacer.scale,
             origin=Origin(bench=session.id, tick=tick, window_ticks=window_ticks),
+            is_before=is_before,
         )
 
     def session(self, maker: Maker, on_share: Callable[[float], None]) -> Session:
@@ -107,6 +111,6 @@ class Past:
         session.taken_over = session.events.last
         session.track = self.track.until(board)
         session.origin = self.origin
-        session.look_back("api")
+        session.look_back("api", is_before=self.is_before)
         session.refresh_status()
         return session

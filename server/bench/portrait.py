@@ -43,6 +43,7 @@ class ShownBench(LiveBench, Protocol):
     replay_of: str
     recorded_scale: float | None
     opened: Opened | None
+    name: str
     keep: bool
     origin: Origin | None
     travel: Travel | None
@@ -130,6 +131,7 @@ def bench_of(bench: ShownBench, around: dict[str, Any], view3d: str | None) -> B
         **{**dict(bench.status), **around, "last_event": last},
         id=bench.id,
         title=bench.scenario.head.title or bench.scenario.id,
+        name=bench.name,
         scenario_id=bench.scenario.id,
         source=bench.scenario.head.source,
         created=bench.created,

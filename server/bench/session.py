@@ -59,6 +59,8 @@ class Session(Jumping):
         The engine's clock.
     """
 
+    name = ""
+    """What people call it, beside the title of its scenario."""
     replay_of = ""
     """The recording it plays, if it does."""
     recorded_scale: float | None = None

@@ -170,6 +170,7 @@ class Bench(BenchStatus):
     recorded_scale: float | None = Field(None, description="Device seconds per wall second it was recorded at")
     opened: Opened | None = Field(None, description="The experiment it was opened from, if it was")
     blind: Question | None = Field(None, description="Asked while a fault is hidden here; little else is served then")
+    name: str = Field("", description="What people call it beside the title, as a branch: with PID")
     keep: bool = Field(False, description="It is never let go")
     let_go_in_s: float | None = Field(
         None, description="Until it is let go if nobody watches it or asks for it; null: it stays"

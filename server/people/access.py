@@ -125,6 +125,7 @@ _DOORS = {
     """,
     Need.TEACHER: f"""
         DELETE {BENCH}  *
+        PATCH {BENCH}
         POST {BENCH}/fork
         POST {BENCH}/variant
         POST {BENCH}/parameter-sets
@@ -147,6 +148,7 @@ _DOORS = {
         GET {API}/runs/{{run_id}}
         PATCH {API}/runs/{{run_id}}
         DELETE {API}/runs/{{run_id}}
+        GET {API}/runs/{{run_id}}/scenario
         GET {API}/runs/{{run_id}}/trace
         GET {API}/runs/{{run_id}}/report
         GET {API}/runs/{{run_id}}/thumbnail

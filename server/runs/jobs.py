@@ -97,6 +97,13 @@ class Jobs(Requested[Run]):
             raise not_found(f"{ending[1:]} file of run", run_id, "a run has its files once it is done")
         return run, path
 
+    async def scenario(self, run_id: str) -> Scenario:
+        """Return what a run carries out, with its first seed."""
+        row = await self._requests.get(self.kind, run_id)
+        document = row.document if not row.seeds else {**row.document, "seed": row.seeds[0]}
+        with kept():
+            return await asyncio.to_thread(Scenario.load, document)
+
     def shown(self, row: RequestRow) -> Run:
         """Return a run as the interface shows it, with its progress while it is under way."""
         run, campaign = Run.model_validate(row), self._queue.campaigns.get(row.id)

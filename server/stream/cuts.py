@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import time
-from weakref import WeakValueDictionary
+from collections.abc import Sequence
+from weakref import WeakSet, WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from server.bench.session import Seen
+from server.stream.behind import Behind
 from server.stream.codec import Moment, Picture
 from server.stream.view import View
 from server.stream.wire import Subscribe
@@ -26,6 +28,7 @@ class SharedCuts:
     def __init__(self, session: Seen) -> None:
         self._session = session
         self._views: WeakValueDictionary[str, View] = WeakValueDictionary()
+        self._with_behind: WeakSet[View] = WeakSet()
         self._history = session.history
         self._pictures: dict[View, Picture] = {}
         self.refresh()
@@ -47,9 +50,22 @@ class SharedCuts:
             picture = self._pictures[view] = view.picture(self)
         return picture
 
-    def view(self, spec: Subscribe, indices: list[int], trigger_index: int | None) -> View:
-        """Return the view of a subscription: pages with the same subscription share one."""
-        fresh = View(spec, indices, trigger_index, self.moment.dt_ms, self.moment.head)
+    @property
+    def behind(self) -> list[tuple[tuple[int, int], ...]]:
+        """What pictures depend on beside this bench: the benches behind it go on by themselves."""
+        return [view.behind for view in self._with_behind]
+
+    def view(
+        self, spec: Subscribe, indices: list[int], trigger_index: int | None, behind: Sequence[Behind] = ()
+    ) -> View:
+        """Return the view of a subscription: pages with the same subscription share one.
+
+        People may see other benches than others do, so a view with benches behind it is its own.
+        """
+        fresh = View(spec, indices, trigger_index, self.moment.dt_ms, self.moment.head, behind)
+        if behind:
+            self._with_behind.add(fresh)
+            return fresh
         if spec.trigger is not None and spec.trigger.sweep == "single":
             return fresh  # each page arms its own trigger
         key = f"{self.moment.dt_ms} {spec.model_copy(update={'panel': 0}).model_dump_json()}"

@@ -25,7 +25,8 @@ class Panel:
     @property
     def points(self) -> int:
         """Columns times signals: the cost of a picture."""
-        return len(self.view.indices) * self.view.spec.width
+        spec = self.view.spec
+        return len(self.view.indices) * spec.width * (1 + len(spec.behind))
 
     def picture(self, cuts: SharedCuts) -> Picture | None:
         """Return the picture, or nothing if it is the one already sent."""

@@ -35,6 +35,7 @@ class Room:
         self.cuts = SharedCuts(session)
         self.news = News(session, around)
         self._head = self._last = self._status_event = -1
+        self._behind: list[tuple[tuple[int, int], ...]] = []
         self._status_at = 0.0
 
     def publish(self, now: float) -> Iterator[None]:
@@ -43,8 +44,10 @@ class Room:
         status = last != self._status_event and now - self._status_at >= STATUS_S
         if status:
             self._status_event, self._status_at = last, now
-        new = {"events": last != self._last, "frame": head != self._head, "status": status}
-        self._head, self._last = head, last
+        behind = self.cuts.behind
+        frame = head != self._head or behind != self._behind
+        new = {"events": last != self._last, "frame": frame, "status": status}
+        self._head, self._last, self._behind = head, last, behind
         if any(new.values()):
             for served, client in enumerate(list(self.clients), 1):
                 client.offer(**new)

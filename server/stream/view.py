@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, Protocol
 
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.board.history import FACTOR
+from server.stream.behind import Behind
 from server.stream.codec import FROZEN, TRIGGERED, WAITING, Picture
 from server.stream.trigger import Samples, Trigger, crossing_time
 from server.stream.wire import Subscribe
@@ -65,11 +67,12 @@ def column_step(ticks: int, width: int) -> int:
 
 
 class _State(NamedTuple):
-    """Identifies a picture: its kind, a tick that is different for other pictures of that kind, and its flags."""
+    """Identifies a picture: its kind, a tick that differs for others of that kind, its flags, what is behind it."""
 
     kind: Literal["frozen", "rolling", "triggered", "empty"]
     tick: int
     flags: int
+    behind: tuple[tuple[int, int], ...] = ()
 
 
 class View:
@@ -87,10 +90,20 @@ class View:
         Device time of one tick.
     head : int
         First tick not computed yet.
+    behind : sequence of Behind
+        Other benches that are shown behind the picture.
     """
 
-    def __init__(self, spec: Subscribe, indices: list[int], trigger_index: int | None, dt_ms: float, head: int) -> None:
-        self.spec, self.indices = spec, indices
+    def __init__(
+        self,
+        spec: Subscribe,
+        indices: list[int],
+        trigger_index: int | None,
+        dt_ms: float,
+        head: int,
+        behind: Sequence[Behind] = (),
+    ) -> None:
+        self.spec, self.indices, self._behind = spec, indices, behind
         self._window = max(2, round((spec.window_ms or 0.0) / dt_ms))
         self._sweep = _Sweep(spec, trigger_index, self._window, head) if trigger_index is not None else None
         self._frozen: Span | None = None
@@ -98,6 +111,11 @@ class View:
             self._frozen = Span.between(spec.start_tick, spec.end_tick, spec.width)
         self._state: _State | None = None
         self._picture: Picture | None = None
+
+    @property
+    def behind(self) -> tuple[tuple[int, int], ...]:
+        """What the pictures of other benches depend on."""
+        return tuple(one.state for one in self._behind)
 
     def rearm(self, head: int) -> None:
         """Take one more picture in single sweep."""
@@ -110,17 +128,21 @@ class View:
 
     def picture(self, history: History) -> Picture:
         """Return the picture of now; the same object while nothing in it changes."""
-        state = self._look(history)
+        state = self._look(history)._replace(behind=self.behind)
         if self._picture is None or state != self._state:
             self._state = state
             span, trigger = self._span(history, state)
+            own = history.columns(self.indices, span.start, span.end, span.columns)
+            others = [one.columns(span.start, span.end, span.columns) for one in self._behind]
+            latest = _latest(history, self.indices)
+            nothing = np.full(len(latest) * len(others), np.nan, np.float32)
             self._picture = Picture(
                 start=span.start,
                 end=span.end,
                 trigger=trigger,
                 flags=state.flags,
-                columns=history.columns(self.indices, span.start, span.end, span.columns),
-                latest=_latest(history, self.indices),
+                columns=np.concatenate([own, *others]) if others else own,
+                latest=np.concatenate([latest, nothing]) if others else latest,
             )
         return self._picture
 

@@ -16,6 +16,7 @@ from server.stream.codec import WIRE
 SUBPROTOCOL = f"combbench.v{WIRE}"
 MAX_PANELS = 32
 MAX_SIGNALS = 32
+MAX_BEHIND = 8
 MAX_COLUMNS = 4096
 MAX_POINTS = 262_144
 MAX_TICK = 2**53
@@ -40,8 +41,18 @@ class TriggerSpec(Message):
     sweep: Literal["auto", "normal", "single"] = "auto"
 
 
+class BehindSpec(Message):
+    """Another bench whose signals of the same names are shown behind those of a panel."""
+
+    bench: str = Field(max_length=64)
+    shift_ticks: int = Field(0, ge=-MAX_TICK, le=MAX_TICK, description="Its tick minus that of this bench")
+
+
 class Subscribe(Message):
-    """Show signals in a panel; a second one for the same panel replaces the first."""
+    """Show signals in a panel; a second one for the same panel replaces the first.
+
+    The frame has the signals of the bench, then for each bench behind them the same once more.
+    """
 
     type: Literal["subscribe"]
     panel: Panel
@@ -52,6 +63,7 @@ class Subscribe(Message):
     start_tick: int | None = Field(None, ge=-MAX_TICK, le=MAX_TICK)
     end_tick: int | None = Field(None, ge=-MAX_TICK, le=MAX_TICK)
     trigger: TriggerSpec | None = None
+    behind: list[BehindSpec] = Field([], max_length=MAX_BEHIND)
 
     @model_validator(mode="after")
     def _has_its_span(self) -> Subscribe:

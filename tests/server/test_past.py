@@ -105,6 +105,11 @@ def test_a_fork_before_what_was_done_at_a_tick_is_without_it(live: Any, ran: str
     assert [fault["name"] for fault in with_it["faults"] if fault["name"] == "drive_gain"] == ["drive_gain"]
     assert "drive_gain" not in [fault["name"] for fault in without["faults"]]
     assert without["controller"] == "open_loop"
+    for bench, kinds in ((with_it, {"switch", "inject"}), (without, set())):
+        events = live.http.get(f"/api/v1/benches/{bench['id']}/events").json()["events"]
+        led = next(one["new"] for one in events if one["kind"] == "restored")
+        at = {one["kind"] for one in events if one["tick"] == 9_500 and one["seq"] <= led}
+        assert at & {"switch", "inject"} == kinds
     forward(live, without["id"], 12_000)
     straight = run(with_values(get("ch5-seven-step"), {"samples": 12_000, "expect": []}))
     assert digest(live, without["id"]) == straight.digest
@@ -174,3 +179,13 @@ def test_a_branch_has_been_told_and_tells_what_a_straight_run_tells(live: Any, r
         branch = fork(live, ran, tick=tick, paused=True).json()["id"]
         forward(live, branch, FAR)
         assert told(branch) == whole
+
+
+def test_a_branch_has_a_name(live: Any, ran: str) -> None:
+    made = fork(live, ran, tick=9_000, paused=True, name="with PID").json()
+    assert (made["name"], made["title"]) == ("with PID", live.get(ran)["title"])
+    path = f"/api/v1/benches/{made['id']}"
+    assert live.http.patch(path, json={"name": "with PID, from 180 ms"}).json()["name"] == "with PID, from 180 ms"
+    refused = live.http.patch(path, json={"name": "x" * 81})
+    assert refused.status_code == 422 and refused.json()["error"]["field"] == "name"
+    assert live.get(made["id"])["name"] == "with PID, from 180 ms" and live.get(ran)["name"] == ""

@@ -104,6 +104,11 @@ def walled(block: type[Block]) -> np.ndarray:
     return _table(wall.address(block, Sizes(len(slots.p), len(slots.s), ports)))
 
 
+def bits(numbers: np.ndarray) -> bytes:
+    """Return the bits of numbers; of a NaN neither processors nor WebAssembly say which of its bits are set."""
+    return np.where(np.isnan(numbers), np.nan, numbers).tobytes()
+
+
 def run_all(block: type[Block]) -> None:
     one, other, inside = Slots(block), Slots(block), Slots(block)
     before, inputs = one.p.copy(), one.io[: len(block.inputs)]
@@ -122,7 +127,7 @@ def run_all(block: type[Block]) -> None:
             step(p, s, x)
         np.testing.assert_array_equal(one.s, other.s)
         np.testing.assert_array_equal(one.w, other.w)
-        assert (one.s.tobytes(), one.w.tobytes()) == (inside.s.tobytes(), inside.w.tobytes())
+        assert (bits(one.s), bits(one.w)) == (bits(inside.s), bits(inside.w))
         np.testing.assert_array_equal(one.w[inputs], seen)
     for slots in (one, other, inside):
         slots.check_guards()

@@ -17,6 +17,7 @@ from scenarios.campaign.single import run_seeds
 from scenarios.edit import with_values
 from scenarios.library import get, library
 from scenarios.run import build, run
+from scenarios.schema import Scenario
 from server.runs.length import check_length
 from server.settings import Settings
 from server.store.models import RequestRow
@@ -257,3 +258,14 @@ def test_a_study_is_a_run_too(live: Any) -> None:
 def test_every_scenario_of_the_library_may_run_on_a_server_as_it_comes() -> None:
     for scenario in library():
         check_length(scenario, 1, Settings(), scenario.id, "scenario")
+
+
+def test_a_run_gives_its_scenario_back(live: Any) -> None:
+    asked = {"scenario": "first-look", "set": {"samples": 900}, "seed": 7}
+    made = live.http.post("/api/v1/runs", json=asked).json()
+    found = live.http.get(f"/api/v1/runs/{made['id']}/scenario")
+    assert found.status_code == 200 and found.headers["content-type"].startswith("text/plain")
+    again = Scenario.load(found.text)
+    assert (again.samples, again.spec.seed) == (900, 7)
+    assert run(again).digest == wait(live, made["id"])["summary"]["digest"]
+    assert live.http.get("/api/v1/runs/none/scenario").status_code == 404

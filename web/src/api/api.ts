@@ -78,6 +78,8 @@ export const api = {
   compareTraces: (ids: string[], signal: string) =>
     data(client.GET("/api/v1/runs/compare/trace", { params: { query: { ids, signal } } })),
   run: (id: string) => data(client.GET("/api/v1/runs/{run_id}", run(id))),
+  runScenario: async (id: string) =>
+    (await data(client.GET("/api/v1/runs/{run_id}/scenario", { ...run(id), parseAs: "text" }))) as string,
   startRun: (body: NewRun) => data(client.POST("/api/v1/runs", { body })),
   cancelRun: (id: string) => data(client.DELETE("/api/v1/runs/{run_id}", run(id))),
   sweeps: async (query: RunFilter) => (await data(client.GET("/api/v1/sweeps", { params: { query } }))).sweeps,
@@ -118,8 +120,16 @@ export const api = {
   benches: async () => (await data(client.GET("/api/v1/benches"))).benches,
   bench: (id: string) => data(client.GET("/api/v1/benches/{bench_id}", bench(id))),
   createBench: (body: NewBench) => data(client.POST("/api/v1/benches", { body })),
+  /** Let a bench that has just been made run as fast as it goes. */
+  runFast: (id: string) =>
+    data(
+      client.POST("/api/v1/benches/{bench_id}/commands", { ...bench(id), body: { kind: "time_scale", value: null } }),
+    ),
   start: (id: string) =>
     data(client.POST("/api/v1/benches/{bench_id}/commands", { ...bench(id), body: { kind: "start" } })),
+  events: (id: string) => data(client.GET("/api/v1/benches/{bench_id}/events", bench(id))),
+  nameBench: (id: string, name: string) =>
+    data(client.PATCH("/api/v1/benches/{bench_id}", { ...bench(id), body: { name } })),
   seek: (id: string, tick: number) =>
     data(client.POST("/api/v1/benches/{bench_id}/commands", { ...bench(id), body: { kind: "seek", tick } })),
   reopenBench: (id: string) => data(client.POST("/api/v1/benches/{bench_id}/reopen", bench(id))),

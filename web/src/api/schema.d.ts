@@ -285,7 +285,11 @@ export interface paths {
         delete: operations["delete_bench_api_v1_benches__bench_id__delete"];
         options?: never;
         head?: never;
-        patch?: never;
+        /**
+         * Name Bench
+         * @description Call a bench something, as a branch by what differs in it.
+         */
+        patch: operations["name_bench_api_v1_benches__bench_id__patch"];
         trace?: never;
     };
     "/api/v1/benches/{bench_id}/reopen": {
@@ -1097,6 +1101,26 @@ export interface paths {
          * @description Return a small drawing of a run.
          */
         get: operations["get_run_thumbnail_api_v1_runs__run_id__thumbnail_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run_id}/scenario": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Run Scenario
+         * @description Return what a run carries out as a scenario in TOML; a bench made of it has the same bits.
+         */
+        get: operations["get_run_scenario_api_v1_runs__run_id__scenario_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -3041,6 +3065,12 @@ export interface components {
             /** @description Asked while a fault is hidden here; little else is served then */
             blind?: components["schemas"]["server__bench__blind__Question"] | null;
             /**
+             * Name
+             * @description What people call it beside the title, as a branch: with PID
+             * @default
+             */
+            name?: string;
+            /**
              * Keep
              * @description It is never let go
              * @default false
@@ -3059,6 +3089,17 @@ export interface components {
         BenchList: {
             /** Benches */
             benches: components["schemas"]["Bench"][];
+        };
+        /**
+         * BenchName
+         * @description What a bench is called.
+         */
+        BenchName: {
+            /**
+             * Name
+             * @description Empty: by the title of its scenario alone
+             */
+            name: string;
         };
         /**
          * BenchmarkCard
@@ -4238,6 +4279,12 @@ export interface components {
              * @default false
              */
             paused?: boolean;
+            /**
+             * Name
+             * @description What it is called beside its title
+             * @default
+             */
+            name?: string;
         };
         /**
          * Gallery
@@ -7563,6 +7610,20 @@ export interface components {
             frame: number;
         };
         /**
+         * BehindSpec
+         * @description Another bench whose signals of the same names are shown behind those of a panel.
+         */
+        BehindSpec: {
+            /** Bench */
+            bench: string;
+            /**
+             * Shift Ticks
+             * @description Its tick minus that of this bench
+             * @default 0
+             */
+            shift_ticks?: number;
+        };
+        /**
          * CommandMessage
          * @description A command; answered by a reply with the same id.
          */
@@ -7620,6 +7681,8 @@ export interface components {
         /**
          * Subscribe
          * @description Show signals in a panel; a second one for the same panel replaces the first.
+         *
+         *     The frame has the signals of the bench, then for each bench behind them the same once more.
          */
         Subscribe: {
             /**
@@ -7663,6 +7726,11 @@ export interface components {
             end_tick?: number | null;
             /** @default null */
             trigger?: components["schemas"]["TriggerSpec"] | null;
+            /**
+             * Behind
+             * @default []
+             */
+            behind?: components["schemas"]["BehindSpec"][];
         };
         /**
          * TriggerSpec
@@ -8658,6 +8726,41 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    name_bench_api_v1_benches__bench_id__patch: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["BenchName"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Bench"];
+                };
             };
             /** @description Refused or failed */
             default: {
@@ -10235,6 +10338,37 @@ export interface operations {
                 };
                 content: {
                     "image/svg+xml": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_run_scenario_api_v1_runs__run_id__scenario_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/plain": unknown;
                 };
             };
             /** @description Refused or failed */

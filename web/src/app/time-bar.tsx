@@ -10,6 +10,7 @@ import { send } from "../bench/send";
 import { useBench } from "../stream/bench-store";
 import { currentEvents } from "../stream/event-log";
 import { formatMoment, formatPercent } from "../ui/format";
+import { Compare } from "./compare";
 import styles from "./time-bar.module.css";
 
 const MOST_MARKS = 200;
@@ -72,6 +73,7 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
       </div>
       <span className={styles.end}>{formatMoment(end * bench.dt_ms)}</span>
       {isPast ? <PastActions bench={bench} /> : bench.origin && <Other />}
+      <Compare />
     </section>
   );
 }
@@ -88,20 +90,27 @@ function PastActions({ bench }: { bench: Bench }) {
           </Button>
         </Menu.Target>
         <Menu.Dropdown>
-          <Menu.Item leftSection={<IconPlayerPlayFilled size={14} />} onClick={() => void goOn()}>
+          <Menu.Item leftSection={<IconPlayerPlayFilled size={14} />} onClick={() => void goOn("as it was")}>
             Go on as it was
           </Menu.Item>
           {bench.faults.map(({ name }) => (
             <Menu.Item
               key={name}
-              onClick={() => void goOn(() => send({ heal: [name] }, `${cardOf("faults", name)?.title ?? name} healed`))}
+              onClick={() =>
+                void goOn(`without ${titleOf("faults", name)}`, () =>
+                  send({ heal: [name] }, `${titleOf("faults", name)} healed`),
+                )
+              }
             >
-              Without {cardOf("faults", name)?.title.toLowerCase() ?? name}
+              Without {titleOf("faults", name).toLowerCase()}
             </Menu.Item>
           ))}
           {others.map((name) => (
-            <Menu.Item key={name} onClick={() => void goOn(() => send({ switch: name }))}>
-              With {cardOf("control", name)?.title ?? name}
+            <Menu.Item
+              key={name}
+              onClick={() => void goOn(`with ${titleOf("control", name)}`, () => send({ switch: name }))}
+            >
+              With {titleOf("control", name)}
             </Menu.Item>
           ))}
         </Menu.Dropdown>
@@ -117,6 +126,8 @@ function PastActions({ bench }: { bench: Bench }) {
     </>
   );
 }
+
+const titleOf = (family: "faults" | "control", name: string) => cardOf(family, name)?.title ?? name;
 
 /** From a branch to the bench it is of. */
 function Other() {

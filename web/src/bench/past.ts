@@ -13,6 +13,9 @@ const LOOK_MS = 50;
 /** How long a bench may take to say hello. */
 const HELLO_MS = 10_000;
 
+/** As the server allows. */
+const LONGEST_NAME = 80;
+
 let wanted: number | undefined;
 let following = false;
 
@@ -89,11 +92,12 @@ export async function backToNow(): Promise<void> {
   }
 }
 
-/** Go on from the moment that is shown, as a bench of its own. */
-export async function goOn(change?: () => Promise<boolean>): Promise<void> {
+/** Go on from the moment that is shown, as a bench of its own with a name. */
+export async function goOn(name: string, change?: () => Promise<boolean>): Promise<void> {
   const bench = useBench.getState().bench;
   if (!bench?.origin?.is_past) return;
   if (change && !(await change())) return;
+  await api.nameBench(bench.id, name.slice(0, LONGEST_NAME)).catch(showError);
   if (await send({ kind: "start" }, "A branch goes on from here")) openOwn(bench.id, true);
 }
 
@@ -102,7 +106,13 @@ export async function goOnWithout(tick: number, words: string): Promise<void> {
   const bench = useBench.getState().bench;
   if (!bench) return;
   try {
-    const made = await api.fork(bench.id, { tick, before: true, paused: true, window_ticks: WINDOW_TICKS });
+    const made = await api.fork(bench.id, {
+      tick,
+      before: true,
+      paused: true,
+      window_ticks: WINDOW_TICKS,
+      name: `without ${words}`.slice(0, LONGEST_NAME),
+    });
     openOwn(made.id);
     await helloOf(made.id);
     await send({ kind: "start" });

@@ -23,6 +23,8 @@ export interface BenchStore {
   narration: Narration;
   /** A hidden fault is to be found: the server serves little else, and panels that need more show one line. */
   blind: boolean;
+  /** How often the server has refused a bench behind the panels, as one that is gone. */
+  behindRefused: number;
   droppedFrames: number;
   /** The latest word of the server about this connection. */
   notice: { code: string; message: string } | undefined;
@@ -38,6 +40,7 @@ export const useBench = create<BenchStore>(() => ({
   events: [],
   narration: NOTHING_SAID,
   blind: false,
+  behindRefused: 0,
   droppedFrames: 0,
   notice: undefined,
   called: 0,

@@ -1,5 +1,7 @@
 import type { PanelFrame } from "./panel-frame";
-import type { Subscription } from "./wire";
+import { type Subscription, tracesOf } from "./wire";
+
+const tracesIn = ({ signals, behind }: Subscription): string => JSON.stringify([signals, behind]);
 
 /** What one visible panel wants, and the newest picture it has been sent. */
 export class Feed {
@@ -33,7 +35,7 @@ export class Feed {
 
   /** Ask for another subscription; the picture of other signals says nothing about these. */
   ask(subscription: Subscription): void {
-    if (subscription.signals.join() !== this.subscription.signals.join()) this.frame = undefined;
+    if (tracesIn(subscription) !== tracesIn(this.subscription)) this.frame = undefined;
     this.subscription = subscription;
   }
 
@@ -44,6 +46,6 @@ export class Feed {
   }
 
   private fits(frame: PanelFrame): boolean {
-    return frame.signals === this.subscription.signals.length && frame.frozen === (this.subscription.mode === "frozen");
+    return frame.signals === tracesOf(this.subscription) && frame.frozen === (this.subscription.mode === "frozen");
   }
 }

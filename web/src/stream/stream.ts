@@ -103,6 +103,10 @@ function receive(message: ServerMessage): void {
       client.feeds.refused();
       // back on a bench where a fault is hidden, a panel asks for what is hidden before it says so itself
       if (known.bench?.blind && message.error.field === "signals") return;
+      if (message.error.field?.startsWith("behind.")) {
+        useBench.setState((s) => ({ behindRefused: s.behindRefused + 1 }));
+        return;
+      }
       console.error("the server refused a message", message.error);
       useBench.setState({ notice: { code: message.error.code, message: message.error.message } });
       return;

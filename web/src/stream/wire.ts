@@ -9,10 +9,14 @@ export const SUBPROTOCOL = `combbench.v${WIRE_VERSION}`;
 
 export type Trigger = Required<Schemas["TriggerSpec"]>;
 
-export type Subscription =
-  | { mode: "roll"; signals: string[]; window_ms: number; width: number }
-  | { mode: "frozen"; signals: string[]; start_tick: number; end_tick: number; width: number }
-  | { mode: "triggered"; signals: string[]; window_ms: number; width: number; trigger: Trigger };
+export type Subscription = { signals: string[]; width: number; behind?: Required<Schemas["BehindSpec"]>[] } & (
+  | { mode: "roll"; window_ms: number }
+  | { mode: "frozen"; start_tick: number; end_tick: number }
+  | { mode: "triggered"; window_ms: number; trigger: Trigger }
+);
+
+/** How many traces its pictures have: each bench behind has all signals once more. */
+export const tracesOf = ({ signals, behind = [] }: Subscription): number => signals.length * (1 + behind.length);
 
 export type ClientMessage =
   | ({ type: "subscribe"; panel: number } & Subscription)

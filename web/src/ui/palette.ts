@@ -53,6 +53,18 @@ export const CANVAS: Record<
   },
 };
 
+const parts = (colour: string) => [1, 3, 5].map((at) => Number.parseInt(colour.slice(at, at + 2), 16));
+
+/** How much of a colour is left in what lies behind. */
+const LEFT = 0.45;
+
+/** A colour of what lies behind, on the panels of a scheme. */
+export function faded(colour: string, scheme: Scheme): string {
+  const ground = parts(CANVAS[scheme].panel);
+  const mixed = parts(colour).map((part, i) => Math.round(LEFT * part + (1 - LEFT) * ground[i]));
+  return `#${mixed.map((part) => part.toString(16).padStart(2, "0")).join("")}`;
+}
+
 /** A trace's colour on white, whatever it is on the screen. */
 export const onWhite = (colour: string): string =>
   TRACE_COLOURS.light[TRACE_COLOURS.dark.indexOf(colour)] ??

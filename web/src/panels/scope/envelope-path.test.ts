@@ -1,6 +1,7 @@
 import { expect, it } from "vitest";
+import type { Pen } from "../../picture/pen";
 import { SvgPen } from "../../picture/svg-pen";
-import { paintEnvelope } from "./envelope-path";
+import { differenceOf, paintEnvelope, shadeBetween } from "./envelope-path";
 
 /** Keeps what was inked instead of writing it down. */
 class Notes extends SvgPen {
@@ -107,4 +108,39 @@ it("stays within its field", () => {
     expect(top).toBeGreaterThanOrEqual(-1);
     expect(bottom).toBeLessThanOrEqual(101);
   }
+});
+
+it("a difference is exact for samples and holds all that may be for columns of several", () => {
+  const of = (low: number[], high: number[]) => ({ low: Float32Array.from(low), high: Float32Array.from(high) });
+  const found = differenceOf(of([3, 1, Number.NaN], [3, 2, Number.NaN]), of([1, -1, 0], [1, 4, 0]));
+  expect([...found.low]).toEqual([2, -3, Number.NaN]);
+  expect([...found.high]).toEqual([2, 3, Number.NaN]);
+});
+
+it("the area between two traces is filled where both have data", () => {
+  const line = (values: number[]) => ({ low: Float32Array.from(values), high: Float32Array.from(values) });
+  const fills: number[][][] = [];
+  let path: number[][] = [];
+  const pen = {
+    ...{ save() {}, restore() {}, beginPath: () => (path = []) },
+    ...{ moveTo: (x: number, y: number) => path.push([x, y]), lineTo: (x: number, y: number) => path.push([x, y]) },
+    fill: () => fills.push(path),
+  } as unknown as Pen;
+  const field = { left: 0, top: 0, width: 40, height: 10, from: 0, to: 4, min: 0, max: 10 };
+  const nothing = Number.NaN;
+  shadeBetween(pen, [0, 1, 2, 3, 4], line([1, 2, nothing, 3, 30]), line([5, 5, 5, 5, 5]), field, "#000000");
+  expect(fills).toEqual([
+    [
+      [0, 9],
+      [10, 8],
+      [10, 5],
+      [0, 5],
+    ],
+    [
+      [30, 7],
+      [40, 0],
+      [40, 5],
+      [30, 5],
+    ],
+  ]);
 });

@@ -114,3 +114,43 @@ function dashing(dashes: readonly number[]): (x: number) => boolean {
   });
   return (x) => inked[Math.floor(x % period)];
 }
+
+/** How strong the area between two traces is. */
+const SHADE = 0.35;
+
+/** Fill the area between two traces, where both have data. */
+export function shadeBetween(
+  pen: Pen,
+  times: ArrayLike<number>,
+  one: Envelope,
+  other: Envelope,
+  { left, top, width, height, from, to, min, max }: TraceField,
+  colour: string,
+): void {
+  const x = (c: number) => left + ((times[c] - from) * width) / (to - from);
+  const y = ({ low, high }: Envelope, c: number) =>
+    clamp(top + height - (0.5 * (low[c] + high[c]) - min) * (height / (max - min)), top, top + height);
+  pen.save();
+  pen.globalAlpha = SHADE;
+  pen.fillStyle = colour;
+  for (let start = 0; start < times.length; start += 1) {
+    let end = start;
+    while (end < times.length && Number.isFinite(one.low[end] + other.low[end])) end += 1;
+    if (end - start < 2) continue;
+    pen.beginPath();
+    pen.moveTo(x(start), y(one, start));
+    for (let c = start + 1; c < end; c += 1) pen.lineTo(x(c), y(one, c));
+    for (let c = end - 1; c >= start; c -= 1) pen.lineTo(x(c), y(other, c));
+    pen.fill();
+    start = end;
+  }
+  pen.restore();
+}
+
+/** What a trace has more than another: its sample less the other's, and where columns hold several, all that this may be. */
+export function differenceOf(one: Envelope, other: Envelope): Envelope {
+  return {
+    low: one.low.map((low, c) => low - other.high[c]),
+    high: one.high.map((high, c) => high - other.low[c]),
+  };
+}

@@ -4,7 +4,7 @@ import type { EventAxis } from "../../picture/event-marks";
 import type { Box, Field, Look, Pen } from "../../picture/pen";
 import type { Picture } from "../../picture/picture";
 import { strokeEnvelope, within } from "../../picture/traces";
-import { CANVAS, DASHES, fontFor, TRACE_COLOURS } from "../../ui/palette";
+import { CANVAS, DASHES, faded, fontFor, type Scheme, TRACE_COLOURS } from "../../ui/palette";
 import type { UnitScale } from "../../ui/unit-scale";
 import type { Envelope } from "./envelope-path";
 
@@ -17,7 +17,18 @@ export interface PlotTrace {
   colour: string;
   /** In `DASHES`. */
   dash: number;
+  /** What the bench is called that it is of, where that lies behind the one on the page. */
+  behind?: string;
 }
+
+/** Before the unit of a difference, which has an axis of its own. */
+export const DIFFERENCE = "Δ ";
+
+/** The order in which traces are inked: what lies behind comes first. */
+export const inkOrder = (traces: readonly PlotTrace[], inked: readonly number[]): number[] => [
+  ...inked.filter((i) => traces[i].behind !== undefined),
+  ...inked.filter((i) => traces[i].behind === undefined),
+];
 
 /** All that a scope shows at a moment. */
 export interface ScopeShown {
@@ -97,6 +108,12 @@ export function axisTitle(names: readonly string[], scale: UnitScale): string {
   return scale.unit ? `${said}, ${scale.unit}` : said;
 }
 
+/** The colour of a trace in a scheme, whatever it is on the screen. */
+function inkOf({ slot, behind }: PlotTrace, scheme: Scheme): string {
+  const colour = TRACE_COLOURS[scheme][slot];
+  return behind === undefined ? colour : faded(colour, scheme);
+}
+
 /** A scope as a picture. */
 export function scopePicture(shown: ScopeShown, title: string, stem: string): Picture {
   const { traces, envelopes, bands, units, ranges, times, span, dtMs, origin, isTriggered, marks } = shown;
@@ -117,24 +134,25 @@ export function scopePicture(shown: ScopeShown, title: string, stem: string): Pi
   return {
     stem,
     title,
-    legend: traces.flatMap(({ name, unit, slot, dash }, i) => {
-      const said = bands.includes(i) ? `${words(name)}, envelope` : words(name);
-      return units.includes(unit) ? [{ name: said, colour: TRACE_COLOURS.light[slot], dashes: DASHES[dash] }] : [];
+    legend: traces.flatMap((trace, i) => {
+      const said = `${words(trace.name)}${trace.behind === undefined ? "" : ` (${trace.behind})`}`;
+      const name = bands.includes(i) ? `${said}, envelope` : said;
+      return units.includes(trace.unit) ? [{ name, colour: inkOf(trace, "light"), dashes: DASHES[trace.dash] }] : [];
     }),
     height: 350,
     time,
     paint(pen, box, look) {
       const field = fieldOf(box, look.fontSize);
       const trace = (index: number) => {
-        const { unit, slot, dash } = traces[index];
+        const { unit, dash } = traces[index];
         const { min, max } = ranges[units.indexOf(unit)];
         const start = (span.start - origin) * dtMs;
         const ms = placeOn({ range: [start, start + (span.end - span.start) * dtMs] }, field.left, field.right);
         const y = placeOn({ range: [min, max] }, field.bottom, field.top);
-        const stroke = { colour: TRACE_COLOURS[look.scheme][slot], width: 1.8, dashes: DASHES[dash] };
+        const stroke = { colour: inkOf(traces[index], look.scheme), width: 1.8, dashes: DASHES[dash] };
         strokeEnvelope(pen, { x: (column) => ms(times[column]), y }, envelopes[index], stroke);
       };
-      paintScope(pen, field, shown, look, { ink: (inked) => inked.forEach(trace), isTitled: true });
+      paintScope(pen, field, shown, look, { ink: (inked) => inkOrder(traces, inked).forEach(trace), isTitled: true });
     },
   };
 }

@@ -1,5 +1,6 @@
 import "uplot/dist/uPlot.min.css";
 import { useCallback, useEffect, useMemo, useRef, useState } from "react";
+import { behindText, useBehind } from "../../bench/behind";
 import { marksNow } from "../../bench/marks";
 import { NORMAL_PX, useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
@@ -21,7 +22,7 @@ import { SignalPicker } from "./signal-picker";
 import { RearmContext, type TriggerState } from "./trigger-menu";
 import { useScopeKeys } from "./use-scope-keys";
 import { scopeSubscription, useTimeView } from "./use-time-view";
-import { useTraces } from "./use-traces";
+import { useTraces, useTracesBehind } from "./use-traces";
 
 interface ScopePanelProps {
   config: ScopeConfig;
@@ -37,6 +38,9 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
   const fontSize = useView((s) => s.fontPx);
   const dtMs = useBench((s) => s.bench?.dt_ms);
   const traces = useTraces(config.signals);
+  const behind = useBehind((s) => s.behind);
+  const difference = useBehind((s) => s.difference);
+  const tracesBehind = useTracesBehind(traces, behind, difference);
   const host = useRef<HTMLDivElement>(null);
   const plot = useRef<ScopePlot | undefined>(undefined);
   const { view, span, look, goLive } = useTimeView(config.windowMs, dtMs, (start, end) =>
@@ -49,8 +53,8 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
 
   const subscription = useMemo(() => {
     if (!dtMs || traces.length === 0 || pixels < 20) return undefined;
-    return scopeSubscription({ ...config, signals: traces.map((t) => t.name) }, view, pixels, dtMs);
-  }, [config, traces, view, pixels, dtMs]);
+    return scopeSubscription({ ...config, signals: traces.map((t) => t.name) }, view, pixels, dtMs, behind);
+  }, [config, traces, view, pixels, dtMs, behind]);
 
   const feed = useFeed(subscription, (frame) => {
     if (frame.frozen !== (span.current !== undefined)) return;
@@ -63,11 +67,12 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
     if (!host.current || traces.length === 0) return;
     const made = new ScopePlot({
       host: host.current,
-      traces,
+      traces: [...traces, ...tracesBehind],
       scheme,
       lineWidth: fontSize > NORMAL_PX ? 0.17 * fontSize : 1.6,
       fontSize,
       marks: marksNow,
+      isShaded: () => useBehind.getState().shaded,
       gestures: { onSpan: look, onLive: goLive },
     });
     plot.current = made;
@@ -87,7 +92,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
       made.destroy();
       plot.current = undefined;
     };
-  }, [traces, scheme, fontSize, look, goLive, feed]);
+  }, [traces, tracesBehind, scheme, fontSize, look, goLive, feed]);
 
   const rearm = useCallback(() => feed.current && stream.client.feeds.rearm(feed.current), [feed]);
   const sayTime = (share: number) => {
@@ -148,6 +153,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
               />
             )}
           </div>
+          {behind.length > 0 && <p className={styles.behind}>{behindText(behind, difference)}</p>}
           {config.measure && <MeasureStrip traces={traces} plot={plot} at={cursors} />}
         </>
       )}

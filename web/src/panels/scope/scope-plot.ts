@@ -5,13 +5,13 @@ import { markEvents } from "../../picture/event-marks";
 import type { Field, Look } from "../../picture/pen";
 import { columnAt, columnTimes, type PanelFrame } from "../../stream/panel-frame";
 import { hover } from "../../ui/hover";
-import { CANVAS, DASHES, fontFor } from "../../ui/palette";
+import { CANVAS, DASHES, faded, fontFor } from "../../ui/palette";
 import { type UnitScale, unitScale } from "../../ui/unit-scale";
 import { type AxisRange, nextRange } from "./axis-range";
 import { BarRaster } from "./bar-raster";
-import { type Envelope, paintEnvelope } from "./envelope-path";
+import { differenceOf, type Envelope, paintEnvelope, shadeBetween, type TraceField } from "./envelope-path";
 import { type Banded, bandsOf, samplesOf } from "./envelope-rule";
-import { type PlotTrace, paintScope, type ScopeShown } from "./paint-scope";
+import { DIFFERENCE, inkOrder, type PlotTrace, paintScope, type ScopeShown } from "./paint-scope";
 import { listenForGestures, type ScopeGestures } from "./scope-gestures";
 import { type ScopeModel, scopeOptions } from "./scope-options";
 
@@ -24,7 +24,16 @@ export interface ScopePlotOptions extends Look {
   traces: PlotTrace[];
   lineWidth: number;
   marks: () => Marks;
+  /** Whether the difference from what lies behind is shaded. */
+  isShaded: () => boolean;
   gestures: ScopeGestures;
+}
+
+/** The scale of an axis; that of differences is marked. */
+function scaleOn(unit: string, size: number): UnitScale {
+  if (!unit.startsWith(DIFFERENCE)) return unitScale(unit, size);
+  const scale = unitScale(unit.slice(DIFFERENCE.length), size);
+  return { ...scale, unit: `${DIFFERENCE}${scale.unit}` };
 }
 
 /** One uPlot with min/max traces on up to three unit axes; fed by frames, never by React. */
@@ -50,7 +59,7 @@ export class ScopePlot {
   constructor(options: ScopePlotOptions) {
     this.options = options;
     this.units = [...new Set(options.traces.map((t) => t.unit))].slice(0, MOST_AXES);
-    this.scales = this.units.map((unit) => unitScale(unit, 1));
+    this.scales = this.units.map((unit) => scaleOn(unit, 1));
     const empty = [[0, 1], ...options.traces.map(() => [null, null])] as uPlot.AlignedData;
     this.plot = new uPlot(scopeOptions(this.model()), empty, options.host);
     this.dispose.push(
@@ -80,12 +89,15 @@ export class ScopePlot {
     this.frame = frame;
     this.span = span ?? { start: frame.startTick, end: frame.endTick };
     this.origin = frame.triggered ? frame.triggerTick : 0;
-    this.fitRanges(frame);
     const { columns, data } = frame;
     this.envelopes = Array.from({ length: frame.signals }, (_, i) => ({
       low: data.subarray(i * 2 * columns, (i * 2 + 1) * columns),
       high: data.subarray((i * 2 + 1) * columns, (i * 2 + 2) * columns),
     }));
+    const own = this.own;
+    for (let i = 0; frame.signals + i < this.options.traces.length && own + i < frame.signals; i += 1)
+      this.envelopes.push(differenceOf(this.envelopes[i], this.envelopes[own + i]));
+    this.fitRanges();
     const times = columnTimes(frame, this.origin);
     this.times = times;
     this.plot.setData([times, ...this.envelopes.map((e) => e.high)] as uPlot.AlignedData);
@@ -188,23 +200,28 @@ export class ScopePlot {
     hover.set(undefined, this);
   };
 
-  private fitRanges(frame: PanelFrame): void {
+  /** How many traces are of the bench on the page. */
+  private get own(): number {
+    const at = this.options.traces.findIndex(({ behind }) => behind !== undefined);
+    return at < 0 ? this.options.traces.length : at;
+  }
+
+  private fitRanges(): void {
     const now = performance.now();
     this.units.forEach((unit, axis) => {
       let low = Number.POSITIVE_INFINITY;
       let high = Number.NEGATIVE_INFINITY;
       this.options.traces.forEach((trace, i) => {
-        if (trace.unit !== unit || i >= frame.signals) return;
-        const end = (i + 1) * 2 * frame.columns;
-        for (let c = i * 2 * frame.columns; c < end; c += 1) {
-          const v = frame.data[c];
-          if (v < low) low = v;
-          if (v > high) high = v;
+        if (trace.unit !== unit || i >= this.envelopes.length) return;
+        const envelope = this.envelopes[i];
+        for (let c = 0; c < envelope.low.length; c += 1) {
+          if (envelope.low[c] < low) low = envelope.low[c];
+          if (envelope.high[c] > high) high = envelope.high[c];
         }
       });
       const range = nextRange(this.ranges[axis], low, high, now);
       if (range === this.ranges[axis]) return;
-      this.scales[axis] = unitScale(unit, Math.max(Math.abs(range.min), Math.abs(range.max)));
+      this.scales[axis] = scaleOn(unit, Math.max(Math.abs(range.min), Math.abs(range.max)));
       this.ranges[axis] = range;
     });
   }
@@ -236,7 +253,8 @@ export class ScopePlot {
     const field = { left: left - x, top: top - y, width, height, from: start, to: start + span };
     ctx.save();
     ctx.setTransform(1, 0, 0, 1, x, y);
-    for (const trace of inked) {
+    this.shadeDifference(ctx, field, isLine);
+    for (const trace of inkOrder(traces, inked)) {
       const { colour, dash, unit } = traces[trace];
       const range = this.ranges[this.units.indexOf(unit)];
       const ink = { colour, width: lineWidth * ratio, dashes: DASHES[dash].map((px) => px * ratio), isLine };
@@ -251,6 +269,23 @@ export class ScopePlot {
       ctx.drawImage(canvas, 0, 0);
     }
     ctx.restore();
+  }
+
+  /** The area between each trace and that of the first bench behind, where columns are samples. */
+  private shadeDifference(
+    pen: CanvasRenderingContext2D,
+    field: Omit<TraceField, "min" | "max">,
+    isLine: boolean,
+  ): void {
+    const { traces, scheme } = this.options;
+    const { own } = this;
+    if (own === traces.length || !isLine || !this.options.isShaded()) return;
+    for (let i = 0; i < own; i += 1) {
+      const range = this.ranges[this.units.indexOf(traces[i].unit)];
+      const [one, other] = [this.envelopes[i], this.envelopes[own + i]];
+      if (range && one && other)
+        shadeBetween(pen, this.times, one, other, { ...field, ...range }, faded(traces[i].colour, scheme));
+    }
   }
 
   /** A span without data says so: it lies before the history, or ahead of the board. */

@@ -1,4 +1,5 @@
 import { useCallback, useEffect, useRef, useState } from "react";
+import type { Behind } from "../../bench/behind";
 import type { ScopeConfig } from "../../stream/scope-config";
 import type { Subscription } from "../../stream/wire";
 import { jump } from "../../ui/hover";
@@ -56,16 +57,25 @@ export function zoomSpan(start: number, end: number, about: number, factor: numb
 }
 
 /** The subscription that fills `pixels` columns with what the scope looks at. */
-export function scopeSubscription(config: ScopeConfig, window: TimeWindow, pixels: number, dtMs: number): Subscription {
-  const { signals } = config;
+export function scopeSubscription(
+  config: ScopeConfig,
+  window: TimeWindow,
+  pixels: number,
+  dtMs: number,
+  behind: readonly Behind[] = [],
+): Subscription {
+  const asked = {
+    signals: config.signals,
+    ...(behind.length > 0 && { behind: behind.map(({ bench, shift }) => ({ bench, shift_ticks: shift })) }),
+  };
   const width = (ticks: number) => Math.max(2, Math.min(Math.round(pixels), Math.ceil(ticks), 4096));
   if (window.kind === "past") {
     const start_tick = Math.floor(window.start);
     const end_tick = Math.max(start_tick + 1, Math.ceil(window.end));
-    return { mode: "frozen", signals, start_tick, end_tick, width: width(end_tick - start_tick) };
+    return { mode: "frozen", ...asked, start_tick, end_tick, width: width(end_tick - start_tick) };
   }
   const window_ms = config.windowMs;
   if (config.mode === "triggered")
-    return { mode: "triggered", signals, window_ms, width: width(window_ms / dtMs), trigger: config.trigger };
-  return { mode: "roll", signals, window_ms, width: width(window_ms / dtMs) };
+    return { mode: "triggered", ...asked, window_ms, width: width(window_ms / dtMs), trigger: config.trigger };
+  return { mode: "roll", ...asked, window_ms, width: width(window_ms / dtMs) };
 }

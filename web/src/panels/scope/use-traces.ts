@@ -1,8 +1,10 @@
 import { useMemo } from "react";
+import type { Behind } from "../../bench/behind";
 import { useBench } from "../../stream/bench-store";
+import { faded } from "../../ui/palette";
 import { traceColour, traceStyle } from "../../ui/trace-style";
 import { useScheme } from "../../ui/use-canvas";
-import type { PlotTrace } from "./paint-scope";
+import { DIFFERENCE, type PlotTrace } from "./paint-scope";
 
 /** The traces of some signals, as far as the bench has them, in the colours they have everywhere. */
 export function useTraces(names: string[]): PlotTrace[] {
@@ -19,4 +21,21 @@ export function useTraces(names: string[]): PlotTrace[] {
       return [{ name, unit: signal.unit, slot: style.slot, colour: traceColour(style, scheme), dash: style.dash }];
     });
   }, [names, signals, diagnosers, scheme]);
+}
+
+/** The same traces of other benches, faded, in the order in which the server sends them; then the differences from the first. */
+export function useTracesBehind(traces: PlotTrace[], behind: readonly Behind[], difference: boolean): PlotTrace[] {
+  const scheme = useScheme();
+  return useMemo(() => {
+    const others = behind.flatMap(({ words }) =>
+      traces.map((trace) => ({ ...trace, colour: faded(trace.colour, scheme), behind: words })),
+    );
+    const differences = traces.map(({ name, unit, ...style }) => ({
+      ...style,
+      name: `difference of ${name}`,
+      unit: `${DIFFERENCE}${unit}`,
+      dash: 2,
+    }));
+    return difference && behind.length > 0 ? [...others, ...differences] : others;
+  }, [traces, behind, difference, scheme]);
 }

@@ -1,0 +1,211 @@
+import { ActionIcon, Button, Checkbox, NativeSelect, Popover, TextInput } from "@mantine/core";
+import { IconArrowsDiff, IconTrash, IconX } from "@tabler/icons-react";
+import { useEffect, useState } from "react";
+import { api } from "../api/api";
+import type { Bench } from "../api/types";
+import { type Alignment, addBehind, align, MOST_BEHIND, removeBehind, useBehind, wordsOf } from "../bench/behind";
+import { showRecording, showRun } from "../bench/behind-sources";
+import { openBench } from "../bench/open-bench";
+import { showError } from "../bench/send";
+import { useBench } from "../stream/bench-store";
+import { formatMoment, formatSi } from "../ui/format";
+import styles from "./compare.module.css";
+
+const ALIGNMENTS: { value: Alignment; label: string }[] = [
+  { value: "time", label: "the same time" },
+  { value: "inject", label: "the last fault of each" },
+  { value: "heal", label: "the last healing of each" },
+  { value: "switch", label: "the last switch of each" },
+  { value: "tripped", label: "the last trip of each" },
+];
+
+interface Sources {
+  benches: Bench[];
+  recordings: { id: string; name: string }[];
+  runs: { id: string; label?: string; title: string }[];
+}
+
+/** What lies behind the traces: other benches, branches, recordings and runs, and at what they are aligned. */
+export function Compare() {
+  const bench = useBench((s) => s.bench);
+  const { behind } = useBehind();
+  const [opened, setOpened] = useState(false);
+  if (!bench) return null;
+  return (
+    <Popover
+      opened={opened}
+      onChange={setOpened}
+      position="top-end"
+      shadow="md"
+      trapFocus
+      returnFocus
+      withRoles={false}
+    >
+      <Popover.Target>
+        <Button
+          size="compact-sm"
+          variant={behind.length > 0 ? "light" : "default"}
+          leftSection={<IconArrowsDiff size={16} />}
+          aria-haspopup="dialog"
+          aria-expanded={opened}
+          onClick={() => setOpened(!opened)}
+        >
+          {behind.length > 0 ? `Compared with ${behind.length}` : "Compare"}
+        </Button>
+      </Popover.Target>
+      <Popover.Dropdown
+        className={styles.sheet}
+        role="dialog"
+        aria-label="Compare with other benches"
+        onKeyDown={(e) => e.key === "Escape" && setOpened(false)}
+      >
+        {opened && <Sheet bench={bench} />}
+      </Popover.Dropdown>
+    </Popover>
+  );
+}
+
+function Sheet({ bench }: { bench: Bench }) {
+  const { behind, alignment, shaded, difference } = useBehind();
+  const [sources, setSources] = useState<Sources>({ benches: [], recordings: [], runs: [] });
+  const [edition, setEdition] = useState(0);
+  // biome-ignore lint/correctness/useExhaustiveDependencies: the list is asked for again after a change
+  useEffect(() => {
+    const ask = async () => {
+      const [benches, recordings, runs] = await Promise.all([
+        api.benches(),
+        api.recordings(),
+        api.runs({ state: "done" }),
+      ]);
+      const alike = recordings.filter(({ dt_ms }) => dt_ms === bench.dt_ms);
+      setSources({ benches, recordings: alike, runs });
+    };
+    ask().catch(showError);
+  }, [edition, bench.id]);
+  const again = () => setEdition((e) => e + 1);
+  const there = (id: string) => behind.some((one) => one.bench === id);
+  const others = sources.benches.filter(
+    (other) => other.id !== bench.id && other.dt_ms === bench.dt_ms && !there(other.id) && !other.origin?.is_past,
+  );
+  const add = (value: string) => {
+    const [kind, id] = [value.slice(0, 2), value.slice(2)];
+    const source = { "b ": addBehind, "r ": showRecording, "h ": showRun }[kind];
+    if (source) void source(id).then(again);
+  };
+  return (
+    <>
+      {behind.length === 0 && <p className={styles.words}>Traces of other benches lie faded behind these.</p>}
+      <ul className={styles.list} aria-label="Behind the traces">
+        {behind.map((one) => (
+          <Row
+            key={one.bench}
+            id={one.bench}
+            words={one.words}
+            shift={one.shift}
+            dtMs={bench.dt_ms}
+            known={sources.benches.find(({ id }) => id === one.bench)}
+            onChange={again}
+          />
+        ))}
+      </ul>
+      {behind.length < MOST_BEHIND ? (
+        <NativeSelect
+          size="xs"
+          label="Add"
+          value=""
+          data={[
+            { value: "", label: "choose what to compare with" },
+            { group: "Benches", items: others.map((one) => ({ value: `b ${one.id}`, label: longWords(one) })) },
+            {
+              group: "Recordings, played on a bench of their own",
+              items: sources.recordings.map(({ id, name }) => ({ value: `r ${id}`, label: name || id })),
+            },
+            {
+              group: "Headless runs, carried out again on a bench",
+              items: sources.runs.map(({ id, label, title }) => ({ value: `h ${id}`, label: label || title })),
+            },
+          ]}
+          onChange={(e) => add(e.currentTarget.value)}
+        />
+      ) : (
+        <p className={styles.words}>{MOST_BEHIND} are shown, which is the most.</p>
+      )}
+      <NativeSelect
+        size="xs"
+        label="Aligned at"
+        value={alignment}
+        data={ALIGNMENTS}
+        onChange={(e) => void align(e.currentTarget.value as Alignment)}
+      />
+      <Checkbox
+        size="xs"
+        label="Shade the difference from the first"
+        checked={shaded}
+        onChange={(e) => useBehind.setState({ shaded: e.currentTarget.checked })}
+      />
+      <Checkbox
+        size="xs"
+        label="Draw the difference on an axis of its own"
+        checked={difference}
+        onChange={(e) => useBehind.setState({ difference: e.currentTarget.checked })}
+      />
+    </>
+  );
+}
+
+interface RowProps {
+  id: string;
+  words: string;
+  shift: number;
+  dtMs: number;
+  known: Bench | undefined;
+  onChange(): void;
+}
+
+/** A bench behind the traces: its name, how it is shifted, and what can be done with it. */
+function Row({ id, words, shift, dtMs, known, onChange }: RowProps) {
+  const [name, setName] = useState(words);
+  const rename = () => {
+    const now = name.trim();
+    if (!known || now === words || !now) return setName(words);
+    api
+      .nameBench(id, now)
+      .then(() => {
+        removeBehind(id);
+        return addBehind(id);
+      })
+      .then(onChange, showError);
+  };
+  const close = () =>
+    void api.removeBench(id).then(() => {
+      removeBehind(id);
+      onChange();
+    }, showError);
+  return (
+    <li>
+      <TextInput
+        size="xs"
+        aria-label={`Name of ${words}`}
+        value={name}
+        maxLength={80}
+        disabled={!known}
+        onChange={(e) => setName(e.currentTarget.value)}
+        onBlur={rename}
+        onKeyDown={(e) => e.key === "Enter" && e.currentTarget.blur()}
+      />
+      <small>{shift === 0 ? "same time" : `${shift > 0 ? "+" : "−"}${formatSi(Math.abs(shift) * dtMs, "ms")}`}</small>
+      <Button size="compact-xs" variant="default" onClick={() => openBench(id)}>
+        Show
+      </Button>
+      <ActionIcon size="sm" variant="subtle" aria-label={`Take ${words} away`} onClick={() => removeBehind(id)}>
+        <IconX size={14} />
+      </ActionIcon>
+      <ActionIcon size="sm" variant="subtle" color="red" aria-label={`Close the bench ${words}`} onClick={close}>
+        <IconTrash size={14} />
+      </ActionIcon>
+    </li>
+  );
+}
+
+const longWords = (bench: Bench) =>
+  `${wordsOf(bench)}, at ${formatMoment(bench.tick * bench.dt_ms)}${bench.origin ? `, branched at ${formatMoment(bench.origin.tick * bench.dt_ms)}` : ""}`;

@@ -1,0 +1,133 @@
+import { create } from "zustand";
+import { api } from "../api/api";
+import type { Bench, LogEntry } from "../api/types";
+import { useBench } from "../stream/bench-store";
+import { currentEvents } from "../stream/event-log";
+import { showError } from "./send";
+
+/** As many as the server sends. */
+export const MOST_BEHIND = 8;
+
+/** A bench whose traces lie behind those of the bench on the page. */
+export interface Behind {
+  bench: string;
+  words: string;
+  /** Its tick minus that of the bench on the page. */
+  shift: number;
+}
+
+/** What stands at the same place: the same time, or the last event of a kind on each bench. */
+export type Alignment = "time" | "inject" | "heal" | "switch" | "tripped";
+
+interface BehindStore {
+  behind: Behind[];
+  alignment: Alignment;
+  /** Whether the difference from the first is shaded, and drawn on an axis of its own. */
+  shaded: boolean;
+  difference: boolean;
+}
+
+export const useBehind = create<BehindStore>(() => ({
+  behind: [],
+  alignment: "time",
+  shaded: true,
+  difference: false,
+}));
+
+/** What a bench is called in a list of several. */
+export const wordsOf = (bench: Pick<Bench, "title" | "name" | "origin" | "dt_ms">): string => bench.name || bench.title;
+
+/** What is seen behind the traces, in words. */
+export function behindText(behind: readonly Behind[], difference: boolean): string {
+  const names = behind.map(({ words }) => words).join("; ");
+  return `Behind, faded: ${names}.${difference ? ` Dotted, on the axis Δ: the difference from ${behind[0].words}.` : ""}`;
+}
+
+/** Put a bench behind the one on the page. */
+export async function addBehind(id: string): Promise<void> {
+  const { behind, alignment } = useBehind.getState();
+  if (behind.some((one) => one.bench === id) || behind.length >= MOST_BEHIND) return;
+  try {
+    const bench = await api.bench(id);
+    const shift = (await shiftOf(id, alignment)) ?? 0;
+    useBehind.setState(({ behind }) => ({
+      behind: [...behind.filter((one) => one.bench !== id), { bench: id, words: wordsOf(bench), shift }],
+    }));
+  } catch (error) {
+    showError(error);
+  }
+}
+
+export function removeBehind(id: string): void {
+  useBehind.setState(({ behind }) => ({ behind: behind.filter((one) => one.bench !== id) }));
+}
+
+/** Align all benches behind at their last events of a kind; those without such an event stay at the same time. */
+export async function align(alignment: Alignment): Promise<void> {
+  try {
+    const shifts = await Promise.all(
+      useBehind.getState().behind.map(async ({ bench }) => [bench, (await shiftOf(bench, alignment)) ?? 0] as const),
+    );
+    const by = new Map(shifts);
+    useBehind.setState(({ behind }) => ({
+      alignment,
+      behind: behind.map((one) => ({ ...one, shift: by.get(one.bench) ?? one.shift })),
+    }));
+  } catch (error) {
+    showError(error);
+  }
+}
+
+/** Forget benches that are gone: the server draws nothing of them. */
+export async function forgetGone(): Promise<void> {
+  const there = new Set((await api.benches()).map(({ id }) => id));
+  useBehind.setState(({ behind }) => ({ behind: behind.filter((one) => there.has(one.bench)) }));
+}
+
+/** How much later than here the last event of a kind is on another bench; nothing where one of them has none. */
+async function shiftOf(id: string, alignment: Alignment): Promise<number | undefined> {
+  if (alignment === "time") return 0;
+  const here = lastOf(useBench.getState().events, alignment);
+  const there = lastOf((await api.events(id)).events, alignment);
+  return here === undefined || there === undefined ? undefined : there - here;
+}
+
+export const lastOf = (events: readonly LogEntry[], kind: Alignment): number | undefined =>
+  currentEvents([...events]).findLast((event) => event.kind === kind)?.tick;
+
+/** What is behind another bench that the page shows now. */
+export function behindOf(
+  behind: readonly Behind[],
+  before: Pick<Bench, "id" | "title" | "name" | "origin" | "dt_ms"> | undefined,
+  now: Pick<Bench, "id" | "origin" | "dt_ms">,
+): Behind[] {
+  const known = behind.find((one) => one.bench === now.id);
+  if (before && before.dt_ms === now.dt_ms && known) {
+    const shift = known.shift;
+    return behind.map((one) =>
+      one === known
+        ? { bench: before.id, words: wordsOf(before), shift: -shift }
+        : { ...one, shift: one.shift - shift },
+    );
+  }
+  const isRelated = now.origin?.bench === before?.id || before?.origin?.bench === now.id;
+  return isRelated ? [...behind] : [];
+}
+
+let last: Bench | undefined;
+
+useBench.subscribe(({ behindRefused }, before) => {
+  if (behindRefused !== before.behindRefused) forgetGone().catch(showError);
+});
+
+useBench.subscribe(({ bench }) => {
+  if (!bench || (last?.id === bench.id && last.origin?.is_past === bench.origin?.is_past)) {
+    last = bench ?? last;
+    return;
+  }
+  const before = last;
+  last = bench;
+  if (before?.id !== bench.id) useBehind.setState(({ behind }) => ({ behind: behindOf(behind, before, bench) }));
+  // the other future of a branch is what it is looked at for
+  if (bench.origin && !bench.origin.is_past) void addBehind(bench.origin.bench);
+});
