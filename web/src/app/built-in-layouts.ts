@@ -106,9 +106,9 @@ export const BUILT_IN: Layouts = {
     addTo(api, "recordings", "recordings", { within: "lanes", inactive: true });
     size(api, width, height, {
       schematic: { w: Math.max(0.26, LOOP_PX.width / width), h: Math.max(0.34, LOOP_PX.height / height) },
-      motion: { h: 0.325 },
-      voltage: { h: 0.305 },
-      lanes: { h: 0.37 },
+      motion: { h: 0.31 },
+      voltage: { h: 0.3 },
+      lanes: { h: 0.39 },
     });
   },
   research(api, width, height) {
@@ -138,9 +138,9 @@ export const BUILT_IN: Layouts = {
     size(api, width, height, {
       schematic: { w: Math.max(0.225, LOOP_PX.width / width), h: Math.max(0.32, LOOP_PX.height / height) },
       ...(wide ? { view3d: { w: 0.25, h: 0.4 } } : {}),
-      motion: { h: 0.305 },
-      voltage: { h: 0.3 },
-      lanes: { h: 0.395 },
+      motion: { h: 0.308 },
+      voltage: { h: 0.294 },
+      lanes: { h: 0.398 },
     });
   },
 };
