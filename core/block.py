@@ -19,22 +19,13 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from core.ports import KINDS, BlockPorts, Port
 from core.record import Record
+from core.structure import Equation as Equation
+from core.structure import Stage as Stage
 from core.table import Table
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
-
-
-@dataclass(frozen=True)
-class Equation:
-    """An equation shown beside the block, with the erratum if the printed one is wrong."""
-
-    label: str
-    latex: str
-    source: str = ""
-    printed: str = ""
-    why: str = ""
 
 
 LEAST, MOST = 1e-60, 1e100
@@ -206,6 +197,8 @@ class Block:
     outputs: ClassVar[tuple[Port, ...]] = ()
     taps: ClassVar[tuple[Port, ...]] = ()
     equations: ClassVar[tuple[Equation, ...]] = ()
+    structure: ClassVar[tuple[Stage, ...]] = ()
+    """The stages of a step, for a drawing; without them the block is drawn as one."""
     weaknesses: ClassVar[tuple[str, ...]] = ()
     """Where the block is known to be weak, in plain sentences with figures; read before it is trusted."""
     axes: ClassVar[tuple[str, ...] | None] = ()

@@ -6,75 +6,12 @@ import importlib
 import pkgutil
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any, Literal, get_args, get_origin
 
-from pydantic import BaseModel
-from pydantic.fields import FieldInfo
-
-from core.block import LOOP, Block, BlockParams, Equation
+from core.block import LOOP, Block
+from core.cards import BlockCard, card, check_structure, is_live
 from core.errors import InputError, unknown
-from core.ports import Port
 
 FAMILIES = ("reference", "rate", "plant", "sense", "control", "identify", "diagnose", "readout", "faults", LOOP)
-
-
-class PortCard(BaseModel):
-    """A port as people see it."""
-
-    name: str
-    unit: str
-    meaning: str
-    labels: list[str]
-    each: str
-
-
-class ParameterCard(BaseModel):
-    """A parameter as people see it."""
-
-    name: str
-    label: str
-    type: str
-    unit: str
-    default: Any
-    minimum: float | None
-    maximum: float | None
-    meaning: str
-    equation: str
-    live: bool
-    choices: list[str]
-
-
-class EquationCard(BaseModel):
-    """An equation, with its erratum when the printed one is wrong."""
-
-    label: str
-    latex: str
-    source: str
-    printed: str | None
-    why: str | None
-
-
-class BlockCard(BaseModel):
-    """All that the catalogue says of a block."""
-
-    family: str
-    name: str
-    title: str
-    group: str
-    summary: str
-    changes: str | None
-    shows: str | None
-    suggested: float | None
-    weaknesses: list[str]
-    axes: list[str] | None
-    per_axis: bool
-    slot: str
-    equations: list[EquationCard]
-    parameters: list[ParameterCard]
-    inputs: list[PortCard]
-    outputs: list[PortCard]
-    taps: list[PortCard]
-    schema_: dict[str, Any]
 
 
 @cache
@@ -116,6 +53,7 @@ def _all(family: str) -> dict[str, type[Block]]:
         found[entry.name] = loaded
     for loaded in found.values():
         _check_lengths(loaded)
+        check_structure(loaded)
     return dict(sorted(found.items()))
 
 
@@ -185,89 +123,3 @@ def catalog(family: str | None = None) -> list[BlockCard]:
     """Return the cards of one family, or of all, in the order in which people are shown them."""
     chosen = FAMILIES if family is None else (family,)
     return [card(entry) for name in chosen for entry in sorted(blocks(name).values(), key=lambda b: b.place)]
-
-
-def equation_card(e: Equation) -> EquationCard:
-    """Return an equation as people see it."""
-    return EquationCard(label=e.label, latex=e.latex, source=e.source, printed=e.printed or None, why=e.why or None)
-
-
-def parameter_cards(params: type[BlockParams]) -> list[ParameterCard]:
-    """Return the parameters of a table as people see them."""
-    return [_parameter(name, info) for name, info in params.model_fields.items()]
-
-
-def card(entry: type[Block]) -> BlockCard:
-    """Return the card of a block."""
-    return BlockCard(
-        family=entry.family,
-        name=entry.name,
-        title=entry.title,
-        group=entry.group,
-        summary=" ".join((entry.__doc__ or "").strip().split("\n\n")[0].split()),
-        changes=entry.changes or None,
-        shows=entry.shows or None,
-        suggested=entry.suggested,
-        weaknesses=list(entry.weaknesses),
-        axes=None if entry.axes is None else list(entry.axes),
-        per_axis=entry.per_axis,
-        slot=entry.slot,
-        equations=[equation_card(equation) for equation in entry.equations],
-        parameters=parameter_cards(entry.Params),
-        inputs=[_port(port) for port in entry.inputs],
-        outputs=[_port(port) for port in entry.outputs],
-        taps=[_port(port) for port in entry.taps],
-        schema_=entry.Params.model_json_schema(),
-    )
-
-
-def is_live(info: FieldInfo) -> bool:
-    """Say whether a parameter may change while the board runs."""
-    extra = info.json_schema_extra
-    return bool(extra.get("live", True)) if isinstance(extra, dict) else True
-
-
-def _port(port: Port) -> PortCard:
-    return PortCard(name=port.name, unit=port.unit, meaning=port.meaning, labels=list(port.labels), each=port.each)
-
-
-def _parameter(name: str, info: FieldInfo) -> ParameterCard:
-    extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
-    limits: dict[str, float] = {}
-    for constraint in info.metadata:
-        for key in ("ge", "gt", "le", "lt"):
-            value = getattr(constraint, key, None)
-            if value is not None:
-                limits[key] = float(value)
-    default = info.get_default(call_default_factory=True)
-    if isinstance(default, BaseModel):
-        default = default.model_dump()
-    elif isinstance(default, list):
-        default = [item.model_dump() if isinstance(item, BaseModel) else item for item in default]
-    kind, choices = _type(info.annotation)
-    return ParameterCard(
-        name=name,
-        label=name.replace("_", " "),
-        type=kind,
-        unit=str(extra.get("unit", "")),
-        default=default,
-        minimum=limits.get("ge", limits.get("gt")),
-        maximum=limits.get("le", limits.get("lt")),
-        meaning=info.description or "",
-        equation=str(extra.get("equation", "")),
-        live=is_live(info),
-        choices=choices,
-    )
-
-
-def _type(annotation: Any) -> tuple[str, list[str]]:
-    if get_origin(annotation) is Literal:
-        return "choice", [str(choice) for choice in get_args(annotation)]
-    if get_origin(annotation) is list:
-        return "list", []
-    options = [option for option in get_args(annotation) if option is not type(None)] or [annotation]
-    simple = {bool: "boolean", int: "integer", float: "number", str: "text"}
-    for option in options:
-        if option in simple:
-            return simple[option], []
-    return "table", []

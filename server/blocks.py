@@ -6,8 +6,9 @@ from typing import Annotated
 
 import typer
 
+from core.cards import BlockCard
 from core.format import format_short, unit_text
-from core.registry import BlockCard, catalog
+from core.registry import catalog
 from server.terminal import JsonOption, plainly, say, say_json
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from core import registry
 from core.board.document import CHOSEN, PARKED, as_written
 from core.board.parse import changed
 from core.board.spec import Section, Spec
+from core.cards import is_live
 from core.errors import InputError, unknown
 
 LIVE_SECTIONS = ("environment", "plant", "reference", "model", "drive", "guard")
@@ -82,7 +82,7 @@ def _check_section(path: str, old: Section, new: Section) -> None:
             raise _not_live(f"{path}.kind")
         return
     for name, info in type(new.params).model_fields.items():
-        if getattr(old.params, name) != getattr(new.params, name) and not registry.is_live(info):
+        if getattr(old.params, name) != getattr(new.params, name) and not is_live(info):
             raise _not_live(f"{path}.{name}")
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from core import registry
 from core.board.document import CHOSEN
 from core.board.spec import Section, Spec
+from core.cards import is_live
 
 SINGLE = ("environment", "plant", "reference", "model", "drive", "guard")
 EXCHANGED = ("reference",)
@@ -29,7 +29,7 @@ def tuned(spec: Spec) -> dict[str, Any]:
     for path, section in sections(spec).items():
         if path in EXCHANGED or path in spec.generators:
             values[f"{path}.kind"] = section.block.name
-        live = {name for name, info in type(section.params).model_fields.items() if registry.is_live(info)}
+        live = {name for name, info in type(section.params).model_fields.items() if is_live(info)}
         written = section.params.model_dump(mode="json", include=live)
         values |= {f"{path}.{name}": value for name, value in written.items()}
     return values
@@ -70,5 +70,5 @@ def _fixed(spec: Spec, path: str) -> dict[str, Any]:
     table: Any = spec.document
     for name in path.split("."):
         table = table.get(name, {}) if isinstance(table, dict) else {}
-    live = {name for name, info in type(sections(spec)[path].params).model_fields.items() if registry.is_live(info)}
+    live = {name for name, info in type(sections(spec)[path].params).model_fields.items() if is_live(info)}
     return {name: value for name, value in table.items() if name not in live}

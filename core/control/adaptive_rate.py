@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Block, BlockParams, Context, Equation, parameter
+from core.block import Block, BlockParams, Context, Equation, Stage, parameter
 from core.control.two_axis import two_axis
 from core.control.two_axis_adaptation import (
     EstimatePorts,
@@ -56,6 +56,13 @@ class AdaptiveRate(Block):
             "law", r"\tau=(\hat K-K_m)q_m+\hat D\dot q_m+2\hat\Omega S\dot q_m-\gamma\dot e", "Park and Horowitz 2003"
         ),
         ADAPTATION,
+    )
+    structure = (
+        Stage("Error", "x_measured y_measured", "error_x error_y"),
+        Stage(
+            "Adaptation", "x_velocity y_velocity", "kxx kxy kyy dxx dxy dyy rate trusted unexciting", ("adaptation",)
+        ),
+        Stage("Law", "kxx kxy kyy dxx dxy dyy rate x_velocity y_velocity", "x y", ("law",)),
     )
     weaknesses = (
         "References on the resonances cost a quarter of the force of slow ones on set A, whose cross stiffness takes "

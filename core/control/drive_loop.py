@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Block, BlockParams, Context, Equation, parameter
+from core.block import Block, BlockParams, Context, Equation, Stage, parameter
 from core.control.tracking import Phasor, Tracking, fill_tracking, follow
 from core.control.two_axis import DrivePorts, PartnerPorts, two_axis
 from core.elementary import cos, floor, sin
@@ -47,6 +47,13 @@ class DriveLoop(Block):
         Equation("amplitude", r"F=K_{pa}(A_0-A)+K_{ia}\int(A_0-A)\,dt,\quad A^2=x^2+(\dot x/\omega)^2"),
         Equation("force", r"F_x=F\cos(\theta+\omega h/2)"),
         Equation("partner", r"x_m\to A_0\sin\theta", "6.1.4"),
+    )
+    structure = (
+        Stage("Swing", "x_measured x_velocity", "amplitude"),
+        Stage("Phase loop", "x_measured x_velocity", "phase_error frequency", ("phase",)),
+        Stage("Amplitude loop", "amplitude", "force", ("amplitude",)),
+        Stage("Carrier", "force frequency", "x", ("force",)),
+        Stage("Partner", "partner_measured partner_velocity frequency", "partner_x", ("partner",)),
     )
 
     class Params(BlockParams):

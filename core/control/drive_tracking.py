@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Block, BlockParams, Context, Equation, parameter
+from core.block import Block, BlockParams, Context, Equation, Stage, parameter
 from core.control.drive_loop import amplitude
 from core.control.tracking import Phasor, Tracking, fill_tracking, follow
 from core.control.two_axis import DrivePorts, PartnerPorts, two_axis
@@ -32,6 +32,14 @@ class DriveTracking(Block):
             "adaptation",
             r"\dot f_s=\lambda\,2m\sigma\omega E_c,\quad\dot f_c=-\lambda\,2m\sigma\omega E_s,\quad\lambda=\sigma/4",
         ),
+    )
+    structure = (
+        Stage("Sine asked for", "", "frequency"),
+        Stage("Swing", "x_measured x_velocity", "amplitude"),
+        Stage("Error", "x_measured frequency", "error"),
+        Stage("Adaptation", "x_measured x_velocity frequency", "own", ("adaptation",)),
+        Stage("Law", "own x_velocity frequency", "x", ("law",)),
+        Stage("Partner", "partner_measured partner_velocity frequency", "partner_x partner_error", ("law",)),
     )
 
     class Params(BlockParams):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Block, BlockParams, Context, Equation, parameter
+from core.block import Block, BlockParams, Context, Equation, Stage, parameter
 from core.control.two_axis import RatePorts, Sense, components, fill_sense, share_kept, two_axis
 from core.elementary import atan2, cos, sin
 from core.ports import output, tap
@@ -37,6 +37,12 @@ class ForceToRebalance(Block):
         Equation("force", r"F_y=u_c\cos\theta'+u_s\sin\theta',\quad\theta'=\theta+\omega h/2"),
         Equation("rate", r"\hat\Omega=\frac{u_c}{2m_c\omega A},\quad\hat\Omega_q=\frac{u_s}{2m_c\omega A}"),
         Equation("thermal floor", r"\sqrt2\,\frac{\sqrt{4k_BTd_{yy}}}{2m_c\omega A}"),
+    )
+    structure = (
+        Stage("Demodulation", "y_measured y_velocity frequency", "rest_in_step rest_with_velocity"),
+        Stage("Integrators", "rest_in_step rest_with_velocity", "in_step with_velocity"),
+        Stage("Force", "in_step with_velocity", "y", ("force",)),
+        Stage("Rate", "in_step with_velocity amplitude frequency", "rate quadrature", ("rate", "thermal floor")),
     )
 
     class Params(BlockParams):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Block, BlockParams, Context, Equation, parameter
+from core.block import Block, BlockParams, Context, Equation, Stage, parameter
 from core.control.two_axis import DrivePorts, two_axis
 from core.elementary import sin_of_turns
 from core.ports import output
@@ -24,6 +24,10 @@ class ForcedDrive(Block):
     axes = ("x", "y")
     slot = "drive"
     equations = (Equation("force", r"F_x=F\sin(2\pi ft+\varphi)"),)
+    structure = (
+        Stage("Force", "", "x frequency", ("force",)),
+        Stage("Swing", "x_measured x_velocity", "amplitude"),
+    )
 
     class Params(BlockParams):
         """The force."""

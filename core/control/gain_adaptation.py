@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from core.block import Block, BlockParams, Context, Equation, Oscillator, parameter
+from core.block import Block, BlockParams, Context, Equation, Oscillator, Stage, parameter
 from core.control.controller import ControllerPorts
 from core.elementary import exp
 from core.kernel import flush_tiny
@@ -52,6 +52,17 @@ class GainAdaptation(Block):
             r"\dot k_c=Bey+\gamma\frac{d}{dt}(Bey),\quad y=\frac{r}{1+qs},\quad u=k_cr+q\dot k_cy",
             "B.5.1",
         ),
+    )
+    structure = (
+        Stage("Error", "model measured", "error"),
+        Stage("Monopoli's filter", "reference", "filtered"),
+        Stage(
+            "Adaptation",
+            "error reference model filtered",
+            "gain",
+            ("MIT rule", "Lyapunov rule", "Dressler's rule", "Price's rule"),
+        ),
+        Stage("Law", "gain reference filtered", "voltage", ("Monopoli's rule",)),
     )
 
     class Params(BlockParams):

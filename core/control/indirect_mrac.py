@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-from core.block import Block, BlockParams, Context, Equation, Oscillator, parameter
+from core.block import Block, BlockParams, Context, Equation, Oscillator, Stage, parameter
 from core.control.adaptation import REGRESSORS
 from core.control.controller import (
     ControllerPorts,
@@ -78,6 +78,13 @@ class IndirectMrac(Block):
             why="equating the transfer functions gives K_m/K_p; the printed ratio multiplies the displacement at rest "
             "by (K_p/K_m)^2",
         ),
+    )
+    structure = (
+        Stage("Filters of the regressor", "applied measured", "regressor", ("parametric form",)),
+        Stage("Least squares", "regressor measured", "parameter prediction_error", ("least squares with forgetting",)),
+        Stage("Gain design", "parameter", "gain", ("gains",)),
+        Stage("State filters", "applied measured", "w1 w2", ("law",)),
+        Stage("Law", "gain reference w1 w2 measured", "voltage", ("law",)),
     )
 
     class Params(BlockParams):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from core.block import Block, BlockParams, Context, Equation, parameter
+from core.block import Block, BlockParams, Context, Equation, Stage, parameter
 from core.control.two_axis import two_axis
 from core.control.two_axis_adaptation import (
     EstimatePorts,
@@ -50,6 +50,16 @@ class MimoAdaptive(Block):
             r"\dot{\hat K}=-g_K\,\mathrm{sym}(\dot e\,q^T),\;\dot{\hat D}=-g_D\,\mathrm{sym}(\dot e\,\dot q^T),\;"
             r"\dot{\hat\Omega}=-2g_\Omega\,\dot e^TS\dot q",
         ),
+    )
+    structure = (
+        Stage("Error", "x_measured y_measured", "error_x error_y"),
+        Stage(
+            "Adaptation",
+            "x_measured y_measured x_velocity y_velocity",
+            "kxx kxy kyy dxx dxy dyy rate trusted unexciting",
+            ("adaptation",),
+        ),
+        Stage("Law", "kxx kxy kyy dxx dxy dyy rate x_measured y_measured x_velocity y_velocity", "x y", ("law",)),
     )
     weaknesses = (
         "The laws multiply by the measured motion, so noise of the sensor biases the damping.",

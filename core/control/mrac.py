@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-from core.block import Block, BlockParams, Context, Equation, Oscillator, parameter
+from core.block import Block, BlockParams, Context, Equation, Oscillator, Stage, parameter
 from core.control.adaptation import REGRESSORS, AdaptationPacked, Y, bounded, distance, leak, weight_of
 from core.control.controller import (
     ControllerPorts,
@@ -66,6 +66,18 @@ class Mrac(Block):
             "Lyapunov function",
             r"V=\tfrac{1}{2g}\left(|1/k^*|\,\phi^T\Gamma^{-1}\phi+(\alpha-1/k^*)^2\right)",
         ),
+    )
+    structure = (
+        Stage("State filters", "applied measured", "w1 w2", ("law",)),
+        Stage(
+            "Copies of the model", "reference w1 w2 measured applied", "filtered filtered_voltage", ("augmented error",)
+        ),
+        Stage("Error", "measured model", "error"),
+        Stage("Augmentation", "gain filtered filtered_voltage", "auxiliary_error", ("augmented error",)),
+        Stage("Augmented error", "error alpha auxiliary_error", "augmented_error", ("augmented error",)),
+        Stage("Adaptation", "augmented_error auxiliary_error filtered", "gain alpha", ("adaptation",)),
+        Stage("Law", "gain reference w1 w2 measured", "voltage", ("law",)),
+        Stage("Lyapunov function", "gain alpha", "lyapunov lyapunov_rate", ("Lyapunov function",)),
     )
 
     class Params(BlockParams):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-from core.block import Block, BlockParams, Context, Equation, Oscillator, parameter
+from core.block import Block, BlockParams, Context, Equation, Oscillator, Stage, parameter
 from core.control.adaptation import REGRESSORS, AdaptationPacked, Y, bounded, distance, leak, weight_of
 from core.control.controller import (
     Coefficients,
@@ -78,6 +78,14 @@ class MracVelocity(Block):
             "Lyapunov function, first order",
             r"V=\tfrac12e^2+\tfrac{|k_p|}{2g}\phi^T\Gamma^{-1}\phi,\quad\dot V=-a_me^2",
         ),
+    )
+    structure = (
+        Stage("State filters", "applied measured", "w1 w2", ("law",)),
+        Stage("Error", "measured velocity model model_velocity", "error"),
+        Stage("Correction for the voltage", "error voltage applied", "own_error"),
+        Stage("Adaptation", "own_error reference w1 w2 measured", "gain", ("adaptation",)),
+        Stage("Law", "gain reference w1 w2 measured velocity", "voltage", ("law",)),
+        Stage("Lyapunov function", "gain own_error", "lyapunov lyapunov_rate", ("Lyapunov function, first order",)),
     )
 
     class Params(BlockParams):

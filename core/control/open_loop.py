@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.block import Block, BlockParams, Equation
+from core.block import Block, BlockParams, Equation, Stage
 from core.control.controller import FeedForwardPorts
 from core.record import Record
 
@@ -13,6 +13,7 @@ class OpenLoop(Block):
     title = "Open loop"
     place = 1
     equations = (Equation("law", r"u=r"),)
+    structure = (Stage("Law", "reference", "voltage", ("law",)),)
 
     class Params(BlockParams):
         """Open loop has no parameters."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Block, BlockParams, Context, Equation, parameter
+from core.block import Block, BlockParams, Context, Equation, Stage, parameter
 from core.control.two_axis import RatePorts, Sense, components, fill_sense, share_kept, two_axis
 from core.elementary import cos, sin
 from core.kernel import inlined
@@ -99,6 +99,15 @@ class OpenLoopRate(Block):
             "6.1.2, zero-rate output",
         ),
         Equation("error of the phase", r"\hat\Omega=\Omega\cos\varphi-\Omega_q\sin\varphi"),
+    )
+    structure = (
+        Stage("Demodulation", "y_measured y_velocity frequency", "in_step with_velocity swing"),
+        Stage(
+            "Rate",
+            "in_step with_velocity amplitude frequency",
+            "rate quadrature",
+            ("rate", "zero rate", "error of the phase"),
+        ),
     )
     weaknesses = (
         "A drift of the sense frequency is a drift of the scale factor: 1 % of stiffness is 37 % of it at a split of "

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Block, BlockParams, Context, Equation, Oscillator, parameter
+from core.block import Block, BlockParams, Context, Equation, Oscillator, Stage, parameter
 from core.control.controller import FIRST_ORDER, ControllerPorts, normalised
 from core.elementary import exp
 from core.kernel import flush_tiny
@@ -26,6 +26,12 @@ class Pid(Block):
     equations = (
         Equation("law", r"u=k_fr+K_pe+K_i\int e\,dt+K_d\dot e_f,\quad e=y_d-y"),
         Equation("pole placement", r"K_p=\frac{3p^2-a_2}{k_p},\;K_i=\frac{p^3}{k_p},\;K_d=\frac{3p-a_1}{k_p}"),
+    )
+    structure = (
+        Stage("Error", "model measured", "error"),
+        Stage("Integral", "error", "integral"),
+        Stage("Filtered derivative", "error", "derivative"),
+        Stage("Law", "reference error integral derivative", "voltage", ("law", "pole placement")),
     )
 
     class Params(BlockParams):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-from core.block import Block, BlockParams, Context, Equation, Oscillator, parameter
+from core.block import Block, BlockParams, Context, Equation, Oscillator, Stage, parameter
 from core.control.adaptation import AdaptationPacked, bounded, distance, leak
 from core.control.controller import (
     ControllerPorts,
@@ -63,6 +63,14 @@ class SelfSliding(Block):
             printed=r"V=\tfrac12e^2+\tfrac{|s|}{2P_0}(\tilde k_e^2+\tilde k_r^2+\tilde k_p^2)",
             why="the printed V is 0 whenever e is, whatever the gains, and its proof drops the term of the model",
         ),
+    )
+    structure = (
+        Stage("Error", "measured model", "error"),
+        Stage("Augmentation", "gain reference measured error applied", "auxiliary_error", ("augmented error",)),
+        Stage("Surface", "error auxiliary_error velocity model_velocity", "surface alpha", ("augmented error",)),
+        Stage("Adaptation", "surface reference measured error", "gain", ("adaptation",)),
+        Stage("Law", "gain reference measured error", "voltage", ("law",)),
+        Stage("Lyapunov function", "gain surface", "lyapunov lyapunov_rate", ("Lyapunov function, first order",)),
     )
 
     class Params(BlockParams):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-from core.block import Block, BlockParams, Context, Equation, parameter
+from core.block import Block, BlockParams, Context, Equation, Stage, parameter
 from core.control.open_loop_rate import Filtered, ReadOut, ReadPorts, fill_read_out, read
 from core.control.two_axis import components, share_kept, two_axis
 from core.elementary import atan2, cos, sin
@@ -64,6 +64,23 @@ class SenseAxisSync(Block):
             printed=r"\text{synchronisation reduces the drift}",
             why="a model with errors of 2 degrees hands on its own 10.0 deg/s; only a y at rest, or a model without "
             "errors, takes the quadrature out of the rate",
+        ),
+    )
+    structure = (
+        Stage("Error", "y_measured partner_y", "error"),
+        Stage(
+            "Adaptation",
+            "x_measured x_velocity y_velocity partner_y_velocity",
+            "with_x with_velocity",
+            ("adaptation", "average over a period"),
+        ),
+        Stage("Learned force", "with_x with_velocity x_measured x_velocity", "learned", ("force at the end",)),
+        Stage("Law", "learned y_velocity partner_y_velocity", "y", ("law",)),
+        Stage("Read-out", "y_measured y_velocity frequency amplitude", "swing rate quadrature", ("drift",)),
+        Stage(
+            "Read-out of the partner",
+            "partner_y partner_y_velocity amplitude frequency",
+            "partner_rate phase_difference",
         ),
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from core.block import BlockParams, Context, Equation, parameter
+from core.block import BlockParams, Context, Equation, Stage, parameter
 from core.control.controller import ControllerPorts, NormalisedPacked, VelocityPorts, fill_normalised, saturated
 from core.control.velocity import PackedVelocity, Source, VelocityState, velocity_of, velocity_source
 from core.elementary import exp
@@ -38,6 +38,11 @@ GAINS_EQUATION = Equation(
     printed=r"K_p=(GB_p)^{-1}GA_p,\quad K_e=(GB_p)^{-1}G(A_m-A_p)",
     why="A_m x_m - A_p x_p = A_m e + (A_m - A_p) x_p; the printed pair still reaches the surface, at twice the effort",
 )
+
+
+SURFACE = Stage("Sliding surface", "model measured model_velocity velocity", "error surface", ("surface",))
+BOUNDARY_LAYER = Stage("Boundary layer", "switching", "layer_needed layer_exceeded", ("boundary layer",))
+"""Stages of every law that slides."""
 
 
 class SwitchingParams(BlockParams):

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from core.block import Block, Context, Equation, Oscillator, parameter
+from core.block import Block, Context, Equation, Oscillator, Stage, parameter
 from core.control.controller import TruthPorts, coefficients, true_plant, unsuited_second_order
 from core.control.sliding import (
+    BOUNDARY_LAYER,
     GAINS_EQUATION,
     LAYER_EQUATION,
+    SURFACE,
     SURFACE_EQUATION,
     SlidingPacked,
     SlidingParams,
@@ -66,6 +68,16 @@ class Stvsc(Block):
             "as the input excites",
         ),
         LAYER_EQUATION,
+    )
+    structure = (
+        Stage("Filters of the estimator", "applied measured", "input output", ("estimator",)),
+        Stage(
+            "Estimator", "input output measured", "parameter prediction_error lyapunov lyapunov_rate", ("estimator",)
+        ),
+        SURFACE,
+        Stage("Equivalent control", "parameter error measured velocity reference", "equivalent switching", ("gains",)),
+        BOUNDARY_LAYER,
+        Stage("Law", "equivalent switching surface", "voltage", ("law",)),
     )
 
     class Params(SlidingParams):

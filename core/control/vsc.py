@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from core.block import Block, Context, Equation, Oscillator
+from core.block import Block, Context, Equation, Oscillator, Stage
 from core.control.controller import unsuited_second_order
 from core.control.sliding import (
+    BOUNDARY_LAYER,
     GAINS_EQUATION,
     LAYER_EQUATION,
+    SURFACE,
     SURFACE_EQUATION,
     SlidingPacked,
     SlidingParams,
@@ -35,6 +37,12 @@ class Vsc(Block):
         SURFACE_EQUATION,
         GAINS_EQUATION,
         LAYER_EQUATION,
+    )
+    structure = (
+        SURFACE,
+        Stage("Equivalent control", "error measured velocity reference", "equivalent switching", ("gains",)),
+        BOUNDARY_LAYER,
+        Stage("Law", "equivalent switching surface", "voltage", ("law",)),
     )
     Params = SlidingParams
     Packed = SlidingPacked

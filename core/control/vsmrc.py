@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from core.block import Block, Context, Equation, Oscillator, parameter
+from core.block import Block, Context, Equation, Oscillator, Stage, parameter
 from core.control.controller import unsuited_order
 from core.control.sliding import (
+    BOUNDARY_LAYER,
     LAYER_EQUATION,
+    SURFACE,
     SwitchingPacked,
     SwitchingParams,
     SwitchingPorts,
@@ -34,6 +36,12 @@ class Vsmrc(Block):
             "surface", r"s=y_m-y\;\text{(first order)},\quad s=g_1(y_m-y)+\dot y_m-\dot y\;\text{(second)}", "4.1"
         ),
         LAYER_EQUATION,
+    )
+    structure = (
+        SURFACE,
+        Stage("Nominal gains and bounds", "reference measured velocity", "equivalent switching", ("law",)),
+        BOUNDARY_LAYER,
+        Stage("Law", "equivalent switching surface", "voltage", ("law",)),
     )
 
     class Params(SwitchingParams):

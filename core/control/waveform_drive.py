@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-from core.block import Block, BlockParams, Context, Equation, parameter
+from core.block import Block, BlockParams, Context, Equation, Stage, parameter
 from core.control.two_axis import DrivePorts, two_axis
 from core.ports import output, reads
 from core.record import Record
@@ -31,6 +31,10 @@ class WaveformDrive(Block):
     equations = (
         Equation("force", r"F=g\,r(t)"),
         Equation("carrier", r"A^2=x^2+(\dot x/\omega)^2,\quad\sin\theta=x/A,\quad\cos\theta=\dot x/\omega A"),
+    )
+    structure = (
+        Stage("Amplifier", "waveform", "x y", ("force",)),
+        Stage("Carrier", "x_measured x_velocity", "amplitude frequency", ("carrier",)),
     )
 
     class Params(BlockParams):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Block, BlockParams, Context, Equation, parameter
+from core.block import Block, BlockParams, Context, Equation, Stage, parameter
 from core.control.two_axis import MeasuredPorts, share_kept, two_axis
 from core.elementary import atan2, cos, floor, sin
 from core.ports import output, tap
@@ -48,6 +48,12 @@ class WholeAngle(Block):
         ),
         Equation("angle", r"\tan2\psi=\frac{2(xy+\dot x\dot y/\omega^2)}{x^2-y^2+(\dot x^2-\dot y^2)/\omega^2}"),
         Equation("precession", r"\psi(t)=\psi(0)-\int_0^t\Omega\,dt"),
+    )
+    structure = (
+        Stage("Orbit", "x_measured y_measured x_velocity y_velocity", "angle energy area", ("angle",)),
+        Stage("Precession", "angle", "rate", ("precession",)),
+        Stage("Tuning", "area x_measured y_measured", "tuning_a tuning_b"),
+        Stage("Law", "energy area tuning_a tuning_b x_measured y_measured x_velocity y_velocity", "x y", ("law",)),
     )
     weaknesses = (
         "A damping that a fault makes unequal turns the line as a rate does, up to half the difference.",

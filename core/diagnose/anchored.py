@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from core.block import Equation, parameter
-from core.diagnose.arx import SIZE, ArxParams, WeighedBank, between_updates, gather_voltage, judge, regress
+from core.block import Equation, Stage, parameter
+from core.diagnose.arx import REGRESSOR, SIZE, ArxParams, WeighedBank, between_updates, gather_voltage, judge, regress
 from core.diagnose.weights import take_floored_softmax
 from core.estimation import triangle
 from core.kernel import flush_tiny, kernel
@@ -63,6 +63,14 @@ class Anchored(WeighedBank):
     equations = (
         Equation("anchored estimate", r"\hat\theta_k=(A+\rho I)^{-1}(b+\rho\theta_k)", "a reading of 5.3.3"),
         Equation("residual", r"r_k=z_i-h_i^T\hat\theta_k", "5.3.3.10"),
+    )
+    structure = (
+        REGRESSOR,
+        Stage("Records", "h measured", "information target"),
+        Stage("Anchored estimates", "information target h", "right", ("anchored estimate",)),
+        Stage("Residuals", "right target measured", "residual nis", ("residual",)),
+        Stage("Likelihoods", "log nis", "likelihood"),
+        Stage("Weights", "likelihood", "log probability"),
     )
 
     class Params(ArxParams):

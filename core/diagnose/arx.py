@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from core import voltage
-from core.block import Context, Oscillator, parameter
+from core.block import Context, Oscillator, Stage, parameter
 from core.diagnose.bank import Bank
 from core.diagnose.hypothesis import BankParams, assumed_noise
 from core.diagnose.kalman import shuttle_memory
@@ -25,6 +25,7 @@ from core.ports import output, tap
 from core.record import Choice, Record, Vector, vector
 from core.voltage import Gathered, Interval, ObservedPorts, gather, interval_of, weighed_voltages
 
+REGRESSOR = Stage("Regressor", "applied measured", "h")
 SIZE = 4
 """Number of coefficients."""
 

@@ -5,8 +5,17 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Equation, parameter
-from core.diagnose.arx import ArxParams, WeighedBank, between_updates, gather_voltage, judge, predicted, regress
+from core.block import Equation, Stage, parameter
+from core.diagnose.arx import (
+    REGRESSOR,
+    ArxParams,
+    WeighedBank,
+    between_updates,
+    gather_voltage,
+    judge,
+    predicted,
+    regress,
+)
 from core.diagnose.weights import take_floored_softmax
 
 
@@ -25,6 +34,12 @@ class FixedBank(WeighedBank):
         "With 50 nm of noise it is right for 97 % at 2 kHz and 29 % at 1 kHz; IMM is right for 92 % there.",
     )
     equations = (Equation("residual", r"r_k=z_i-h_i^T\theta_k", "5.3.3.10, theta identified beforehand"),)
+    structure = (
+        REGRESSOR,
+        Stage("Residuals", "h measured", "residual nis", ("residual",)),
+        Stage("Likelihoods", "log nis", "likelihood"),
+        Stage("Weights", "likelihood", "log probability"),
+    )
 
     class Params(ArxParams):
         """Noise and floor."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, cast
 
-from core.block import Context, Equation, parameter
+from core.block import Context, Equation, Stage, parameter
 from core.device.two_axis import TwoAxis
 from core.diagnose.axes_filter import AxesFilter, correct, is_seen, predict
 from core.diagnose.axes_hypothesis import AxesModels
@@ -77,6 +77,16 @@ class AxesBank(Bank):
             r"\quad p_k=\max(\mathrm{softmax}_k\,\ell,\;p_{min})",
             "5.2.3.2.6 with a floor",
         ),
+    )
+    structure = (
+        Stage(
+            "Kalman filters",
+            "x_measured y_measured x_force y_force",
+            "residual_x residual_y covariance_x covariance_xy covariance_y nis rate",
+            ("motion", "rate"),
+        ),
+        Stage("Likelihoods", "weight nis covariance_x covariance_xy covariance_y", "likelihood", ("probabilities",)),
+        Stage("Weights", "likelihood", "weight probability", ("probabilities",)),
     )
 
     class Params(AxesModels):

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Context, Equation, parameter
+from core.block import Context, Equation, Stage, parameter
 from core.diagnose import window
 from core.diagnose.chance import chi_square
 from core.diagnose.filters import between_updates, driven, filters_step
-from core.diagnose.kalman import KalmanBank, KalmanParams
+from core.diagnose.kalman import FILTERS, KalmanBank, KalmanParams
 from core.elementary import cos, sin
 from core.kernel import whole
 from core.ports import output, tap
@@ -50,6 +50,13 @@ class Consistency(KalmanBank):
             r"T_k=b_k^TG^{-1}b_k,\quad b_k=\textstyle\sum_W r_k\psi_k^{-1/2}z,\quad G=\sum_W zz^T,"
             r"\quad z=(\cos\omega t,\sin\omega t)^T",
         ),
+    )
+    structure = (
+        FILTERS,
+        Stage("Power of the window", "residual covariance", "power", ("power",)),
+        Stage("Demodulation", "residual covariance", "tone cosine sine", ("tone",)),
+        Stage("Tests", "power tone", "consistent", ("behaviour",)),
+        Stage("Verdict", "consistent", "candidates verdict probability"),
     )
 
     class Params(KalmanParams):

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from core.block import Equation, parameter
+from core.block import Equation, Stage, parameter
 from core.diagnose.filters import between_updates, filters_step, informed, take_logarithms
-from core.diagnose.kalman import KalmanBank, KalmanParams
+from core.diagnose.kalman import FILTERS, KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import take_softmax
 from core.kernel import whole
@@ -25,6 +25,12 @@ class Cusum(KalmanBank):
     sample_by_sample = False
     title = "Cumulative sums (CUSUM)"
     equations = (Equation("sum", r"g_k\leftarrow\max(0,\;g_k+\ln f_k-\ln f_0)", "Page 1954"),)
+    structure = (
+        FILTERS,
+        Stage("Cumulative sums", "nis covariance", "sum", ("sum",)),
+        Stage("Threshold", "sum", "alarm"),
+        Stage("Weights", "sum", "probability"),
+    )
 
     class Params(KalmanParams):
         """Assumptions of the test."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from core.block import Stage
 from core.diagnose.lanes import Filters, PackedFilters
 from core.diagnose.weights import winner_of
 from core.kernel import flush_tiny, inlined, whole
 from core.record import Vector
 
+EVIDENCE = Stage("Evidence of a sample", "probability", "information unexcited")
 LEAST_INFORMATION = 1e-3
 """Nats per sample below which thousands of samples do not repay the odds of a probability floor."""
 

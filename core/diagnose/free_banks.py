@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-from core.block import Context, Equation, parameter
+from core.block import Context, Equation, Stage, parameter
 from core.diagnose.arx import (
+    REGRESSOR,
     SIZE,
     ArxParams,
     Estimator,
@@ -46,6 +47,13 @@ class FreeBanks(WeighedBank):
             printed=r"\text{each bank tunes itself to the measured output}",
             why="banks that follow the device are no hypotheses any more",
         ),
+    )
+    structure = (
+        REGRESSOR,
+        Stage("Residuals", "banks h measured", "residual nis"),
+        Stage("Likelihoods", "log nis", "likelihood"),
+        Stage("Weights", "likelihood", "log probability"),
+        Stage("Estimators", "residual h", "banks", ("free estimates",)),
     )
 
     class Params(ArxParams):

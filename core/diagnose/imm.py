@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
-from core.block import Context, Equation, parameter
-from core.diagnose.excitation import LEAST_INFORMATION, nearest_rival
+from core.block import Context, Equation, Stage, parameter
+from core.diagnose.excitation import EVIDENCE, LEAST_INFORMATION, nearest_rival
 from core.diagnose.filters import between_updates, filters_step, informed
-from core.diagnose.kalman import KalmanBank, KalmanParams
+from core.diagnose.kalman import FILTERS, KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.elementary import exp
 from core.kernel import inlined, whole
@@ -77,6 +78,13 @@ class Imm(KalmanBank):
             "Blom and Bar-Shalom 1988",
         ),
         Equation("weights", r"\mu_j\propto c_j\,\psi_j^{-1/2}e^{-r_j^2/2\psi_j}"),
+    )
+    structure = (
+        Stage("Mixing", "weight", "x1 x2", ("mixing",)),
+        replace(FILTERS, takes="measured applied x1 x2"),
+        Stage("Densities", "nis covariance", "density", ("weights",)),
+        Stage("Weights", "density weight", "weight probability", ("weights",)),
+        EVIDENCE,
     )
 
     class Params(KalmanParams):

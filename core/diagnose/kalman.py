@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal, TypeVar
 
 import numpy as np
 
-from core.block import BlockParams, Context, FloatArray, parameter
+from core.block import BlockParams, Context, Equation, FloatArray, Stage, parameter
 from core.diagnose.bank import Bank
 from core.diagnose.filters import LEAST, TAKE_MIDDLE, TAKE_PARABOLA, TAKE_START, BankPorts
 from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise
@@ -19,6 +19,15 @@ from core.voltage import MOST_LOST, Tick, over_tick
 
 P = TypeVar("P", bound=PackedFilters)
 S = TypeVar("S", bound=Filters)
+
+
+FILTERS = Stage(
+    "Kalman filters",
+    "measured applied",
+    "residual nis covariance",
+    ("filter", "residual covariance"),
+)
+"""What is before every conclusion of a bank."""
 
 
 class FilterParams(BlockParams):
@@ -51,6 +60,23 @@ class KalmanParams(FilterParams, BankParams):
 class KalmanBank(Bank):
     """Base of every bank of Kalman filters: it has the filters; its subclasses draw the conclusions."""
 
+    equations: ClassVar[tuple[Equation, ...]] = (
+        Equation(
+            "filter",
+            r"x^-=\Phi x+\Gamma u,\; r=z-Hx^-,\; x^+=x^-+Kr,\; K=P^-H^T\psi^{-1}",
+            "5.2.3.1.1-7",
+            printed=r"\hat x(t_i)\ \text{on both sides, with the gain of the predictor } \Phi P H^T\psi^{-1}",
+            why="either the filter form or the predictor form, not a mixture; the residual is taken before the update",
+        ),
+        Equation(
+            "residual covariance",
+            r"\psi=HP^-H^T+R",
+            "5.2.3.2.1",
+            printed=r"\psi=CPC^T",
+            why="without R the filter believes its residuals hundreds of times too much: 732 false switches a "
+            "run instead of 1",
+        ),
+    )
     Params: ClassVar[type[BlockParams]] = KalmanParams
     gains = (("gain_displacement",), ("gain_velocity",))
 

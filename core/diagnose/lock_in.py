@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Context, Equation, FloatArray, parameter
+from core.block import Context, Equation, FloatArray, Stage, parameter
 from core.diagnose import window
 from core.diagnose.filters import between_updates, filters_step, informed
-from core.diagnose.kalman import KalmanBank, KalmanParams
+from core.diagnose.kalman import FILTERS, KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, take_floored_softmax
 from core.elementary import cos, log, sin
@@ -37,6 +37,12 @@ class LockIn(KalmanBank):
             r"\quad z=(\cos\omega t,\sin\omega t)^T",
         ),
         Equation("evidence", r"\ell_k\leftarrow\ell_k-\frac{T_k}{2W}", "Hanlon and Maybeck 2000, in idea"),
+    )
+    structure = (
+        FILTERS,
+        Stage("Demodulation", "residual covariance", "tone", ("tone",)),
+        Stage("Evidence", "log tone", "likelihood", ("evidence",)),
+        Stage("Weights", "likelihood", "log probability"),
     )
 
     class Params(KalmanParams):

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Context, Equation, parameter
+from core.block import Context, Equation, Stage, parameter
 from core.diagnose import window
 from core.diagnose.filters import between_updates, driven, filters_step
-from core.diagnose.kalman import KalmanBank, KalmanParams
+from core.diagnose.kalman import FILTERS, KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import take_softmax
 from core.elementary import cos, sin
@@ -37,6 +37,12 @@ class LockInGlr(KalmanBank):
             r"T_0=b_0^TG^{-1}b_0\sim\chi^2_2,\quad b_0=\sum_W\frac{r_0}{\sqrt{\psi_0}}z,\quad G=\sum_W zz^T,"
             r"\quad z=(\cos\omega t,\sin\omega t)^T",
         ),
+    )
+    structure = (
+        FILTERS,
+        Stage("Demodulation", "residual covariance", "tone", ("ratio",)),
+        Stage("Threshold", "tone", "alarm"),
+        Stage("Weights", "tone", "probability"),
     )
 
     class Params(KalmanParams):

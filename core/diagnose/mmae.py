@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-from core.block import Context, Equation, parameter
-from core.diagnose.excitation import LEAST_INFORMATION, nearest_rival
+from core.block import Context, Equation, Stage, parameter
+from core.diagnose.excitation import EVIDENCE, LEAST_INFORMATION, nearest_rival
 from core.diagnose.filters import between_updates, filters_step, informed, judge, take_logarithms
-from core.diagnose.kalman import KalmanBank, KalmanParams
+from core.diagnose.kalman import FILTERS, KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, take_floored_softmax
 from core.elementary import exp, log
@@ -58,21 +58,7 @@ class Mmae(KalmanBank):
 
     title = "Kalman bank (MMAE)"
     equations = (
-        Equation(
-            "filter",
-            r"x^-=\Phi x+\Gamma u,\; r=z-Hx^-,\; x^+=x^-+Kr,\; K=P^-H^T\psi^{-1}",
-            "5.2.3.1.1-7",
-            printed=r"\hat x(t_i)\ \text{on both sides, with the gain of the predictor } \Phi P H^T\psi^{-1}",
-            why="either the filter form or the predictor form, not a mixture; the residual is taken before the update",
-        ),
-        Equation(
-            "residual covariance",
-            r"\psi=HP^-H^T+R",
-            "5.2.3.2.1",
-            printed=r"\psi=CPC^T",
-            why="without R the filter believes its residuals hundreds of times too much: 732 false switches a "
-            "run instead of 1",
-        ),
+        *KalmanBank.equations,
         Equation(
             "probabilities",
             r"\ell_k\leftarrow\ell_k-\tfrac{r_k^2}{2\psi_k}-\tfrac12\ln\psi_k,"
@@ -82,6 +68,12 @@ class Mmae(KalmanBank):
             why="as printed the probabilities of the faults sink for ever while the device is healthy, and steps "
             "2 to 6 are never found",
         ),
+    )
+    structure = (
+        FILTERS,
+        Stage("Likelihoods", "weight nis covariance", "likelihood", ("probabilities",)),
+        Stage("Weights", "likelihood", "weight probability", ("probabilities",)),
+        EVIDENCE,
     )
 
     class Params(KalmanParams):

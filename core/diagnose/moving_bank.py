@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any, Literal
 
-from core.block import Context, Equation, parameter
+from core.block import Context, Equation, Stage, parameter
 from core.diagnose.filters import between_updates, driven, filter_step, hand_over
 from core.diagnose.hypothesis import Hypothesis
-from core.diagnose.kalman import FilterParams, KalmanBank
+from core.diagnose.kalman import FILTERS, FilterParams, KalmanBank
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored, take_floored_softmax
 from core.elementary import log
@@ -32,6 +33,13 @@ class MovingBank(KalmanBank):
     title = "Moving bank"
     lengths = ("reach",)
     equations = (Equation("estimate", r"\hat f=\sum_kp_kf_k", "Maybeck and Hentz 1987"),)
+    structure = (
+        replace(FILTERS, takes="measured applied centre"),
+        Stage("Likelihoods", "log nis covariance", "likelihood"),
+        Stage("Weights", "likelihood", "log probability"),
+        Stage("Estimate", "probability centre", "estimate", ("estimate",)),
+        Stage("Move", "probability", "centre"),
+    )
 
     class Params(FilterParams):
         """What is followed, and how finely."""

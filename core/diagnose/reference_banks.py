@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Context, Equation, parameter
+from core.block import Context, Equation, Stage, parameter
 from core.diagnose.arx import (
+    REGRESSOR,
     SIZE,
     ArxParams,
     Estimator,
@@ -51,6 +52,13 @@ class ReferenceBanks(WeighedBank):
         "With 50 nm of noise it is right for 99 % at 2 kHz and 72 % at 1 kHz; IMM is right for 92 % there.",
     )
     equations = (Equation("residual", r"r_k=z_i-h_i^T\hat\theta_k,\quad \hat\theta_k\leftarrow(u,z_k)", "5.3.2-3"),)
+    structure = (
+        REGRESSOR,
+        Stage("Estimators with records of their own", "h", "banks", ("residual",)),
+        Stage("Residuals", "banks h measured", "residual nis", ("residual",)),
+        Stage("Likelihoods", "log nis", "likelihood"),
+        Stage("Weights", "likelihood", "log probability"),
+    )
 
     class Params(ArxParams):
         """Memory and floor."""

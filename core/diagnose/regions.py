@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Block, BlockParams, Context, Equation, Oscillator, parameter
+from core.block import Block, BlockParams, Context, Equation, Oscillator, Stage, parameter
 from core.diagnose import window
 from core.diagnose.hypothesis import lacking
 from core.kernel import flush_tiny
@@ -29,6 +29,12 @@ class Regions(Block):
     every_tick = True
     title = "Performance regions"
     equations = (Equation("loss", r"J=\mathrm{rms}(y-y_0)/\mathrm{rms}(y_0)", "5.1.5"),)
+    structure = (
+        Stage("Healthy device", "applied", "x"),
+        Stage("Sums over a period", "measured x", "error power"),
+        Stage("Loss", "error power", "loss", ("loss",)),
+        Stage("Region", "loss measured", "region"),
+    )
 
     class Params(BlockParams):
         """Limits of the regions."""

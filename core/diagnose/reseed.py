@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
-from core.block import Context, Equation, parameter
+from core.block import Context, Equation, Stage, parameter
 from core.diagnose.filters import between_updates, filters_step, hand_over, informed, judge, take_logarithms
-from core.diagnose.kalman import KalmanBank, KalmanParams
+from core.diagnose.kalman import FILTERS, KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE, Filters
 from core.diagnose.weights import floored, take_floored_softmax, winner_of
 from core.elementary import log
@@ -37,6 +38,12 @@ class Reseed(KalmanBank):
 
     title = "Re-seeding bank"
     equations = (Equation("seeding", r"p_j>p_{sure},\;p_k<p_{hopeless}\Rightarrow(x_k,P_k)\leftarrow(x_j,P_j)"),)
+    structure = (
+        replace(FILTERS, takes="measured applied x1 x2"),
+        Stage("Likelihoods", "log nis covariance", "likelihood"),
+        Stage("Weights", "likelihood", "log probability"),
+        Stage("Seeding", "probability", "x1 x2", ("seeding",)),
+    )
 
     class Params(KalmanParams):
         """Assumptions of the bank."""

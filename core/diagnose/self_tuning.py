@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, Literal
 
-from core.block import Context, Equation, parameter
+from core.block import Context, Equation, Stage, parameter
 from core.diagnose.arx import (
     SIZE,
     ArxBank,
@@ -120,6 +120,15 @@ class SelfTuning(ArxBank):
             why="the same symbol stands on both sides, and steps of 1e-4 make it the slowest of all; the sign does "
             "not bound it either",
         ),
+    )
+    structure = (
+        Stage("Regressor", "applied measured", "h", ("difference equation",)),
+        Stage("Power of the innovations", "estimate h measured", "innovation_ratio", ("power of the innovations",)),
+        Stage("Forgetting", "innovation_ratio", "forgetting", ("adaptive forgetting",)),
+        Stage("Identifier", "h measured forgetting", "estimate trace", ("estimate",)),
+        Stage("Residuals of the models", "h measured", "residual nis", ("difference equation",)),
+        Stage("Costs", "residual forgetting", "cost"),
+        Stage("Weights", "cost", "probability"),
     )
 
     class Params(ArxParams):

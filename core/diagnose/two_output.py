@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Context, Equation, parameter
+from core.block import Context, Equation, Stage, parameter
 from core.diagnose.filters import between_updates, driven, filters_step, take_logarithms
-from core.diagnose.kalman import KalmanBank, KalmanParams
+from core.diagnose.kalman import FILTERS, KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE, Filters
 from core.diagnose.weights import floored, take_floored_softmax
 from core.elementary import log
@@ -51,6 +51,17 @@ class TwoOutput(KalmanBank):
             printed=r"\beta_k=(2\pi)^{-l/2}|\psi_k|^{-l/2}",
             why="the determinant is to the power one half, whatever the number of outputs; the same only for one",
         ),
+    )
+    structure = (
+        FILTERS,
+        Stage(
+            "Correction by the velocity",
+            "velocity residual",
+            "velocity_residual",
+            ("likelihood",),
+        ),
+        Stage("Likelihoods", "log nis covariance velocity_residual", "likelihood", ("likelihood",)),
+        Stage("Weights", "likelihood", "log probability"),
     )
 
     class Params(KalmanParams):

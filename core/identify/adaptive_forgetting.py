@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from core.block import Context, Equation, parameter
+from core.block import Context, Equation, Stage, parameter
 from core.estimation import estimate
 from core.identify.discrete import Discrete, DiscreteParams, N, gather_voltage, nominal, observe, report
-from core.identify.identifier import between_updates
+from core.identify.identifier import DEVICE, JUDGED, between_updates
 from core.kernel import kernel
 from core.ports import tap
 from core.record import Choice
@@ -97,6 +97,16 @@ class AdaptiveForgetting(Discrete):
             printed=r"\lambda_i=\lambda_{i-1}+\mu\,\mathrm{sgn}(\lambda_i-\lambda_{i-1})",
             why="a sign bounds the step and not the factor, and one symbol cannot stand on both sides",
         ),
+    )
+    structure = (
+        Stage("Regressor", "applied measured", "phi"),
+        Stage("Residual", "coefficient phi measured", "residual"),
+        Stage("Innovation", "residual", "innovation_ratio", ("innovation",)),
+        Stage("Forgetting", "innovation_ratio phi", "forgetting", ("forgetting factor", "limit")),
+        Stage("Covariance", "phi forgetting", "covariance covariance_trace"),
+        Stage("Estimator", "residual phi covariance", "coefficient"),
+        DEVICE,
+        JUDGED,
     )
 
     class Params(DiscreteParams):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.block import Equation
+from core.block import Equation, Stage
 from core.identify.filtered import Filtered, FilterParams, N, follow_voltage, observe
 from core.identify.identifier import ExcitationPorts, between_updates, excite
 
@@ -25,6 +25,10 @@ class Excitation(Filtered):
             r"\alpha_2I\ge\int_{t}^{t+\delta}\varphi\varphi^T\,d\tau\ge\alpha_1I",
             "A.9.1",
         ),
+    )
+    structure = (
+        Stage("Filters", "applied measured", "phi"),
+        Stage("Windows", "phi", "excitation excitation_relative identifiable", ("persistent excitation",)),
     )
 
     class Params(FilterParams):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from core.block import Context, Equation, parameter
+from core.block import Context, Equation, Stage, parameter
 from core.identify.filtered import (
     FilteredEstimator,
     FilteredParams,
@@ -15,7 +15,7 @@ from core.identify.filtered import (
     prediction,
     report,
 )
-from core.identify.identifier import between_updates, coefficients
+from core.identify.identifier import DEVICE, JUDGED, between_updates, coefficients
 
 
 class Gradient(FilteredEstimator):
@@ -46,6 +46,13 @@ class Gradient(FilteredEstimator):
             why="V stands still for any parameter error that this input does not show: only persistent excitation "
             "makes the parameters converge",
         ),
+    )
+    structure = (
+        Stage("Filters", "applied measured", "phi", ("model",)),
+        Stage("Residual", "coefficient phi measured", "residual", ("model",)),
+        Stage("Estimator", "residual phi", "coefficient", ("law", "Lyapunov function")),
+        DEVICE,
+        JUDGED,
     )
 
     class Params(FilteredParams):

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
-from core.block import Block, BlockParams, Context, Oscillator, parameter
+from core.block import Block, BlockParams, Context, Oscillator, Stage, parameter
 from core.estimation import triangle
 from core.kernel import kernel
 from core.ports import output, reads, tap
@@ -24,6 +24,9 @@ EXCITATION_RELATIVE = "the same with every component of phi scaled to a unit mea
 IDENTIFIABLE = "1 while this input tells all parameters apart"
 """Meanings of the excitation taps, for all identifiers and for the monitor."""
 
+DEVICE = Stage("Device", "coefficient", "estimate error_pct")
+JUDGED = Stage("Excitation", "phi", "excitation excitation_relative identifiable")
+"""Stages behind every estimate."""
 MOST = 4
 """Largest number of parameters of an identifier."""
 BAD_PCT = 1e4

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from core.block import Context, Equation, parameter
+from core.block import Context, Equation, Stage, parameter
 from core.elementary import exp
 from core.estimation import diagonal, estimate, project_onto, trace_of, triangle
 from core.identify.filtered import (
@@ -17,7 +17,7 @@ from core.identify.filtered import (
     prediction,
     report,
 )
-from core.identify.identifier import between_updates
+from core.identify.identifier import DEVICE, JUDGED, between_updates
 from core.ports import tap
 from core.record import Vector, vector
 
@@ -55,6 +55,14 @@ class LeastSquares(FilteredEstimator):
             r"K=\frac{P\varphi}{m^2\mu/h+\varphi^TP\varphi},\;\hat\theta\leftarrow\hat\theta+K(z-\hat\theta^T\varphi),\;"
             r"P\leftarrow\frac{P-K\varphi^TP}{\mu},\quad\mu=e^{-Bh}",
         ),
+    )
+    structure = (
+        Stage("Filters", "applied measured", "phi", ("model",)),
+        Stage("Residual", "coefficient phi measured", "residual", ("estimate",)),
+        Stage("Covariance", "phi", "covariance covariance_trace", ("covariance", "sample")),
+        Stage("Estimator", "residual phi covariance", "coefficient", ("estimate", "sample")),
+        DEVICE,
+        JUDGED,
     )
 
     class Params(FilteredParams):

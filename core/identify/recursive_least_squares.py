@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from core.block import Equation, parameter
+from core.block import Equation, Stage, parameter
 from core.estimation import estimate, trace_of
 from core.identify.discrete import Discrete, DiscreteParams, N, gather_voltage, observe, report, restart
-from core.identify.identifier import between_updates
+from core.identify.identifier import DEVICE, JUDGED, between_updates
 
 
 class RecursiveLeastSquares(Discrete):
@@ -38,6 +38,14 @@ class RecursiveLeastSquares(Discrete):
             printed=r"\text{a higher forgetting factor: a short history}",
             why="backwards: 7, 10 and 50 samples at 0.86, 0.9 and 0.98",
         ),
+    )
+    structure = (
+        Stage("Regressor", "applied measured", "phi", ("model",)),
+        Stage("Residual", "coefficient phi measured", "residual", ("estimate",)),
+        Stage("Covariance", "phi", "covariance covariance_trace", ("covariance", "memory")),
+        Stage("Estimator", "residual phi covariance", "coefficient", ("estimate",)),
+        DEVICE,
+        JUDGED,
     )
 
     class Params(DiscreteParams):

@@ -22,7 +22,7 @@ DIAGNOSE = ("Hypothesis", "BankParams", "SEVEN_STEP", "assumed_noise", "lacking"
 OFFERED: dict[str, tuple[str, ...]] = {
     "__future__": ("annotations",),
     "typing": ("Any", "Literal"),
-    "core.block": ("Block", "BlockParams", "Context", "Equation", "Oscillator", "parameter"),
+    "core.block": ("Block", "BlockParams", "Context", "Equation", "Oscillator", "Stage", "parameter"),
     "core.record": ("Choice", "Record", "Records", "Vector", "several", "vector"),
     "core.ports": ("BlockPorts", "output", "reads", "tap"),
     "core.kernel": ("flush_tiny", "inlined", "kernel"),

@@ -15,7 +15,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from core.block import Block, BlockParams, Context, Equation, FloatArray
+from core.block import Block, BlockParams, Context, Equation, FloatArray, Stage
+from core.cards import check_structure
 from core.control.controller import EngagedPorts
 from core.diagnose.hypothesis import BankParams
 from core.diagnose.judge import Judge
@@ -43,7 +44,10 @@ BASES: tuple[tuple[type[Block], str], ...] = (
 )
 """What a unit is, by its base; one on ``Block`` with the ports of a controller is a controller."""
 
-ATTRIBUTES = {"title": str, "equations": tuple, "weaknesses": tuple, "group": str, "place": int, "changes": str}
+ATTRIBUTES = {
+    **{"title": str, "equations": tuple, "structure": tuple, "weaknesses": tuple},
+    **{"group": str, "place": int, "changes": str},
+}
 FAULT_ATTRIBUTES = {"shows": str, "suggested": float, "axes": type(None)}
 LONGEST_TEXT = 2000
 OF_BENCH = ("cls", "params", "context")
@@ -129,6 +133,7 @@ def unit(name: str, source: str) -> Unit:
         refuse(node, f"has no {entry}")
     try:
         block = type(node.name, (declared.base,), space)
+        check_structure(block)
         weakref.finalize(block, linecache.cache.pop, _file(name, mark), None)  # many texts are checked as one types
         own = Unit(family, name, source, block, steps.last_cost)
     except (TypeError, ValueError) as error:
@@ -166,13 +171,13 @@ def _attributes(declared: Declaration, family: str) -> dict[str, Any]:
         if name not in allowed:
             refuse(node, f"{name} is no attribute of a unit; allowed: {', '.join(allowed)}")
         parts = value if isinstance(value, tuple) else (value,)
-        inner = Equation if name == "equations" else str
+        inner = {"equations": Equation, "structure": Stage}.get(name, str)
         if not isinstance(value, allowed[name]) or (
             isinstance(value, tuple) and not all(type(p) is inner for p in parts)
         ):
             refuse(node, f"{name} must be {allowed[name].__name__}")
         for part in parts:
-            texts = astuple(part) if isinstance(part, Equation) else (part,) if isinstance(part, str) else ()
+            texts = _texts(part) if isinstance(part, Equation | Stage) else (part,) if isinstance(part, str) else ()
             if any(not isinstance(text, str) or len(text) > LONGEST_TEXT for text in texts):
                 refuse(node, f"{name} has a text of more than {LONGEST_TEXT} characters")
     for name, value in wanted.items():
@@ -184,6 +189,11 @@ def _attributes(declared: Declaration, family: str) -> dict[str, Any]:
     if not found.get("title") or len(found["title"]) > 80:
         refuse(node, "needs a title of at most 80 characters")
     return found
+
+
+def _texts(part: Equation | Stage) -> list[Any]:
+    """Return all texts of an equation or of a stage."""
+    return [text for value in astuple(part) for text in (value if isinstance(value, tuple) else (value,))]
 
 
 def _methods(declared: Declaration) -> dict[str, Any]:

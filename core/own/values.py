@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from typing import Any
 
-from core.block import Block, Equation, Oscillator
+from core.block import Block, Equation, Oscillator, Stage
 from core.own.text import refuse
 
 MOST_INTEGER = 2**53
@@ -33,7 +33,7 @@ COMPARED: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
     ast.Is: operator.is_,
     ast.IsNot: operator.is_not,
 }
-MADE = (bool, enumerate, Equation, float, int, list, Oscillator, range, tuple, zip)
+MADE = (bool, enumerate, Equation, float, int, list, Oscillator, range, Stage, tuple, zip)
 """Classes that may be called."""
 
 

@@ -11,9 +11,10 @@ import numpy as np
 
 from core.block import FloatArray
 from core.board.spec import Spec
+from core.cards import parameter_cards
 from core.errors import InputError, unknown
 from core.format import format_short, format_si
-from core.registry import block, parameter_cards
+from core.registry import block
 from scenarios.measure.metrics import fundamental
 from scenarios.sheets.expression import evaluate
 from scenarios.sheets.sheet import Hold, Limits

@@ -8,7 +8,8 @@ from functools import cache
 from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel
 
-from core.registry import BlockCard, catalog
+from core.cards import BlockCard
+from core.registry import catalog
 from server.api.bodies import StrictRoute
 from server.compression import takes_gzip
 from server.version import VERSION

@@ -10,12 +10,12 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from core import registry
+from core.cards import EquationCard, ParameterCard, equation_card, parameter_cards
 from core.device.catalogue import devices
 from core.device.device import Device
 from core.device.geometry import Geometry
 from core.device.quantities import QUANTITIES
 from core.device.spread import Tolerances
-from core.registry import EquationCard, ParameterCard, equation_card, parameter_cards
 from scenarios.design import Statistics, bode_band, designed, device_figures, process, sensitivities
 from server.api.bodies import Body, StrictRoute
 

@@ -8,11 +8,11 @@ from fastapi import APIRouter, Path
 from pydantic import BaseModel, Field
 
 from core.board.library import IDENTIFIER
+from core.cards import BlockCard, card
 from core.errors import InputError
 from core.own.admission import check_admitted, refusal
 from core.own.text import UnitError
 from core.own.unit import Unit, unit
-from core.registry import BlockCard, card
 from scenarios.own import copies
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep

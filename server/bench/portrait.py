@@ -9,8 +9,8 @@ from typing import Any, Protocol
 from core.board.spec import Section
 from core.board.track import Track
 from core.board.words import describe
+from core.cards import card
 from core.faults.fault import FaultParams
-from core.registry import card
 from scenarios.schema import Scenario
 from server.bench.changes import Changes
 from server.bench.commands import MAX_PENDING

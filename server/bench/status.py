@@ -9,8 +9,8 @@ from pydantic import BaseModel, Field
 
 from core.board.commands import Trip
 from core.board.document import Document
+from core.cards import BlockCard
 from core.loop.score import Scores
-from core.registry import BlockCard
 from core.signals import Signal
 from server.bench.blind import Question
 

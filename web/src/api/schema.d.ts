@@ -3260,6 +3260,8 @@ export interface components {
             slot: string;
             /** Equations */
             equations: components["schemas"]["EquationCard"][];
+            /** Structure */
+            structure: components["schemas"]["StageCard"][];
             /** Parameters */
             parameters: components["schemas"]["ParameterCard"][];
             /** Inputs */
@@ -5740,6 +5742,8 @@ export interface components {
             unit: string;
             /** Meaning */
             meaning: string;
+            /** Source */
+            source: string;
             /** Labels */
             labels: string[];
             /** Each */
@@ -6782,6 +6786,20 @@ export interface components {
             p50: number;
             /** P99 */
             p99: number;
+        };
+        /**
+         * StageCard
+         * @description A stage of a block as people see it: what it takes and gives by the names of ports and states.
+         */
+        StageCard: {
+            /** Title */
+            title: string;
+            /** Takes */
+            takes: string[];
+            /** Gives */
+            gives: string[];
+            /** Equations */
+            equations: components["schemas"]["EquationCard"][];
         };
         /**
          * Staged

@@ -1,7 +1,7 @@
 import { expect, it } from "vitest";
 import { overridden, slotTitle } from "./slots";
 
-const port = (name: string, unit = "uN") => ({ name, unit, meaning: "", labels: [], each: "" });
+const port = (name: string, unit = "uN") => ({ name, unit, meaning: "", source: "", labels: [], each: "" });
 const CARDS: Record<string, { title: string; outputs: ReturnType<typeof port>[] }> = {
   drive_loop: { title: "Drive loop", outputs: [port("x"), port("amplitude", "um")] },
   rebalance: { title: "Force to rebalance", outputs: [port("rate", "deg/s"), port("y")] },

@@ -1,14 +1,23 @@
+import { NativeSelect } from "@mantine/core";
+import { useState } from "react";
 import { useShallow } from "zustand/react/shallow";
+import { useCatalog } from "../../api/use-catalog";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatShort } from "../../ui/format";
+import { useInstances } from "../card/instances";
 import { AxesLoop } from "./axes-loop";
+import { InsideDrawing } from "./inside-drawing";
 import { ResonatorLoop } from "./resonator-loop";
 import styles from "./schematic.module.css";
 import { useActingFaults } from "./use-live-values";
 import { useStructure } from "./use-structure";
 
-/** The loop with what flows in it now; a box opens its card. */
+const LOOP = "";
+/** Families whose blocks are drawn from inside too. */
+const OPENED = ["control", "identify", "diagnose"];
+
+/** The loop with what flows in it now, or the inside of a controller, an identifier or a diagnoser. */
 export function SchematicPanel() {
   const device = useBench((s) => (s.bench?.parameters.device as { id?: string } | undefined)?.id);
   const axes = useBench((s) => s.bench?.axes);
@@ -18,9 +27,38 @@ export function SchematicPanel() {
   const rate = useBench((s) => s.bench?.sample_rate_khz);
   const structure = useStructure();
   const acting = useActingFaults();
+  const list = useInstances();
+  const { block } = useCatalog();
+  const [wanted, setWanted] = useState(LOOP);
+  const opened = list.filter((one) => OPENED.includes(one.family));
+  const instance = opened.find((one) => one.id === wanted);
+  const card = instance && block(instance.family, instance.name);
   if (!axes || !slots || !controller || !diagnosers)
     return <EmptyState title="No bench yet">The loop appears with the bench.</EmptyState>;
   const isFlat = axes.length === 0;
+  const choice = (
+    <NativeSelect
+      size="xs"
+      className={styles.choice}
+      aria-label="Drawing"
+      value={instance ? wanted : LOOP}
+      data={[
+        { value: LOOP, label: "The loop" },
+        ...opened.map(({ id, title, family, name }) => ({
+          value: id,
+          label: `${title}: ${block(family, name)?.title ?? name.replaceAll("_", " ")}`,
+        })),
+      ]}
+      onChange={(e) => setWanted(e.currentTarget.value)}
+    />
+  );
+  if (instance && card)
+    return (
+      <section className={styles.panel} aria-label={`Inside: ${card.title}`}>
+        <InsideDrawing key={`${instance.id} ${instance.name}`} instance={instance} block={card} />
+        <footer className={styles.foot}>{choice}</footer>
+      </section>
+    );
   return (
     <section className={styles.panel} aria-label="The loop">
       {isFlat ? (
@@ -28,13 +66,16 @@ export function SchematicPanel() {
       ) : (
         <AxesLoop axes={axes} slots={slots} />
       )}
-      <p className={styles.device}>
-        {device ?? "device"} · {rate === undefined ? "" : formatShort(rate, "kHz")}
-        {isFlat && structure.figure && ` · drawn as figure ${structure.figure}`}
-        {isFlat && !structure.hasRoom && acting.length > 0 && (
-          <span className={styles.acting}> · {acting.map((fault) => fault.title).join(", ")}</span>
-        )}
-      </p>
+      <footer className={styles.foot}>
+        <p className={styles.device}>
+          {device ?? "device"} · {rate === undefined ? "" : formatShort(rate, "kHz")}
+          {isFlat && structure.figure && ` · drawn as figure ${structure.figure}`}
+          {isFlat && !structure.hasRoom && acting.length > 0 && (
+            <span className={styles.acting}> · {acting.map((fault) => fault.title).join(", ")}</span>
+          )}
+        </p>
+        {choice}
+      </footer>
     </section>
   );
 }

@@ -1,0 +1,228 @@
+"""Cards: what people are told of a block, in catalogue, documents and forms."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, get_args, get_origin
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from core.block import Block, BlockParams, Equation, Stage
+from core.ports import INPUT, Port
+
+
+class PortCard(BaseModel):
+    """A port as people see it."""
+
+    name: str
+    unit: str
+    meaning: str
+    source: str
+    labels: list[str]
+    each: str
+
+
+class ParameterCard(BaseModel):
+    """A parameter as people see it."""
+
+    name: str
+    label: str
+    type: str
+    unit: str
+    default: Any
+    minimum: float | None
+    maximum: float | None
+    meaning: str
+    equation: str
+    live: bool
+    choices: list[str]
+
+
+class EquationCard(BaseModel):
+    """An equation, with its erratum when the printed one is wrong."""
+
+    label: str
+    latex: str
+    source: str
+    printed: str | None
+    why: str | None
+
+
+class StageCard(BaseModel):
+    """A stage of a block as people see it: what it takes and gives by the names of ports and states."""
+
+    title: str
+    takes: list[str]
+    gives: list[str]
+    equations: list[EquationCard]
+
+
+class BlockCard(BaseModel):
+    """All that the catalogue says of a block."""
+
+    family: str
+    name: str
+    title: str
+    group: str
+    summary: str
+    changes: str | None
+    shows: str | None
+    suggested: float | None
+    weaknesses: list[str]
+    axes: list[str] | None
+    per_axis: bool
+    slot: str
+    equations: list[EquationCard]
+    structure: list[StageCard]
+    parameters: list[ParameterCard]
+    inputs: list[PortCard]
+    outputs: list[PortCard]
+    taps: list[PortCard]
+    schema_: dict[str, Any]
+
+
+def equation_card(e: Equation) -> EquationCard:
+    """Return an equation as people see it."""
+    return EquationCard(label=e.label, latex=e.latex, source=e.source, printed=e.printed or None, why=e.why or None)
+
+
+def parameter_cards(params: type[BlockParams]) -> list[ParameterCard]:
+    """Return the parameters of a table as people see them."""
+    return [_parameter(name, info) for name, info in params.model_fields.items()]
+
+
+def card(entry: type[Block]) -> BlockCard:
+    """Return the card of a block."""
+    return BlockCard(
+        family=entry.family,
+        name=entry.name,
+        title=entry.title,
+        group=entry.group,
+        summary=" ".join((entry.__doc__ or "").strip().split("\n\n")[0].split()),
+        changes=entry.changes or None,
+        shows=entry.shows or None,
+        suggested=entry.suggested,
+        weaknesses=list(entry.weaknesses),
+        axes=None if entry.axes is None else list(entry.axes),
+        per_axis=entry.per_axis,
+        slot=entry.slot,
+        equations=[equation_card(equation) for equation in entry.equations],
+        structure=_structure(entry),
+        parameters=parameter_cards(entry.Params),
+        inputs=[_port(port) for port in entry.inputs],
+        outputs=[_port(port) for port in entry.outputs],
+        taps=[_port(port) for port in entry.taps],
+        schema_=entry.Params.model_json_schema(),
+    )
+
+
+def is_live(info: FieldInfo) -> bool:
+    """Say whether a parameter may change while the board runs."""
+    extra = info.json_schema_extra
+    return bool(extra.get("live", True)) if isinstance(extra, dict) else True
+
+
+def check_structure(entry: type[Block]) -> None:
+    """Refuse stages that name what the block does not have, or that leave out one of its outputs or equations.
+
+    Raises
+    ------
+    TypeError
+        Naming the stage.
+    """
+    if not entry.structure:
+        return
+    labels, given = _labelled(entry), set[str]()
+    inputs, outputs = ({p.name for p in ports if not p.hidden} for ports in (entry.inputs, entry.outputs))
+    known = {port.name for port in entry.Ports.declared} | {field.name for field in entry.State.layout.fields}
+    for stage in entry.structure:
+        here = f"{entry.__module__}: {stage.title}"
+        for name in f"{stage.takes} {stage.gives}".split():
+            if name not in known:
+                raise TypeError(f"{here} names {name}, which is no port and no state")
+        for label in stage.equations:
+            if label not in labels:
+                raise TypeError(f"{here} names the equation {label}, which is not there")
+        if twice := (given | inputs) & {*stage.gives.split()}:
+            raise TypeError(f"{here} gives {min(twice)}, which comes from elsewhere")
+        given |= {*stage.gives.split()}
+    taken = {name for stage in entry.structure for name in stage.takes.split()}
+    told = {label for stage in entry.structure for label in stage.equations}
+    left = (taken - inputs - given) | (outputs - given) | ({e.label for e in entry.equations} - told)
+    if left:
+        raise TypeError(f"{entry.__module__}: no stage gives or carries {min(left)}")
+
+
+def _labelled(entry: type[Block]) -> dict[str, Equation]:
+    """Return the equations of a block and of its bases by label."""
+    return {e.label: e for base in reversed(entry.__mro__) for e in vars(base).get("equations", ())}
+
+
+def _structure(entry: type[Block]) -> list[StageCard]:
+    """Return the stages of a block; one that states none is a single stage with all of its ports."""
+    labelled = _labelled(entry)
+    visible = [port for port in entry.Ports.declared if not port.hidden]
+    inputs, others = ([p.name for p in visible if (p.kind == INPUT) is taken] for taken in (True, False))
+    whole = Stage(entry.title, " ".join(inputs), " ".join(others), tuple(e.label for e in entry.equations))
+    return [
+        StageCard(
+            title=stage.title,
+            takes=stage.takes.split(),
+            gives=stage.gives.split(),
+            equations=[equation_card(labelled[label]) for label in stage.equations],
+        )
+        for stage in entry.structure or (whole,)
+    ]
+
+
+def _port(port: Port) -> PortCard:
+    return PortCard(
+        name=port.name,
+        unit=port.unit,
+        meaning=port.meaning,
+        source=port.source,
+        labels=list(port.labels),
+        each=port.each,
+    )
+
+
+def _parameter(name: str, info: FieldInfo) -> ParameterCard:
+    extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
+    limits: dict[str, float] = {}
+    for constraint in info.metadata:
+        for key in ("ge", "gt", "le", "lt"):
+            value = getattr(constraint, key, None)
+            if value is not None:
+                limits[key] = float(value)
+    default = info.get_default(call_default_factory=True)
+    if isinstance(default, BaseModel):
+        default = default.model_dump()
+    elif isinstance(default, list):
+        default = [item.model_dump() if isinstance(item, BaseModel) else item for item in default]
+    kind, choices = _type(info.annotation)
+    return ParameterCard(
+        name=name,
+        label=name.replace("_", " "),
+        type=kind,
+        unit=str(extra.get("unit", "")),
+        default=default,
+        minimum=limits.get("ge", limits.get("gt")),
+        maximum=limits.get("le", limits.get("lt")),
+        meaning=info.description or "",
+        equation=str(extra.get("equation", "")),
+        live=is_live(info),
+        choices=choices,
+    )
+
+
+def _type(annotation: Any) -> tuple[str, list[str]]:
+    if get_origin(annotation) is Literal:
+        return "choice", [str(choice) for choice in get_args(annotation)]
+    if get_origin(annotation) is list:
+        return "list", []
+    options = [option for option in get_args(annotation) if option is not type(None)] or [annotation]
+    simple = {bool: "boolean", int: "integer", float: "number", str: "text"}
+    for option in options:
+        if option in simple:
+            return simple[option], []
+    return "table", []
