@@ -1,5 +1,5 @@
 import { expect, test } from "./lab";
-import { expectReadable, SCHEMES, SCREENS, showOn } from "./screens";
+import { expectClean, expectReadable, SCHEMES, SCREENS, showOn } from "./screens";
 
 const SEVEN = { id: "ch3", force_n_per_v: 6.375e-9 };
 const SINE = { kind: "sine", amplitude_v: 10, frequency_hz: 2000 };
@@ -28,7 +28,7 @@ test("controllers and banks are drawn from inside, with values and equations", a
   // a value moves on its line
   const voltage = () =>
     stages
-      .getByText(/^-?−?[\d.]+ m?V$/)
+      .getByText(/^−?[\d.]+\sm?V$/)
       .first()
       .textContent();
   const before = await voltage();
@@ -41,14 +41,16 @@ test("controllers and banks are drawn from inside, with values and equations", a
 
   await drawing.selectOption({ label: "Diagnosis: Kalman bank (MMAE)" });
   const bank = page.getByRole("group", { name: "Stages of Kalman bank (MMAE)" });
-  await expect(bank.getByText(/^\d+(\.\d+)? %$/).first()).toBeVisible();
+  await expect(bank.getByText(/^\d+(\.\d+)?\s%$/).first()).toBeVisible();
   await expect(bank.getByText("m+10").first()).toBeVisible();
   await bank.getByRole("button", { name: "Weights" }).click();
   await expect(page.getByRole("region", { name: "Equations: Weights" })).toContainText("5.2.3.2.6");
 
   for (const screen of SCREENS) {
     await showOn(page, screen);
-    if (screen.width < 600) await page.getByRole("combobox", { name: "Another panel" }).selectOption("Loop");
+    if (screen.width < 600) await page.getByRole("combobox", { name: "Another panel" }).selectOption("schematic");
+    await drawing.selectOption({ label: "Diagnosis: Kalman bank (MMAE)" });
+    await expectClean(page, `the bank at ${screen.width}`);
     for (const scheme of SCHEMES) await expectReadable(page, `the bank at ${screen.width}`, scheme);
   }
 });

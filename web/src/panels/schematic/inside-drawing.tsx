@@ -35,7 +35,7 @@ export function InsideDrawing({ instance, block }: { instance: Instance; block: 
         {/* biome-ignore lint/a11y/useSemanticElements: stages of a drawing */}
         <svg
           viewBox={`0 0 ${inside.width} ${inside.height}`}
-          style={{ width: inside.width, minWidth: 0.8 * inside.width }}
+          style={{ width: inside.width, minWidth: 0.93 * inside.width }}
           className={styles.drawing}
           role="group"
           aria-label={`Stages of ${block.title}`}
