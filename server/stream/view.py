@@ -183,7 +183,9 @@ class _Sweep:
         self.before = round(spec.trigger.position * window)
         # Begin one whole window before the newest tick, so that a paused bench shows its last picture.
         start = head - 4 * window if spec.trigger.sweep != "single" else head
-        self._trigger = Trigger(index, spec.trigger.edge, spec.trigger.level, spec.trigger.hysteresis, start)
+        wanted = spec.trigger
+        upper = math.inf if wanted.upper is None else wanted.upper
+        self._trigger = Trigger(index, wanted.edge, wanted.level, wanted.hysteresis, start, upper)
         self._waiting: list[int] = []
         self._shown: int | None = None
         self._armed = True
@@ -223,7 +225,7 @@ class _Sweep:
 
     def exact(self, history: History, tick: int) -> float:
         """Return the tick of the crossing, between whole ticks."""
-        return crossing_time(history, self._trigger.index, tick, self._spec.level)
+        return crossing_time(history, self._trigger.index, tick, self._spec.level, self._trigger.upper)
 
 
 def _latest(history: History, indices: list[int]) -> NDArray[np.float32]:

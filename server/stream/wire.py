@@ -34,11 +34,23 @@ class TriggerSpec(Message):
     """The trigger of a panel; it sets the moment of the picture."""
 
     signal: str = Field(max_length=200)
-    edge: Literal["rising", "falling", "either"] = "rising"
+    edge: Literal["rising", "falling", "either", "enters", "leaves"] = Field(
+        "rising", description="Of the level; or the signal enters or leaves the window from it to the upper level"
+    )
     level: float = 0.0
+    upper: float | None = Field(None, description="Upper level of the window; more than the level")
     hysteresis: float = Field(0.0, ge=0, description="How far the signal must go back before the next trigger")
     position: float = Field(0.1, ge=0, le=1, description="Share of the window before the trigger")
     sweep: Literal["auto", "normal", "single"] = "auto"
+
+    @model_validator(mode="after")
+    def _has_its_window(self) -> TriggerSpec:
+        if self.edge in ("enters", "leaves"):
+            if self.upper is None:
+                raise ValueError("give the upper level of the window")
+            if not self.upper > self.level:
+                raise ValueError("the upper level of the window must lie above the level")
+        return self
 
 
 class BehindSpec(Message):

@@ -109,4 +109,9 @@ test("a trigger holds the picture at an edge", async ({ page, openBench }) => {
   const scope = page.locator("section[aria-label^='Scope']").first();
   await scope.getByRole("button", { name: "Trigger" }).click();
   await expect(scope.getByRole("button", { name: /● ↗ 0\sV/ })).toBeVisible();
+  await scope.getByRole("button", { name: /● ↗ 0\sV/ }).click();
+  await page.getByRole("combobox", { name: "When it" }).selectOption("leaves");
+  await page.getByRole("textbox", { name: "From" }).fill("-5");
+  await page.getByRole("textbox", { name: "To" }).fill("5");
+  await expect(scope.getByRole("button", { name: /● ⇤ −5\sV to 5\sV/ })).toBeVisible();
 });

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -45,6 +46,21 @@ def walk(values: Any, edge: str, level: float, hysteresis: float) -> list[int]:
     return sorted(set(found))
 
 
+def walk_window(values: Any, edge: str, level: float, upper: float, hysteresis: float) -> list[int]:
+    """The definition of entering and leaving a window, one sample after the other."""
+    found, ready = [], False
+    for tick, value in enumerate(np.float64(np.asarray(values, np.float32))):
+        inside = min(value - level, upper - value)  # how far it is within, less than 0 outside
+        height = inside if edge == "enters" else -inside
+        if height >= 0.0:
+            if ready:
+                found.append(tick)
+            ready = False
+        elif height < -hysteresis:
+            ready = True
+    return found
+
+
 signals = st.lists(st.sampled_from([-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, float("nan")]), max_size=60)
 
 
@@ -69,6 +85,34 @@ def test_every_crossing_is_found_once_however_the_data_arrives(
             arrived = history.end_tick = min(arrived + piece, len(values))
             found += trigger.scan(history)
     assert found == walk(values, edge, level, hysteresis)
+
+
+@given(
+    signals,
+    st.sampled_from(["enters", "leaves"]),
+    st.sampled_from([(-0.5, 0.5), (0.0, 0.5), (-1.0, 1.0)]),
+    st.sampled_from([0.0, 0.2, 0.4]),
+    st.lists(st.integers(1, 20), max_size=20),
+    st.integers(1, 9),
+)
+def test_a_window_is_entered_and_left_however_the_data_arrives(
+    values: list[float], edge: Any, window: tuple[float, float], hysteresis: float, pieces: list[int], block: int
+) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "BLOCK", block)
+        history, found, arrived = Samples(values), [], 0
+        trigger = Trigger(0, edge, window[0], hysteresis, 0, window[1])
+        for piece in [*pieces, len(values)]:
+            arrived = history.end_tick = min(arrived + piece, len(values))
+            found += trigger.scan(history)
+    assert found == walk_window(values, edge, *window, hysteresis)
+
+
+def test_one_tick_outside_the_window_is_enough() -> None:
+    spike = [0.0] * 1000
+    spike[417] = -3.0
+    assert Trigger(0, "leaves", -1.0, 0.1, 0, 1.0).scan(Samples(spike)) == [417]
+    assert Trigger(0, "enters", -1.0, 0.1, 0, 1.0).scan(Samples(spike)) == [418]
 
 
 @given(signals, st.sampled_from(["rising", "falling", "either"]), st.integers(1, 9))
@@ -101,4 +145,7 @@ def test_noise_within_the_hysteresis_does_not_trigger_again() -> None:
 def test_a_crossing_is_placed_on_the_line_between_two_samples() -> None:
     history = Samples([-1.0, 3.0])
     assert crossing_time(history, 0, 1, 0.0) == pytest.approx(0.25)
+    assert crossing_time(history, 0, 1, -2.0, 1.0) == pytest.approx(0.5)  # the level of the window that was crossed
+    assert crossing_time(history, 0, 1, 1.0, 2.0) == pytest.approx(0.5)  # the first of both
+    assert crossing_time(Samples([3.0, -1.0]), 0, 1, 0.0, math.inf) == pytest.approx(0.75)
     assert crossing_time(Samples([0.0, 0.0]), 0, 1, 5.0) == 1.0

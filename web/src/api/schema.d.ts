@@ -7759,15 +7759,22 @@ export interface components {
             signal: string;
             /**
              * Edge
+             * @description Of the level; or the signal enters or leaves the window from it to the upper level
              * @default rising
              * @enum {string}
              */
-            edge?: "rising" | "falling" | "either";
+            edge?: "rising" | "falling" | "either" | "enters" | "leaves";
             /**
              * Level
              * @default 0
              */
             level?: number;
+            /**
+             * Upper
+             * @description Upper level of the window; more than the level
+             * @default null
+             */
+            upper?: number | null;
             /**
              * Hysteresis
              * @description How far the signal must go back before the next trigger

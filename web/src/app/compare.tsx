@@ -3,7 +3,16 @@ import { IconArrowsDiff, IconTrash, IconX } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
 import type { Bench } from "../api/types";
-import { type Alignment, addBehind, align, MOST_BEHIND, removeBehind, useBehind, wordsOf } from "../bench/behind";
+import {
+  type Alignment,
+  addBehind,
+  align,
+  MOST_BEHIND,
+  removeBehind,
+  renameBehind,
+  useBehind,
+  wordsOf,
+} from "../bench/behind";
 import { showRecording, showRun } from "../bench/behind-sources";
 import { openBench } from "../bench/open-bench";
 import { showError } from "../bench/send";
@@ -170,10 +179,7 @@ function Row({ id, words, shift, dtMs, known, onChange }: RowProps) {
     if (!known || now === words || !now) return setName(words);
     api
       .nameBench(id, now)
-      .then(() => {
-        removeBehind(id);
-        return addBehind(id);
-      })
+      .then(() => renameBehind(id, now))
       .then(onChange, showError);
   };
   const close = () =>

@@ -3,6 +3,7 @@ import { api } from "../api/api";
 import type { Bench, LogEntry } from "../api/types";
 import { useBench } from "../stream/bench-store";
 import { currentEvents } from "../stream/event-log";
+import { alarm } from "./announce";
 import { showError } from "./send";
 
 /** As many as the server sends. */
@@ -40,15 +41,23 @@ export const wordsOf = (bench: Pick<Bench, "title" | "name" | "origin" | "dt_ms"
 /** What is seen behind the traces, in words. */
 export function behindText(behind: readonly Behind[], difference: boolean): string {
   const names = behind.map(({ words }) => words).join("; ");
-  return `Behind, faded: ${names}.${difference ? ` Dotted, on the axis Δ: the difference from ${behind[0].words}.` : ""}`;
+  const dotted = `Dotted, on the axis Δ: the difference from ${behind[0]?.words}, where the window shows each sample.`;
+  return `Behind, faded: ${names}.${difference ? ` ${dotted}` : ""}`;
 }
 
-/** Put a bench behind the one on the page. */
+/** Put a bench behind the one on the page, if it has the same sample rate. */
 export async function addBehind(id: string): Promise<void> {
   const { behind, alignment } = useBehind.getState();
   if (behind.some((one) => one.bench === id) || behind.length >= MOST_BEHIND) return;
   try {
     const bench = await api.bench(id);
+    const rate = useBench.getState().bench?.sample_rate_khz;
+    if (bench.sample_rate_khz !== rate) {
+      alarm(
+        `${wordsOf(bench)} runs at ${bench.sample_rate_khz} kHz and this bench at ${rate} kHz: it cannot lie behind.`,
+      );
+      return;
+    }
     const shift = (await shiftOf(id, alignment)) ?? 0;
     useBehind.setState(({ behind }) => ({
       behind: [...behind.filter((one) => one.bench !== id), { bench: id, words: wordsOf(bench), shift }],
@@ -56,6 +65,13 @@ export async function addBehind(id: string): Promise<void> {
   } catch (error) {
     showError(error);
   }
+}
+
+/** Call a bench behind the traces something else. */
+export function renameBehind(id: string, words: string): void {
+  useBehind.setState(({ behind }) => ({
+    behind: behind.map((one) => (one.bench === id ? { ...one, words } : one)),
+  }));
 }
 
 export function removeBehind(id: string): void {
@@ -78,9 +94,10 @@ export async function align(alignment: Alignment): Promise<void> {
   }
 }
 
-/** Forget benches that are gone: the server draws nothing of them. */
+/** Forget benches that are gone, or that have another rate than the bench on the page: the server draws nothing of them. */
 export async function forgetGone(): Promise<void> {
-  const there = new Set((await api.benches()).map(({ id }) => id));
+  const rate = useBench.getState().bench?.sample_rate_khz;
+  const there = new Set((await api.benches()).flatMap((one) => (one.sample_rate_khz === rate ? [one.id] : [])));
   useBehind.setState(({ behind }) => ({ behind: behind.filter((one) => there.has(one.bench)) }));
 }
 
@@ -120,6 +137,13 @@ useBench.subscribe(({ behindRefused }, before) => {
   if (behindRefused !== before.behindRefused) forgetGone().catch(showError);
 });
 
+// what is aligned at the last event of the bench on the page follows it
+useBench.subscribe(({ events }, before) => {
+  const { alignment, behind } = useBehind.getState();
+  if (alignment === "time" || behind.length === 0 || events === before.events) return;
+  if (lastOf(events, alignment) !== lastOf(before.events, alignment)) void align(alignment);
+});
+
 useBench.subscribe(({ bench }) => {
   if (!bench || (last?.id === bench.id && last.origin?.is_past === bench.origin?.is_past)) {
     last = bench ?? last;
@@ -128,6 +152,11 @@ useBench.subscribe(({ bench }) => {
   const before = last;
   last = bench;
   if (before?.id !== bench.id) useBehind.setState(({ behind }) => ({ behind: behindOf(behind, before, bench) }));
-  // the other future of a branch is what it is looked at for
-  if (bench.origin && !bench.origin.is_past) void addBehind(bench.origin.bench);
+  // the other future of a branch is what it is looked at for, unless it is gone
+  const { origin } = bench;
+  if (origin && !origin.is_past)
+    void api
+      .benches()
+      .then((all) => (all.some(({ id }) => id === origin.bench) ? addBehind(origin.bench) : undefined))
+      .catch(showError);
 });

@@ -16,6 +16,7 @@ export const DEFAULT_TRIGGER: Trigger = {
   signal: "reference.voltage",
   edge: "rising",
   level: 0,
+  upper: null,
   hysteresis: 0.1,
   position: 0.1,
   sweep: "auto",

@@ -110,11 +110,12 @@ it("stays within its field", () => {
   }
 });
 
-it("a difference is exact for samples and holds all that may be for columns of several", () => {
-  const of = (low: number[], high: number[]) => ({ low: Float32Array.from(low), high: Float32Array.from(high) });
-  const found = differenceOf(of([3, 1, Number.NaN], [3, 2, Number.NaN]), of([1, -1, 0], [1, 4, 0]));
-  expect([...found.low]).toEqual([2, -3, Number.NaN]);
-  expect([...found.high]).toEqual([2, 3, Number.NaN]);
+it("a difference is that of the samples, and none where columns hold several", () => {
+  const of = (values: number[]) => ({ low: Float32Array.from(values), high: Float32Array.from(values) });
+  const [one, other] = [of([3, 1, Number.NaN]), of([1, -1, 0])];
+  expect([...differenceOf(one, other, true).high]).toEqual([2, 2, Number.NaN]);
+  const several = { low: Float32Array.from([-1, -1]), high: Float32Array.from([1, 1]) };
+  expect([...differenceOf(several, several, false).low]).toEqual([Number.NaN, Number.NaN]);
 });
 
 it("the area between two traces is filled where both have data", () => {

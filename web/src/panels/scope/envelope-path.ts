@@ -147,10 +147,8 @@ export function shadeBetween(
   pen.restore();
 }
 
-/** What a trace has more than another: its sample less the other's, and where columns hold several, all that this may be. */
-export function differenceOf(one: Envelope, other: Envelope): Envelope {
-  return {
-    low: one.low.map((low, c) => low - other.high[c]),
-    high: one.high.map((high, c) => high - other.low[c]),
-  };
+/** What a trace has more than another, sample by sample; nothing where columns hold several. */
+export function differenceOf(one: Envelope, other: Envelope, isSampled: boolean): Envelope {
+  const less = one.low.map((value, c) => (isSampled ? value - other.low[c] : Number.NaN));
+  return { low: less, high: less };
 }

@@ -95,8 +95,9 @@ export class ScopePlot {
       high: data.subarray((i * 2 + 1) * columns, (i * 2 + 2) * columns),
     }));
     const own = this.own;
+    const isSampled = samplesOf(frame) <= 1;
     for (let i = 0; frame.signals + i < this.options.traces.length && own + i < frame.signals; i += 1)
-      this.envelopes.push(differenceOf(this.envelopes[i], this.envelopes[own + i]));
+      this.envelopes.push(differenceOf(this.envelopes[i], this.envelopes[own + i], isSampled));
     this.fitRanges();
     const times = columnTimes(frame, this.origin);
     this.times = times;

@@ -8,25 +8,40 @@ import { signalGroups } from "../condition/condition";
 
 export type TriggerState = "none" | "waiting" | "triggered";
 
+const SIGNS: Record<Trigger["edge"], string> = { rising: "↗", falling: "↘", either: "↕", enters: "⇥", leaves: "⇤" };
+const IS_WINDOW: Record<Trigger["edge"], boolean> = {
+  rising: false,
+  falling: false,
+  either: false,
+  enters: true,
+  leaves: true,
+};
+
 interface TriggerMenuProps {
   trigger: Trigger;
   state: TriggerState;
   onChange(trigger: Trigger): void;
 }
 
-/** Where the picture starts: a level and an edge of any signal, found at full rate on the server. */
+/** Where the picture starts: a level or a window of any signal and how it is crossed, found at full rate on the server. */
 export function TriggerMenu({ trigger, state, onChange }: TriggerMenuProps) {
   const signals = useBench((s) => s.bench?.signals) ?? [];
   const rearm = useContext(RearmContext);
   const signalUnit = signals.find((s) => s.name === trigger.signal)?.unit ?? "";
   const unit = unitText(signalUnit);
   const set = (part: Partial<Trigger>) => onChange({ ...trigger, ...part });
+  const isWindow = IS_WINDOW[trigger.edge];
+  const width = (trigger.upper ?? trigger.level) - trigger.level;
+  const setLevel = (level: number) => set({ level, upper: trigger.upper === null ? null : level + width });
+  const setEdge = (edge: Trigger["edge"]) =>
+    set({ edge, upper: IS_WINDOW[edge] ? (trigger.upper ?? trigger.level + 1) : null });
   return (
     <Popover position="bottom-end" width={280}>
       <Popover.Target>
         <Button size="compact-xs" variant="default" h={26}>
           {state === "triggered" ? "● " : state === "waiting" ? "○ waiting " : ""}
-          {trigger.edge === "rising" ? "↗" : "↘"} {formatShort(trigger.level, signalUnit)}
+          {SIGNS[trigger.edge]} {formatShort(trigger.level, signalUnit)}
+          {isWindow && ` to ${formatShort(trigger.upper ?? trigger.level, signalUnit)}`}
         </Button>
       </Popover.Target>
       <Popover.Dropdown>
@@ -38,26 +53,39 @@ export function TriggerMenu({ trigger, state, onChange }: TriggerMenuProps) {
             data={signalGroups(signals)}
             onChange={(e) => set({ signal: e.currentTarget.value })}
           />
-          <SegmentedControl
+          <NativeSelect
             size="xs"
-            fullWidth
-            aria-label="Edge"
+            label="When it"
             value={trigger.edge}
             data={[
-              { value: "rising", label: "↗ rising" },
-              { value: "falling", label: "↘ falling" },
+              { value: "rising", label: "↗ rises through a level" },
+              { value: "falling", label: "↘ falls through a level" },
+              { value: "either", label: "↕ rises or falls through a level" },
+              { value: "enters", label: "⇥ enters a window" },
+              { value: "leaves", label: "⇤ leaves a window" },
             ]}
-            onChange={(edge) => set({ edge: edge as Trigger["edge"] })}
+            onChange={(e) => setEdge(e.currentTarget.value as Trigger["edge"])}
           />
           <Group grow gap="sm">
             <NumberInput
               size="xs"
-              label="Level"
+              label={isWindow ? "From" : "Level"}
+              max={isWindow ? (trigger.upper ?? undefined) : undefined}
               suffix={unit ? ` ${unit}` : ""}
               value={trigger.level}
               step={0.1}
-              onChange={(v) => typeof v === "number" && set({ level: v })}
+              onChange={(v) => typeof v === "number" && setLevel(v)}
             />
+            {isWindow && (
+              <NumberInput
+                size="xs"
+                label="To"
+                suffix={unit ? ` ${unit}` : ""}
+                value={trigger.upper ?? trigger.level}
+                step={0.1}
+                onChange={(v) => typeof v === "number" && v > trigger.level && set({ upper: v })}
+              />
+            )}
             <NumberInput
               size="xs"
               label="Hysteresis"

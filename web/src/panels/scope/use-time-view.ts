@@ -56,6 +56,9 @@ export function zoomSpan(start: number, end: number, about: number, factor: numb
   return { start: about - width * share, end: about + width * (1 - share) };
 }
 
+/** Of a scope with all that lies behind it; the server allows four times as many for all panels together. */
+const MOST_POINTS = 65_536;
+
 /** The subscription that fills `pixels` columns with what the scope looks at. */
 export function scopeSubscription(
   config: ScopeConfig,
@@ -68,7 +71,8 @@ export function scopeSubscription(
     signals: config.signals,
     ...(behind.length > 0 && { behind: behind.map(({ bench, shift }) => ({ bench, shift_ticks: shift })) }),
   };
-  const width = (ticks: number) => Math.max(2, Math.min(Math.round(pixels), Math.ceil(ticks), 4096));
+  const most = Math.min(4096, Math.floor(MOST_POINTS / (config.signals.length * (1 + behind.length))));
+  const width = (ticks: number) => Math.max(2, Math.min(Math.round(pixels), Math.ceil(ticks), most));
   if (window.kind === "past") {
     const start_tick = Math.floor(window.start);
     const end_tick = Math.max(start_tick + 1, Math.ceil(window.end));
