@@ -11,6 +11,7 @@ from core.board.history import History
 from core.board.rows import Rows
 from core.errors import unknown
 from core.signals import Signal
+from scenarios.narrator.doings import MEASURED
 from server.bench.blind import ACTOR, MAY_SET, Blind
 from server.bench.events import Event, EventLog
 from server.bench.narration import Narration
@@ -128,7 +129,9 @@ class BlindView:
         self._bench, self.blind = bench, blind
         self.events = EventLog(lambda _event: None)
         signals = bench.board.signals
-        self.narration = Narration(bench.board.spec, self.signals, signals.outputs)
+        # whether and when the measured error comes back differs with what is hidden
+        told = [signal for signal in self.signals if signal.name != MEASURED]
+        self.narration = Narration(bench.board.spec, told, signals.outputs)
         self._known: tuple[BenchStatus, int] | None = None
         self._status: BenchStatus | None = None
 

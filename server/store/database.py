@@ -7,6 +7,7 @@ import logging
 import sys
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -161,6 +162,9 @@ class Database:
         """Finish what is under way and close the file."""
         self._thread.shutdown(wait=True)
         if self._claim is not None:
+            with suppress(DBAPIError):  # a database that is gone has freed them
+                # said aloud: the database frees those of a closed connection only when it gets to it
+                self._claim.execute(text("SELECT pg_advisory_unlock_all()"))
             self._claim.close()
         self._engine.dispose()
 

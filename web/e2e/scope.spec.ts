@@ -1,5 +1,5 @@
 import type { Locator } from "@playwright/test";
-import { expect, test } from "./lab";
+import { expect, pictureOf, SCOPE_CANVAS, test } from "./lab";
 import { seriousViolations } from "./serious-violations";
 
 /** What a scope draws, read from its own canvas: rows with the axis' numbers below, rows the traces cover. */
@@ -70,4 +70,24 @@ test("names that have no room are behind a button, the tracking error is a scope
   await page.getByRole("tab", { name: "Tracking error" }).click();
   const error = page.getByRole("region", { name: "Scope: model.tracking_error" });
   await expect(error.getByRole("list", { name: "Signals" })).toContainText(/model tracking error\s*−?[\d.]+\s[nµ]m/);
+});
+
+test("a scope has a logarithmic scale, which stays with the layout", async ({ page, openBench }) => {
+  await openBench("lab");
+  const scope = page.getByRole("region", { name: /^Scope: plant.displacement/ });
+  await expect.poll(async () => (await drawn(scope)).traces).toBeGreaterThan(10);
+  await page.getByRole("button", { name: "Pause", exact: true }).click();
+  const picture = () => pictureOf(page, SCOPE_CANVAS);
+  const before = await picture();
+  const choose = async () => {
+    await scope.getByRole("button", { name: "Choose signals" }).click();
+    return page.getByRole("checkbox", { name: "Logarithmic scale, of magnitudes" });
+  };
+  await (await choose()).check();
+  await page.keyboard.press("Escape");
+  await expect.poll(picture).not.toBe(before);
+  await page.waitForTimeout(900);
+  await page.reload();
+  await expect(page.getByTestId("bench-state")).toHaveText("paused");
+  await expect(await choose()).toBeChecked();
 });

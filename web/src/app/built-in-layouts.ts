@@ -7,7 +7,7 @@ const TRACKING = scopeConfig(["model.tracking_error"]);
 const VOLTAGE = scopeConfig(["reference.voltage", "drive.voltage"]);
 
 /** The loop is drawn no smaller than this; what stands below it is as wide. */
-export const LOOP_PX = { width: 326, height: 285 };
+export const LOOP_PX = { width: 326, height: 312 };
 
 /** A column of faults or controllers is read at this width. */
 export const LIST_PX = 310;

@@ -6,6 +6,8 @@ export interface ScopeConfig {
   mode: "roll" | "triggered";
   windowMs: number;
   trigger: Trigger;
+  /** Whether magnitudes are shown on a logarithmic scale. */
+  log?: boolean;
   /** Whether cursors and figures are shown. */
   measure?: boolean;
   /** Where cursors A and B stand, as shares of the width. */

@@ -1,7 +1,7 @@
 import { expect, it } from "vitest";
 import type { Pen } from "../../picture/pen";
 import { SvgPen } from "../../picture/svg-pen";
-import { differenceOf, paintEnvelope, shadeBetween } from "./envelope-path";
+import { differenceOf, magnitudesOf, paintEnvelope, shadeBetween } from "./envelope-path";
 
 /** Keeps what was inked instead of writing it down. */
 class Notes extends SvgPen {
@@ -144,4 +144,14 @@ it("the area between two traces is filled where both have data", () => {
       [30, 5],
     ],
   ]);
+});
+
+it("logarithms are those of the least and the most magnitude in a column", () => {
+  const nothing = Number.NaN;
+  const found = magnitudesOf({
+    low: Float32Array.from([0.1, -100, -10, 0, nothing]),
+    high: Float32Array.from([10, -1, 1, 0, nothing]),
+  });
+  expect([...found.low].map((v) => Math.round(v * 1e6) / 1e6)).toEqual([-1, 0, -Infinity, -Infinity, nothing]);
+  expect([...found.high]).toEqual([1, 2, 1, -Infinity, nothing]);
 });

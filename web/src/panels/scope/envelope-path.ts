@@ -152,3 +152,10 @@ export function differenceOf(one: Envelope, other: Envelope, isSampled: boolean)
   const less = one.low.map((value, c) => (isSampled ? value - other.low[c] : Number.NaN));
   return { low: less, high: less };
 }
+
+/** The decimal logarithms of magnitudes; minus infinity where a column holds 0. */
+export function magnitudesOf({ low, high }: Envelope): Envelope {
+  const least = low.map((value, c) => (value > 0 ? value : high[c] < 0 ? -high[c] : 0 * value));
+  const most = low.map((value, c) => Math.max(-value, high[c]));
+  return { low: least.map(Math.log10), high: most.map(Math.log10) };
+}

@@ -26,6 +26,7 @@ const PICTURE: ScopeShown = {
   span: { start: 100, end: 200 },
   origin: 0,
   isTriggered: false,
+  isLog: false,
   dtMs: 0.01,
   marks: {
     events: [

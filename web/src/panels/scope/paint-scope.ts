@@ -1,9 +1,10 @@
 import type { Marks } from "../../bench/marks";
-import { linearAxis, paintColumns, paintFrame, paintRows, placeOn, timeAxis } from "../../picture/axes";
+import { type Axis, linearAxis, paintColumns, paintFrame, paintRows, placeOn, timeAxis } from "../../picture/axes";
 import type { EventAxis } from "../../picture/event-marks";
 import type { Box, Field, Look, Pen } from "../../picture/pen";
 import type { Picture } from "../../picture/picture";
 import { strokeEnvelope, within } from "../../picture/traces";
+import { formatSi } from "../../ui/format";
 import { CANVAS, DASHES, faded, fontFor, type Scheme, TRACE_COLOURS } from "../../ui/palette";
 import type { UnitScale } from "../../ui/unit-scale";
 import type { Envelope } from "./envelope-path";
@@ -48,6 +49,8 @@ export interface ScopeShown {
   /** Tick that the time axis calls zero. */
   origin: number;
   isTriggered: boolean;
+  /** Envelopes and ranges are decimal logarithms of magnitudes. */
+  isLog: boolean;
   dtMs: number;
   marks: Marks;
 }
@@ -73,7 +76,8 @@ export function paintScope(pen: Pen, field: Field, shown: ScopeShown, look: Look
   units.forEach((unit, i) => {
     const onLeft = i === 0;
     const edge = right + (i - 1) * (options.isTitled ? TITLED_AXIS : AXIS) * fontSize;
-    const axis = linearAxis([ranges[i].min, ranges[i].max], undefined, scales[i]);
+    const range = [ranges[i].min, ranges[i].max] as const;
+    const axis = shown.isLog ? magnitudeAxis(range, unit) : linearAxis(range, undefined, scales[i]);
     paintRows(pen, field, axis, look, onLeft ? undefined : edge);
     pen.font = fontFor(fontSize, 1, 600);
     if (options.isTitled) {
@@ -91,12 +95,29 @@ export function paintScope(pen: Pen, field: Field, shown: ScopeShown, look: Look
     } else {
       pen.fillStyle = CANVAS[look.scheme].muted;
       pen.textAlign = onLeft ? "right" : "left";
-      pen.fillText(scales[i].unit, onLeft ? left - 6 : edge + 6, top - fontSize * 0.85 - 4);
+      pen.fillText(shown.isLog ? "log" : scales[i].unit, onLeft ? left - 6 : edge + 6, top - fontSize * 0.85 - 4);
     }
   });
   const inked = traces.flatMap(({ unit }, i) => (units.includes(unit) && shown.envelopes[i] ? [i] : []));
   within(pen, field, () => options.ink(inked));
   paintFrame(pen, field, look);
+}
+
+/** Within so many decades 2 and 5 have a tick as well. */
+const FEW_DECADES = 2;
+
+/** An axis whose values are decimal logarithms of magnitudes. */
+function magnitudeAxis(range: readonly [number, number], unit: string): Axis {
+  const own = unit.startsWith(DIFFERENCE) ? unit.slice(DIFFERENCE.length) : unit;
+  const [low, high] = range;
+  const steps = high - low > FEW_DECADES ? [1] : [1, 2, 5];
+  const decades = Array.from({ length: Math.floor(high) - Math.floor(low) + 1 }, (_, i) => Math.floor(low) + i);
+  const ticks = decades.flatMap((decade) => steps.map((step) => decade + Math.log10(step)));
+  return {
+    range,
+    ticks: () => ticks.filter((tick) => tick >= low && tick <= high),
+    say: (shown) => shown.map((tick) => formatSi(10 ** tick, own, 1)),
+  };
 }
 
 const words = (name: string) => name.replaceAll(/[._]/g, " ");

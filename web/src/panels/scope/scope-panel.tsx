@@ -72,6 +72,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
       lineWidth: fontSize > NORMAL_PX ? 0.17 * fontSize : 1.6,
       fontSize,
       marks: marksNow,
+      isLog: config.log ?? false,
       isShaded: () => useBehind.getState().shaded,
       gestures: { onSpan: look, onLive: goLive },
     });
@@ -92,7 +93,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
       made.destroy();
       plot.current = undefined;
     };
-  }, [traces, tracesBehind, scheme, fontSize, look, goLive, feed]);
+  }, [traces, tracesBehind, config.log, scheme, fontSize, look, goLive, feed]);
 
   const rearm = useCallback(() => feed.current && stream.client.feeds.rearm(feed.current), [feed]);
   const sayTime = (share: number) => {
@@ -122,7 +123,12 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
               onRemove={(name) => onChange({ ...config, signals: config.signals.filter((s) => s !== name) })}
             />
           )}
-          <SignalPicker chosen={config.signals} onChange={(signals) => onChange({ ...config, signals })} />
+          <SignalPicker
+            chosen={config.signals}
+            onChange={(signals) => onChange({ ...config, signals })}
+            isLog={config.log ?? false}
+            onLog={(log) => onChange({ ...config, log })}
+          />
         </ScopeToolbar>
       </RearmContext>
       {traces.length === 0 ? (

@@ -9,13 +9,22 @@ import { CANVAS, DASHES, faded, fontFor } from "../../ui/palette";
 import { type UnitScale, unitScale } from "../../ui/unit-scale";
 import { type AxisRange, nextRange } from "./axis-range";
 import { BarRaster } from "./bar-raster";
-import { differenceOf, type Envelope, paintEnvelope, shadeBetween, type TraceField } from "./envelope-path";
+import {
+  differenceOf,
+  type Envelope,
+  magnitudesOf,
+  paintEnvelope,
+  shadeBetween,
+  type TraceField,
+} from "./envelope-path";
 import { type Banded, bandsOf, samplesOf } from "./envelope-rule";
 import { DIFFERENCE, inkOrder, type PlotTrace, paintScope, type ScopeShown } from "./paint-scope";
 import { listenForGestures, type ScopeGestures } from "./scope-gestures";
 import { type ScopeModel, scopeOptions } from "./scope-options";
 
 const MOST_AXES = 3;
+/** Of a logarithmic axis: what is smaller lies at its foot, as every zero does. */
+const MOST_DECADES = 8;
 /** Samples of a column up to which a trace is a line; bars draw more of them faster, and look the same then. */
 const FEW = 2;
 
@@ -24,6 +33,8 @@ export interface ScopePlotOptions extends Look {
   traces: PlotTrace[];
   lineWidth: number;
   marks: () => Marks;
+  /** Magnitudes on a logarithmic scale. */
+  isLog: boolean;
   /** Whether the difference from what lies behind is shaded. */
   isShaded: () => boolean;
   gestures: ScopeGestures;
@@ -98,6 +109,7 @@ export class ScopePlot {
     const isSampled = samplesOf(frame) <= 1;
     for (let i = 0; frame.signals + i < this.options.traces.length && own + i < frame.signals; i += 1)
       this.envelopes.push(differenceOf(this.envelopes[i], this.envelopes[own + i], isSampled));
+    if (this.options.isLog) this.envelopes = this.envelopes.map(magnitudesOf);
     this.fitRanges();
     const times = columnTimes(frame, this.origin);
     this.times = times;
@@ -144,6 +156,7 @@ export class ScopePlot {
       span: this.span,
       origin: this.origin,
       isTriggered: triggered,
+      isLog: this.options.isLog,
       dtMs,
       marks: this.options.marks(),
     };
@@ -220,9 +233,11 @@ export class ScopePlot {
           if (envelope.high[c] > high) high = envelope.high[c];
         }
       });
+      if (this.options.isLog) low = Math.max(low, high - MOST_DECADES);
       const range = nextRange(this.ranges[axis], low, high, now);
       if (range === this.ranges[axis]) return;
-      this.scales[axis] = scaleOn(unit, Math.max(Math.abs(range.min), Math.abs(range.max)));
+      const size = this.options.isLog ? 10 ** range.max : Math.max(Math.abs(range.min), Math.abs(range.max));
+      this.scales[axis] = scaleOn(unit, size);
       this.ranges[axis] = range;
     });
   }

@@ -7,10 +7,12 @@ import { unitText } from "../../ui/unit-scale";
 interface SignalPickerProps {
   chosen: string[];
   onChange(signals: string[]): void;
+  isLog: boolean;
+  onLog(isLog: boolean): void;
 }
 
-/** Every signal of the bench by block, searchable; what it means stands beside it. */
-export function SignalPicker({ chosen, onChange }: SignalPickerProps) {
+/** Every signal of the bench by block, searchable, with what it means beside it; and the scale. */
+export function SignalPicker({ chosen, onChange, isLog, onLog }: SignalPickerProps) {
   const signals = useBench((s) => s.bench?.signals);
   const [query, setQuery] = useState("");
   const groups = useMemo(() => {
@@ -41,6 +43,13 @@ export function SignalPicker({ chosen, onChange }: SignalPickerProps) {
           value={query}
           onChange={(e) => setQuery(e.currentTarget.value)}
           mb="sm"
+        />
+        <Checkbox
+          size="xs"
+          mb="sm"
+          label="Logarithmic scale, of magnitudes"
+          checked={isLog}
+          onChange={(e) => onLog(e.currentTarget.checked)}
         />
         <ScrollArea.Autosize mah={340} type="auto" offsetScrollbars>
           {groups.map(([block, list]) => (
