@@ -127,6 +127,8 @@ export const api = {
     ),
   start: (id: string) =>
     data(client.POST("/api/v1/benches/{bench_id}/commands", { ...bench(id), body: { kind: "start" } })),
+  reset: (id: string, values: Record<string, unknown>) =>
+    data(client.POST("/api/v1/benches/{bench_id}/commands", { ...bench(id), body: { kind: "reset", values } })),
   events: (id: string) => data(client.GET("/api/v1/benches/{bench_id}/events", bench(id))),
   nameBench: (id: string, name: string) =>
     data(client.PATCH("/api/v1/benches/{bench_id}", { ...bench(id), body: { name } })),

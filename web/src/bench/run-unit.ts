@@ -2,7 +2,6 @@ import { api } from "../api/api";
 import type { BlockCard } from "../api/types";
 import { cardOf } from "../api/use-catalog";
 import { useBench } from "../stream/bench-store";
-import { stream } from "../stream/stream";
 import { announce } from "./announce";
 import { openOwn } from "./open-bench";
 import { send } from "./send";
@@ -30,7 +29,8 @@ export async function runUnit(card: BlockCard, source: string): Promise<void> {
   const values = valuesOf(card, source, drives, parameters);
   const isThere = sourceOnBench(parameters, card.name) !== undefined;
   if (isThere && isAlike(cardOf(card.family, card.name), card)) {
-    await stream.client.command({ kind: "reset", values });
+    await api.reset(id, values); // by a request, which waits while the text is compiled
+    await shown(card.name, source);
     if (bench.state !== "running") await api.start(id);
   } else {
     const next = await api.variant(id, values);

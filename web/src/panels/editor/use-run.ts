@@ -36,7 +36,7 @@ export function useRun(check: Check | undefined): Run {
     useDraft.setState({ tried: source });
     try {
       await runUnit(card, source);
-      noteVersion(name, source, "ran");
+      if (!useBench.getState().bench?.trip) noteVersion(name, source, "ran");
       setRefused(undefined);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
