@@ -127,6 +127,7 @@ class Variant(StrictBody):
     """How the second bench differs."""
 
     set: dict[str, Any] = Field({}, description="Values by dotted path; a whole table may be one")
+    repeat: bool = Field(False, description="What was done on this bench is done again, to its tick; there it stands")
 
 
 @router.post("", status_code=201, dependencies=[RateLimited])
@@ -249,7 +250,11 @@ async def fork_bench(
 async def vary_bench(
     body: Variant, session: SessionDep, service: ServiceDep, person: PersonDep, response: Response
 ) -> Bench:
-    """Make a second bench from tick 0, set as this one is now but for some values; other signals are allowed."""
-    made = await service.benches.forks.variant(session, body.set)
+    """Make a second bench from tick 0, set as this one is now but for some values; other signals are allowed.
+
+    With ``repeat`` it begins as this one began, but for the values, and what was done on this one is done again.
+    """
+    forks = service.benches.forks
+    made = await (forks.repeated if body.repeat else forks.variant)(session, body.set)
     response.headers["Location"] = f"/api/v1/benches/{made.id}"
     return await service.views.opened(made, person)

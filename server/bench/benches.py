@@ -62,7 +62,7 @@ class Benches:
         self._engine, self._settings, self._metrics, self._witness = engine, settings, metrics, witness
         self.maker = Maker(settings, metrics, engine.clock)
         self._sessions: dict[str, Session] = {}
-        self.forks = Forks(self, engine)
+        self.forks = Forks(self, engine, settings.max_run_ticks)
         self._room = Room(settings, lambda: sum(not session.class_id for session in self.all()))
 
     def __len__(self) -> int:

@@ -10,7 +10,8 @@ from pydantic import BaseModel
 from core.board.board import Board
 from core.board.packages import TABLE, carried
 from core.errors import InputError
-from core.own.admission import kept
+from core.own.admission import kept_with
+from scenarios.edit import with_values
 from scenarios.key import code_version
 from scenarios.run import build
 from scenarios.schema import Scenario
@@ -72,22 +73,29 @@ def beginning_of(scenario: Scenario, board: Board, time_scale: float | None) -> 
     )
 
 
-def rebuilt(experiment: Experiment, most_ticks: int) -> tuple[Scenario, Board]:
+def rebuilt(experiment: Experiment, most_ticks: int, values: dict[str, Any] | None = None) -> tuple[Scenario, Board]:
     """Return the scenario of an experiment, and its board at tick 0 with all that was done waiting.
+
+    ``values`` are written over the scenario.
 
     Raises
     ------
+    InputError
+        If the values do not fit the scenario or what was done.
     ApiError
         If it is longer than may be repeated, or this version cannot read it.
     """
     if experiment.tick > most_ticks:
         text = f"it has run for {experiment.tick} ticks; at most {most_ticks} are repeated (max_run_ticks)"
         raise ApiError(409, "too_long", text, hint="open its scenario instead, from tick 0")
+    values = values or {}
     try:
-        with kept():
-            scenario = Scenario.load(experiment.scenario)
-            return scenario, build(Scenario.load({**experiment.scenario, "events": experiment.events}))
+        with kept_with(values):
+            scenario = with_values(Scenario.load(experiment.scenario), values)
+            return scenario, build(Scenario.load({**scenario.document, "events": experiment.events}))
     except InputError as error:
+        if values:
+            raise
         text = f"this version cannot repeat it: {error}"
         raise ApiError(409, "conflict", text, hint=f"it was made with {experiment.version}") from None
 

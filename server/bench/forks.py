@@ -12,6 +12,7 @@ from core.board.board import Board
 from core.errors import InputError
 from server.bench.engine import Engine
 from server.bench.events import Event
+from server.bench.experiment import experiment_of, rebuilt, repeat
 from server.bench.maker import Maker
 from server.bench.past import Past
 from server.bench.portrait import design_of
@@ -46,10 +47,12 @@ class Forks:
         The live benches.
     engine : Engine
         Whose thread may read a bench.
+    most_ticks : int
+        The longest experiment that is repeated.
     """
 
-    def __init__(self, benches: Registry, engine: Engine) -> None:
-        self._benches, self._engine = benches, engine
+    def __init__(self, benches: Registry, engine: Engine, most_ticks: int) -> None:
+        self._benches, self._engine, self._most_ticks = benches, engine, most_ticks
 
     async def now(self, session: Session, snapshot_id: str | None, *, paused: bool = False) -> Session:
         """Make a bench that goes on from this moment of another, or from a snapshot."""
@@ -117,6 +120,26 @@ class Forks:
         document = await self._engine.call(design_of, session)
         paused, scale = not session.is_started, session.pacer.scale
         return await self._benches.create(document, values, session.board.spec.seed, paused, scale)
+
+    async def repeated(self, session: Session, values: dict[str, Any]) -> Session:
+        """Make a bench that has done what another has, with values written over its scenario; it stands there.
+
+        Raises
+        ------
+        InputError
+            If the values do not fit the scenario or what was done.
+        ApiError
+            If there are too many benches, or the other has run for too long.
+        """
+        experiment = await self._engine.call(experiment_of, session)
+
+        def made() -> Session:
+            scenario, board = rebuilt(experiment, self._most_ticks, values)
+            other = self._benches.maker.around(scenario, board, experiment.time_scale)
+            repeat(other, experiment)
+            return other
+
+        return await self._benches.admit(asyncio.to_thread(made), start=False)
 
 
 def forked(session: Session, snapshot_id: str | None, maker: Maker) -> Session:

@@ -189,3 +189,51 @@ def test_a_branch_has_a_name(live: Any, ran: str) -> None:
     refused = live.http.patch(path, json={"name": "x" * 81})
     assert refused.status_code == 422 and refused.json()["error"]["field"] == "name"
     assert live.get(made["id"])["name"] == "with PID, from 180 ms" and live.get(ran)["name"] == ""
+
+
+@pytest.mark.parametrize("back", [0, 60])
+def test_a_moment_comes_again_with_another_diagnoser(live: Any, back: int) -> None:
+    bench = live.bench("ch5-seven-step", set=ENDLESS, paused=True)["id"]
+    live.command(bench, switch="pid")
+    forward(live, bench, 300)
+    live.command(bench, fault="added_mass", severity=0.07)
+    forward(live, bench, 500)
+    of = fork(live, bench, tick=500 - back, paused=True).json()["id"] if back else bench
+    other = {"kind": "imm", "hypotheses": [{"name": "healthy"}, {"name": "m+7", "mass": 1.07}]}
+    answer = live.http.post(f"/api/v1/benches/{of}/variant", json={"set": {"diagnosers.imm": other}, "repeat": True})
+    assert answer.status_code == 201, answer.text
+    made = answer.json()
+    assert (made["tick"], made["state"], made["controller"]) == (500 - back, "paused", "pid")
+    assert [fault["name"] for fault in made["faults"]] == ["added_mass"]
+    mine, theirs = (trace(live, one, 0, 500 - back) for one in (made["id"], of))
+    assert set(mine) - set(theirs) >= {"imm.winner"}
+    for name in set(mine) & set(theirs):
+        np.testing.assert_array_equal(mine[name], theirs[name], name)
+
+    document = {**get("ch5-seven-step").document, "diagnosers": {"imm": other}, "samples": 500 - back}
+    done = [{"at_sample": 0, "switch": "pid"}, {"at_sample": 300, "fault": "added_mass", "severity": 0.07}]
+    straight = build(Scenario.load({**document, "events": done, "expect": []}))
+    rows = straight.advance(500 - back)
+    assert rows.count == 500 - back
+    winner = np.hstack([rows.outputs, rows.taps])[:, straight.signals.names.index("imm.winner")]
+    assert len(set(winner)) == 2
+    np.testing.assert_array_equal(winner.astype(np.float32), mine["imm.winner"])
+
+
+def test_a_moment_that_does_not_fit_other_values_is_refused_in_one_line(live: Any, serve: Any) -> None:
+    bench = live.bench("ch5-seven-step", set=ENDLESS, paused=True)["id"]
+    live.command(bench, set={"diagnosers.kalman.probability_floor": 1e-2})
+    there = len(live.http.get("/api/v1/benches").json()["benches"])
+    for values, field in (
+        ({"diagnosers.kalman.kind": "none"}, "diagnosers.kalman.kind"),
+        ({"diagnosers": {}}, "diagnosers.kalman"),
+    ):
+        answer = live.http.post(f"/api/v1/benches/{bench}/variant", json={"set": values, "repeat": True})
+        assert answer.status_code == 422, answer.text
+        assert field in answer.json()["error"]["field"] and "\n" not in answer.json()["error"]["message"]
+    assert len(live.http.get("/api/v1/benches").json()["benches"]) == there
+    with serve(max_run_ticks=100) as small:
+        bench = small.bench("ch5-seven-step", set=ENDLESS, paused=True)["id"]
+        forward(small, bench, 101)
+        answer = small.http.post(f"/api/v1/benches/{bench}/variant", json={"repeat": True})
+        assert (answer.status_code, answer.json()["error"]["code"]) == (409, "too_long")

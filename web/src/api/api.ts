@@ -145,8 +145,9 @@ export const api = {
   removeBench: (id: string) => data(client.DELETE("/api/v1/benches/{bench_id}", bench(id))),
   fork: (id: string, body: ForkFrom = {}) =>
     data(client.POST("/api/v1/benches/{bench_id}/fork", { ...bench(id), body })),
-  variant: (id: string, set: Record<string, unknown>) =>
-    data(client.POST("/api/v1/benches/{bench_id}/variant", { ...bench(id), body: { set } })),
+  /** A second bench from tick 0 with other values; with `repeat` at the tick of the first, all done again. */
+  variant: (id: string, set: Record<string, unknown>, repeat = false) =>
+    data(client.POST("/api/v1/benches/{bench_id}/variant", { ...bench(id), body: { set, repeat } })),
   snapshots: async (id: string) =>
     (await data(client.GET("/api/v1/benches/{bench_id}/snapshots", bench(id)))).snapshots,
   parameterSets: async () => (await data(client.GET("/api/v1/parameter-sets"))).sets,

@@ -429,6 +429,8 @@ export interface paths {
         /**
          * Vary Bench
          * @description Make a second bench from tick 0, set as this one is now but for some values; other signals are allowed.
+         *
+         *     With ``repeat`` it begins as this one began, but for the values, and what was done on this one is done again.
          */
         post: operations["vary_bench_api_v1_benches__bench_id__variant_post"];
         delete?: never;
@@ -7424,6 +7426,12 @@ export interface components {
             set?: {
                 [key: string]: unknown;
             };
+            /**
+             * Repeat
+             * @description What was done on this bench is done again, to its tick; there it stands
+             * @default false
+             */
+            repeat?: boolean;
         };
         /**
          * Verdict

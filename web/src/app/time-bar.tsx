@@ -1,15 +1,14 @@
-import { Button, Menu, Slider } from "@mantine/core";
-import { IconGitBranch, IconPlayerPlayFilled, IconPlayerTrackNextFilled } from "@tabler/icons-react";
+import { Button, Slider } from "@mantine/core";
+import { IconGitBranch, IconPlayerTrackNextFilled } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { useMay } from "../api/me";
 import type { Bench } from "../api/types";
-import { cardOf, slotMates } from "../api/use-catalog";
 import { eventTone } from "../bench/flag-words";
-import { backToNow, goOn, lookBack } from "../bench/past";
-import { send } from "../bench/send";
+import { backToNow, lookBack } from "../bench/past";
 import { useBench } from "../stream/bench-store";
 import { currentEvents } from "../stream/event-log";
 import { formatMoment, formatPercent } from "../ui/format";
+import { BranchMenu } from "./branch-menu";
 import { Compare } from "./compare";
 import styles from "./time-bar.module.css";
 
@@ -72,62 +71,25 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
         </span>
       </div>
       <span className={styles.end}>{formatMoment(end * bench.dt_ms)}</span>
-      {isPast ? <PastActions bench={bench} /> : bench.origin && <Other />}
+      <BranchMenu bench={bench} />
+      {isPast ? <BackToNow /> : bench.origin && <Other />}
       <Compare />
     </section>
   );
 }
 
-/** What can begin at the moment shown. */
-function PastActions({ bench }: { bench: Bench }) {
-  const others = slotMates(bench.controller, bench.controllers).filter((name) => name !== bench.controller);
+function BackToNow() {
   return (
-    <>
-      <Menu position="top-end" shadow="md">
-        <Menu.Target>
-          <Button size="compact-sm" leftSection={<IconGitBranch size={16} />}>
-            Branch here
-          </Button>
-        </Menu.Target>
-        <Menu.Dropdown>
-          <Menu.Item leftSection={<IconPlayerPlayFilled size={14} />} onClick={() => void goOn("as it was")}>
-            Go on as it was
-          </Menu.Item>
-          {bench.faults.map(({ name }) => (
-            <Menu.Item
-              key={name}
-              onClick={() =>
-                void goOn(`without ${titleOf("faults", name)}`, () =>
-                  send({ heal: [name] }, `${titleOf("faults", name)} healed`),
-                )
-              }
-            >
-              Without {titleOf("faults", name).toLowerCase()}
-            </Menu.Item>
-          ))}
-          {others.map((name) => (
-            <Menu.Item
-              key={name}
-              onClick={() => void goOn(`with ${titleOf("control", name)}`, () => send({ switch: name }))}
-            >
-              With {titleOf("control", name)}
-            </Menu.Item>
-          ))}
-        </Menu.Dropdown>
-      </Menu>
-      <Button
-        size="compact-sm"
-        variant="default"
-        leftSection={<IconPlayerTrackNextFilled size={14} />}
-        onClick={() => void backToNow()}
-      >
-        Back to now
-      </Button>
-    </>
+    <Button
+      size="compact-sm"
+      variant="default"
+      leftSection={<IconPlayerTrackNextFilled size={14} />}
+      onClick={() => void backToNow()}
+    >
+      Back to now
+    </Button>
   );
 }
-
-const titleOf = (family: "faults" | "control", name: string) => cardOf(family, name)?.title ?? name;
 
 /** From a branch to the bench it is of. */
 function Other() {

@@ -45,13 +45,15 @@ export function behindText(behind: readonly Behind[], difference: boolean): stri
   return `Behind, faded: ${names}.${difference ? ` ${dotted}` : ""}`;
 }
 
+const rateHere = () => useBench.getState().bench?.sample_rate_khz;
+
 /** Put a bench behind the one on the page, if it has the same sample rate. */
 export async function addBehind(id: string): Promise<void> {
   const { behind, alignment } = useBehind.getState();
   if (behind.some((one) => one.bench === id) || behind.length >= MOST_BEHIND) return;
+  const rate = rateHere(); // while the answer is awaited the page may connect anew, and know no bench
   try {
     const bench = await api.bench(id);
-    const rate = useBench.getState().bench?.sample_rate_khz;
     if (bench.sample_rate_khz !== rate) {
       alarm(
         `${wordsOf(bench)} runs at ${bench.sample_rate_khz} kHz and this bench at ${rate} kHz: it cannot lie behind.`,
@@ -96,7 +98,8 @@ export async function align(alignment: Alignment): Promise<void> {
 
 /** Forget benches that are gone, or that have another rate than the bench on the page: the server draws nothing of them. */
 export async function forgetGone(): Promise<void> {
-  const rate = useBench.getState().bench?.sample_rate_khz;
+  const rate = rateHere();
+  if (rate === undefined) return;
   const there = new Set((await api.benches()).flatMap((one) => (one.sample_rate_khz === rate ? [one.id] : [])));
   useBehind.setState(({ behind }) => ({ behind: behind.filter((one) => there.has(one.bench)) }));
 }

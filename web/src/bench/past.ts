@@ -1,6 +1,7 @@
 import { api } from "../api/api";
 import { useBench } from "../stream/bench-store";
 import { announce } from "./announce";
+import { addBehind } from "./behind";
 import { openBench, openOwn } from "./open-bench";
 import { send, showError } from "./send";
 
@@ -92,13 +93,44 @@ export async function backToNow(): Promise<void> {
   }
 }
 
-/** Go on from the moment that is shown, as a bench of its own with a name. */
-export async function goOn(name: string, change?: () => Promise<boolean>): Promise<void> {
+/** Show a bench that stands at the moment that is shown, for a branch to begin there. */
+async function standHere(): Promise<string | undefined> {
   const bench = useBench.getState().bench;
-  if (!bench?.origin?.is_past) return;
-  if (change && !(await change())) return;
-  await api.nameBench(bench.id, name.slice(0, LONGEST_NAME)).catch(showError);
-  if (await send({ kind: "start" }, "A branch goes on from here")) openOwn(bench.id, true);
+  if (!bench || bench.origin?.is_past) return bench?.id;
+  const made = await api.fork(bench.id, { tick: bench.tick, paused: true, window_ticks: WINDOW_TICKS });
+  openBench(made.id, false, true);
+  await helloOf(made.id);
+  return made.id;
+}
+
+/** Go on from the moment that is shown, of the past or now, as a bench of its own with a name. */
+export async function goOn(name: string, change?: () => Promise<boolean>): Promise<void> {
+  try {
+    const id = await standHere();
+    if (!id || (change && !(await change()))) return;
+    await api.nameBench(id, name.slice(0, LONGEST_NAME)).catch(showError);
+    if (await send({ kind: "start" }, "A branch goes on from here")) openOwn(id, true);
+  } catch (error) {
+    showError(error);
+  }
+}
+
+/** Go on from the moment that is shown as if other values had been there from tick 0; what was done is done again. */
+export async function goOnHaving(name: string, set: Record<string, unknown>): Promise<void> {
+  const bench = useBench.getState().bench;
+  if (!bench) return;
+  try {
+    const made = await api.variant(bench.id, set, true);
+    await api.nameBench(made.id, name.slice(0, LONGEST_NAME));
+    const isPast = bench.origin?.is_past ?? false;
+    openOwn(made.id, isPast);
+    await helloOf(made.id);
+    await addBehind(isPast && bench.origin ? bench.origin.bench : bench.id);
+    if (isPast) await api.removeBench(bench.id);
+    await send({ kind: "start" }, "A branch goes on from here; what was done was done again");
+  } catch (error) {
+    showError(error);
+  }
 }
 
 /** Fork the bench before what was done at a tick, and let it go on without that. */

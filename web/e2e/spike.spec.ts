@@ -1,0 +1,107 @@
+import type { Locator } from "@playwright/test";
+import { expect, test } from "./lab";
+
+/** Pixels: of a trace that rests, and of one with a spike, which fills most of the plot. */
+const FLAT = 12;
+const TALL = 60;
+
+const SPIKE_AT = 120_000;
+/** The history has forgotten the spike by then. */
+const BEYOND_HISTORY = 450_000;
+
+/** A device that rests, and one tick at which its sensor says otherwise. */
+const SPIKE = {
+  schema: 1,
+  id: "spike",
+  title: "A spike of one tick",
+  sample_rate_khz: 100,
+  samples: 10_000_000,
+  device: { id: "ch3" },
+  plant: { model: "linear", thermal_noise: false },
+  reference: { kind: "sine", amplitude_v: 0, frequency_hz: 1000 },
+  controller: { kind: "open_loop" },
+  sensor: { kind: "ideal", noise_um: 0 },
+  diagnosers: {},
+  events: [
+    { at_sample: SPIKE_AT, fault: "sensor_bias", severity: 3 },
+    { at_sample: SPIKE_AT + 1, heal: "all" },
+  ],
+};
+
+/** The rows between the lowest and the highest that the only trace of a scope inks. */
+const height = (scope: Locator): Promise<number> =>
+  scope.evaluate((panel) => {
+    const line = panel.querySelector("[aria-label='Signals'] svg line, [aria-label='Signals'] svg path") as Element;
+    const wanted = (getComputedStyle(line).stroke.match(/\d+/g) ?? []).slice(0, 3).map(Number);
+    const canvas = panel.querySelector("canvas") as HTMLCanvasElement;
+    const { width, height } = canvas;
+    const { data } = (canvas.getContext("2d") as CanvasRenderingContext2D).getImageData(0, 0, width, height);
+    const rows = Array.from({ length: height }, (_, y) => y).filter((y) => {
+      for (let at = 4 * y * width; at < 4 * (y + 1) * width; at += 4)
+        if (data[at + 3] > 200 && wanted.every((part, i) => Math.abs(data[at + i] - part) < 12)) return true;
+      return false;
+    });
+    return rows.length < 2 ? 0 : ((rows[rows.length - 1] - rows[0]) * canvas.clientHeight) / height;
+  });
+
+test("a spike of one tick is seen at every zoom, live, looked back at, and at a moment of the past", async ({
+  page,
+  server,
+  openDocument,
+}) => {
+  const id = await openDocument(SPIKE);
+  const tickOf = async (bench: string) => (await server.ask<{ tick: number }>("GET", `/benches/${bench}`)).tick;
+  const command = (body: object) => server.ask("POST", `/benches/${id}/commands`, body);
+  const stepTo = async (tick: number) => {
+    for (let now = await tickOf(id); now < tick; now = await tickOf(id))
+      await command({ kind: "step", ticks: Math.min(10_000, tick - now) });
+  };
+  const scope = page.getByRole("region", { name: /^Scope: .*sensor.displacement/ });
+  const widest = scope.getByRole("combobox", { name: "Time window" });
+  await command({ kind: "pause" });
+  for (const other of ["plant", "model"]) {
+    await scope.getByRole("listitem").filter({ hasText: other }).hover();
+    await scope.getByRole("button", { name: `Remove ${other}.displacement` }).click();
+  }
+  await stepTo(SPIKE_AT);
+  await widest.selectOption("1000");
+  await expect.poll(() => height(scope), "a sensor that rests").toBeLessThan(FLAT);
+
+  await stepTo(SPIKE_AT + 100);
+  for (const window of await widest
+    .locator("option")
+    .evaluateAll((all) => all.map((one) => (one as HTMLOptionElement).value))) {
+    if (Number(window) < 2) continue; // the spike has left a shorter one
+    await widest.selectOption(window);
+    await expect.poll(() => height(scope), `live, ${window} ms`).toBeGreaterThan(TALL);
+  }
+
+  await widest.selectOption("2"); // it is in the middle
+  await scope.getByRole("group", { name: /^Plot/ }).focus();
+  for (let zoom = 0; zoom < 10; zoom += 1) {
+    await page.keyboard.press("+");
+    await expect.poll(() => height(scope), `looked back at, ${zoom} times closer`).toBeGreaterThan(TALL);
+  }
+  await page.keyboard.press("l");
+
+  await widest.selectOption("1000");
+  await command({ kind: "time_scale", value: 0.01 });
+  await command({ kind: "start" });
+  for (let look = 0; look < 5; look += 1) {
+    const now = await tickOf(id);
+    await expect.poll(() => tickOf(id)).toBeGreaterThan(now);
+    expect(await height(scope), "while time runs").toBeGreaterThan(TALL);
+  }
+  await command({ kind: "pause" });
+
+  await stepTo(BEYOND_HISTORY);
+  await expect.poll(() => height(scope), "it has left the window").toBeLessThan(FLAT);
+  const slider = page.getByRole("region", { name: "Timeline" }).locator(".mantine-Slider-root");
+  const { x = 0, y = 0, width = 0, height: tall = 0 } = (await slider.boundingBox()) ?? {};
+  await page.mouse.click(x + (width * (SPIKE_AT + 8000)) / BEYOND_HISTORY, y + tall / 2);
+  await expect(page.getByText(/^As it was at/)).toBeVisible();
+  for (const window of ["200", "500", "1000"]) {
+    await widest.selectOption(window);
+    await expect.poll(() => height(scope), `a moment computed again, ${window} ms`).toBeGreaterThan(TALL);
+  }
+});
