@@ -134,6 +134,32 @@ def _append(
 
 
 @kernel
+def _adopt(
+    ring: Any,
+    low: Any,
+    high: Any,
+    offsets: IntArray,
+    sizes: IntArray,
+    steady: IntArray,
+    other: Any,
+    other_steady: IntArray,
+    first: int,
+    end: int,
+) -> None:
+    """Copy ticks of other rings, and fold them into the pyramid; what rests in both is zeros already."""
+    places, others = ring.shape[1] // LANES, other.shape[1] // LANES
+    for group in range(ring.shape[0]):
+        if steady[group] >= places and other_steady[group] >= others:
+            continue
+        steady[group] = 0
+        for tick in range(first, end):
+            to, of = tick % places * LANES, tick % others * LANES
+            ring[group, to : to + LANES] = other[group, of : of + LANES]
+        _fold_ticks(ring[group], low[group], high[group], sizes[0], first, end)
+        _fold_buckets(low[group], high[group], offsets, sizes, first, end)
+
+
+@kernel
 def _columns(
     ring: Any,
     low: Any,
@@ -266,6 +292,15 @@ class History:
         _append(*args, rows.outputs, self._never, 0)
         _append(*args, rows.taps, rows.idle, self._taps_at)
         self.end_tick = self._written = rows.first_tick + rows.count
+
+    def adopt(self, other: History, start: int, stop: int) -> None:
+        """Begin an empty history with ticks of another of the same signals, as far as it keeps them; it may go on."""
+        start = max(start, other.first_tick)
+        if start >= stop:
+            return
+        args = (self._ring, self._low, self._high, self._offsets, self._sizes, self._steady)
+        _adopt(*args, other._ring, other._steady, start, stop)
+        self._begin, self.end_tick, self._written = max(start, other.first_tick), stop, stop
 
     def columns(self, signals: list[int], start: int, stop: int, columns: int) -> Float32Array:
         """Return minima and maxima, shape (signals, 2, columns); NaN where there is no data."""

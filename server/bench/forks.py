@@ -70,7 +70,7 @@ class Forks:
             For a tick that is not kept.
         """
         past = await self._engine.call(partial(Past.of, session, tick, window_ticks, is_before=is_before))
-        return await self._benches.admit(self._computed(past, session), session.is_started and not paused)
+        return await self._benches.admit(self._computed(past, session, session), session.is_started and not paused)
 
     async def seek(self, session: Session, tick: int, actor: str) -> Event:
         """Show another tick of the past on a bench that shows one; what it computes for another is given up.
@@ -85,10 +85,12 @@ class Forks:
         past = await self._engine.call(Past.of, of, tick, session.origin.window_ticks)
         past = replace(past, origin=session.origin.model_copy(update={"tick": tick}))
         session.sought = past
-        other = await self._computed(past, session, lambda: session.sought is past)
+        other = await self._computed(past, of, session, lambda: session.sought is past)
         return await self._engine.call(session.show, other, actor)
 
-    async def _computed(self, past: Past, asked: Session, is_wanted: Callable[[], bool] = lambda: True) -> Session:
+    async def _computed(
+        self, past: Past, of: Session, asked: Session, is_wanted: Callable[[], bool] = lambda: True
+    ) -> Session:
         """Compute a moment of the past while it is wanted; the bench that was asked for it tells how far it is."""
         travel = asked.travel = Travel(tick=past.origin.tick, share=0.0)
 
@@ -101,7 +103,10 @@ class Forks:
         try:
             while not (await asyncio.wait([computing], timeout=STATUS_S))[0]:
                 await self._engine.call(asked.refresh_status)
-            return await computing
+            made = await computing
+            if not await self._engine.call(past.is_of, of):
+                raise InputError("the bench itself has gone to another moment meanwhile", "tick", code="conflict")
+            return made
         finally:
             if asked.travel is travel:
                 asked.travel = None

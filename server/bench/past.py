@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from core.board.board import Board
+from core.board.history import History
 from core.board.log import Log
 from core.board.track import Passage, Track
 from core.errors import InputError
@@ -26,7 +27,7 @@ class Past:
     scenario : Scenario
         The scenario of the bench.
     passage : Passage
-        The way to the moment, from so many ticks before that the panels have something to show.
+        The way to the moment. What is to be seen before it comes from ``seen``, or the way begins as much earlier.
     track : Track
         The track of the bench, not followed any further.
     events : list of Event
@@ -37,6 +38,10 @@ class Past:
         Its pace.
     origin : Origin
         The bench and the tick.
+    seen : History or None
+        The samples of the bench, if they go back as far as the panels look; it goes on.
+    jumps : int
+        How often the bench had jumped in time; samples that are read after one more may be of another past.
     is_before : bool
         What was done at that very tick is left out.
     """
@@ -48,6 +53,8 @@ class Past:
     told: Told
     time_scale: float | None
     origin: Origin
+    seen: History | None
+    jumps: int
     is_before: bool = False
 
     @classmethod
@@ -61,7 +68,7 @@ class Past:
         tick : int
             The moment, with all that was done at that tick unless it is before it.
         window_ticks : int
-            Ticks before the moment that are computed too.
+            Ticks before the moment that are there too.
         is_before : bool
             Leave out what was done at that very tick.
 
@@ -76,7 +83,9 @@ class Past:
         now = session.board.tick
         if tick > now:
             raise InputError(f"tick {tick} has not come yet, the bench is at {now}", "tick")
-        passage = track.to(tick, window_ticks, is_before=is_before)
+        begin, history = max(tick - window_ticks, track.first_tick), session.history
+        seen = history if history.first_tick <= begin and tick <= history.end_tick else None
+        passage = track.to(tick, 0 if seen else window_ticks, is_before=is_before)
         return cls(
             scenario=session.scenario,
             passage=passage,
@@ -85,8 +94,14 @@ class Past:
             told=session.narration.told_at(passage.checkpoint.tick),
             time_scale=session.pacer.scale,
             origin=Origin(bench=session.id, tick=tick, window_ticks=window_ticks),
+            seen=seen,
+            jumps=session.narration.mark.jumps,
             is_before=is_before,
         )
+
+    def is_of(self, session: Session) -> bool:
+        """Whether the samples that were taken are still of the past of the bench (a job of the engine)."""
+        return self.seen is None or (session.history is self.seen and session.narration.mark.jumps == self.jumps)
 
     def session(self, maker: Maker, on_share: Callable[[float], None]) -> Session:
         """Compute the moment again, and return a bench that is there and can go on.
@@ -101,10 +116,12 @@ class Past:
         board = Board.restore(self.passage.checkpoint)
         session = maker.around(self.scenario, board, self.time_scale)
         session.narration.go_to(self.told)
+        if self.seen is not None:
+            session.history.adopt(self.seen, self.origin.tick - self.origin.window_ticks, board.tick)
         for rows in self.passage.walk(board):
             session.history.append(rows)
             session.narration.follow(board.log, rows)
-            on_share(1.0 - (self.passage.tick - board.tick) / self.passage.ticks)
+            on_share((board.tick - self.passage.checkpoint.tick) / self.passage.ticks)
         session.narration.follow(board.log)
         board.log = Log()  # the log of the bench has it all
         session.events.go_on(self.events)

@@ -65,6 +65,34 @@ def test_columns_against_plain_arrays(n, chunks, spans):
         np.testing.assert_array_equal(found, expected_columns(data, kept, start, stop, columns))
 
 
+@settings(max_examples=40)
+@given(
+    n=st.integers(1, 30_000),
+    capacity=st.sampled_from([4096, 8192, 30_000]),
+    back=st.tuples(st.floats(0.0, 1.0), st.floats(0.0, 1.0)),
+    more=st.integers(0, 700),
+    columns=st.integers(1, 900),
+)
+def test_ticks_of_another_history_are_as_if_they_had_been_appended(n, capacity, back, more, columns):
+    source, history = History(2, SIGNALS - 2, 8192), History(2, SIGNALS - 2, capacity)
+    data = signal(n + more)
+    feed(source, data[:n], [512])
+    stop = n - int(back[0] * min(n, 4000))
+    start = max(0, stop - int(back[1] * 4096))
+    history.adopt(source, start, stop)
+    begin = max(start, source.first_tick)
+    if begin >= stop:
+        assert (history.first_tick, history.end_tick) == (0, 0)
+        return
+    feed(history, data[stop : stop + more], [100], stop)
+    end = min(stop + more, len(data))
+    kept = range(max(begin, history.first_tick), end)
+    assert history.first_tick == kept.start and history.end_tick == end
+    found = history.columns([0, 1, 2], start - 50, end + 50, columns)
+    np.testing.assert_array_equal(found, expected_columns(data, kept, start - 50, end + 50, columns))
+    np.testing.assert_array_equal(history.read([2, 0], start, end), data[kept.start : end, [2, 0]].T.astype(np.float32))
+
+
 @pytest.mark.parametrize("n", [100, 8191, 8192, 8193, 20_000, 65_536])
 def test_read_is_exact_after_wrapping(n):
     history = History(2, SIGNALS - 2, 8192)
