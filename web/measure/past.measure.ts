@@ -101,14 +101,13 @@ test("a frame of a live scope with eight past runs behind it", async ({ page, se
   await page.waitForTimeout(3000);
   const alone = await perFrame();
   const others = await Promise.all(
-    Array.from({ length: EIGHT }, () =>
-      server.ask<{ id: string }>("POST", `/benches/${shown(page)}/fork`, { paused: true }),
-    ),
+    Array.from({ length: EIGHT }, () => server.ask<{ id: string }>("POST", `/benches/${shown(page)}/fork`, {})),
   );
   await page.getByRole("button", { name: "Compare", exact: true }).click();
   const sheet = page.getByRole("dialog", { name: "Compare with other benches" });
   for (const { id } of others) await sheet.getByRole("combobox", { name: "Add" }).selectOption(`b ${id}`);
   await page.keyboard.press("Escape");
+  await expect(sheet).toBeHidden();
   await page.waitForTimeout(3000);
   const behind = await perFrame();
   console.log(

@@ -1,4 +1,5 @@
 import { ActionIcon, Button, Checkbox, NativeSelect, Popover, TextInput } from "@mantine/core";
+import { useWindowEvent } from "@mantine/hooks";
 import { IconArrowsDiff, IconTrash, IconX } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
@@ -39,6 +40,8 @@ export function Compare() {
   const bench = useBench((s) => s.bench);
   const { behind } = useBehind();
   const [opened, setOpened] = useState(false);
+  // the list has no focus any more when what was chosen last has gone from it
+  useWindowEvent("keydown", (e) => e.key === "Escape" && setOpened(false));
   if (!bench) return null;
   return (
     <Popover
@@ -62,12 +65,7 @@ export function Compare() {
           {behind.length > 0 ? `Compared with ${behind.length}` : "Compare"}
         </Button>
       </Popover.Target>
-      <Popover.Dropdown
-        className={styles.sheet}
-        role="dialog"
-        aria-label="Compare with other benches"
-        onKeyDown={(e) => e.key === "Escape" && setOpened(false)}
-      >
+      <Popover.Dropdown className={styles.sheet} role="dialog" aria-label="Compare with other benches">
         {opened && <Sheet bench={bench} />}
       </Popover.Dropdown>
     </Popover>
