@@ -144,6 +144,7 @@ class Verdicts:
             return f"That is wrong: {f'the truth is {self._words[true]}' if true >= 0 else 'no lane has the truth'}."
         if changed is None:
             return "That is right."
+        numbers["since_ms"] = self._since * self._dt_ms
         numbers["delay_samples"] = float(max(0, self._since - changed))
-        after = length(numbers["delay_samples"] * self._dt_ms)
-        return f"That is right, {format_count(numbers['delay_samples'], 'sample')} ({after}) after the change."
+        after = f"{format_count(numbers['delay_samples'], 'sample')} ({length(numbers['delay_samples'] * self._dt_ms)})"
+        return f"That is right, and has been since {moment(numbers['since_ms'])}, {after} after the change."

@@ -128,6 +128,7 @@ def test_the_numbers_of_a_verdict_follow_from_the_trace(seed: int) -> None:
         changes = [tick for tick in range(1, said.tick + 1) if truth[tick] != truth[tick - 1]]
         if truth[said.tick] == new and changes:
             numbers["delay_samples"] = max(0, start - changes[-1])
+            numbers["since_ms"] = start * found.board.dt_ms
         assert said.numbers == pytest.approx(numbers, rel=1e-9)
         assert said.kind == ("verdict" if truth[said.tick] == new else "false_verdict")
         assert said.span == (min(start, changes[-1]) if changes else start, said.tick)
