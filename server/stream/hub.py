@@ -175,6 +175,8 @@ class Hub:
         while True:
             due = time.monotonic() + STATUS_S
             await asyncio.sleep(STATUS_S)
+            for room in self._rooms.values():
+                room.cuts.gather()  # of a bench that stands, too
             for client in self._all():
                 # The time due counts: a loop that stood still has not read the acknowledgements of that time yet.
                 if client.stalled(due):
