@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from weakref import WeakSet, WeakValueDictionary
+from weakref import WeakKeyDictionary, WeakSet, WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,7 @@ class SharedCuts:
         self._views: WeakValueDictionary[str, View] = WeakValueDictionary()
         self._with_behind: WeakSet[View] = WeakSet()
         self._history = session.history
-        self._pictures: dict[View, Picture] = {}
+        self._pictures: WeakKeyDictionary[View, Picture] = WeakKeyDictionary()
         self.refresh()
 
     def refresh(self) -> int:

@@ -86,6 +86,7 @@ class Hub:
         """Remove a stream."""
         room = self._rooms[client.session]
         room.clients.discard(client)
+        client.panels.clear()  # at once, not when the collector comes: their views would find captures for nobody
         if not room.clients:
             del self._rooms[client.session]
         self._metrics.clients.set(len(self))
