@@ -244,8 +244,7 @@ class History:
         """Return how many ticks of so many signals fit into so much memory."""
         lanes = (-(-outputs // LANES) + -(-taps // LANES)) * LANES
         pyramid = 2.0 * sum(FACTOR ** -(level + 1) for level in range(LEVELS))
-        held = int(megabytes * 1e6 / (4.0 * lanes * (1.0 + pyramid)))
-        return max(WIDEST, (held // WIDEST - 1) * WIDEST)
+        return max(WIDEST, int(megabytes * 1e6 / (4.0 * lanes * (1.0 + pyramid))) - WIDEST)
 
     @property
     def first_tick(self) -> int:

@@ -38,7 +38,7 @@ STUDENT_PAST_TICKS = 2000
 """Ticks of the past that a jump on the bench of a student brings along."""
 STUDENT_TRACK_BYTES = 1_500_000
 """Memory of the checkpoints of a student's bench."""
-STUDENT_CAPTURE_BYTES = 750_000
+STUDENT_CAPTURE_BYTES = 500_000
 """Memory of the captures of a student's bench, and as much while a fault is hidden on it."""
 
 

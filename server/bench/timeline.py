@@ -22,7 +22,7 @@ PAST_TICKS = 20_000
 """Ticks of the past that a fork brings along, or a jump that is undone."""
 TRACK_BYTES = 8_000_000
 """Memory of the checkpoints from which the past is computed again; that of the history is so much less."""
-CAPTURE_BYTES = 4_000_000
+CAPTURE_BYTES = 2_500_000
 """Memory of the captures of those who see all of the bench, and as much of those from whom a fault is hidden; that of
 the history is so much less."""
 SLICE_S = 0.005

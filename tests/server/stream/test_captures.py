@@ -10,9 +10,11 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
+from core.board.history import History
 from scenarios.library import get
 from scenarios.run import run
 from scenarios.schema import Scenario
+from server.stream.codec import Frame
 from tests.server.people.group import join, open_class
 
 NAMES = ["plant.displacement", "drive.voltage"]
@@ -91,7 +93,8 @@ def test_captures_outlive_the_history_with_the_bits_of_a_headless_run(small: Any
         old = marks[0]
         ask = {**ASK, "mode": "frozen", "start_tick": old["start_tick"] + 20, "end_tick": old["start_tick"] + 30}
         stream.send(type="subscribe", panel=1, **ask)
-        (picture,) = stream.until_frame(1).panels
+        frame = stream.until(lambda m: isinstance(m, Frame) and m.panels[0].revision == 2)
+        (picture,) = frame.panels
         part = rows(small, bench["id"], old)[:, 20:30]
         assert picture.columns.shape == (2, 2, 10)
         np.testing.assert_array_equal(picture.columns, np.stack([part, part], axis=1))
@@ -134,7 +137,7 @@ def test_a_bench_that_goes_back_in_time_loses_the_captures_ahead_of_it(small: An
     with small.stream(bench) as stream:
         stream.send(type="subscribe", panel=1, **ASK)
         step(small, bench, 700)
-        kept = captured(stream, 2)
+        kept = captured(stream, 3, last=450)
         snapshot = small.http.post(f"/api/v1/benches/{bench}/snapshots", json={}).json()["id"]
         step(small, bench, 700)
         assert len(captured(stream, len(kept) + 2)) > len(kept)
@@ -196,7 +199,12 @@ def test_many_subscriptions_cost_no_more_than_the_bench_has_for_captures(live: A
         stream.until(all_told, 60.0)
         assert 0 < sum(one.nbytes for one in kept()) <= session.captures.most_bytes
         assert all(message["is_short"] for message in told.values() if not message["captures"])
-    assert session.history.nbytes + 2 * session.captures.most_bytes + session.track_bytes <= 72e6
+    # what captures and checkpoints may take, the history of 72 MB leaves free
+    beside = 2 * session.captures.most_bytes + session.track_bytes
+    counts = session.board.signals.outputs, len(session.board.signals.taps)
+    left = History.ticks_within(72 - beside * 1e-6, *counts)
+    assert session.history.capacity == History(*counts, left).capacity
+    assert left < History.ticks_within(72 - session.track_bytes * 1e-6, *counts)
 
 
 def test_what_no_capture_has_is_refused_in_one_line(small: Any) -> None:

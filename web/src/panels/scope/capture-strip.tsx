@@ -19,39 +19,28 @@ export function CaptureStrip({ captures: list, standing, dtMs, onStand, onBrowse
   const found = captures.findIndex(({ tick }) => tick === standing?.tick);
   const at = standing ? found : last;
   const words = captureWords(list, standing, dtMs);
+  const isNewest = standing !== undefined && at === last;
+  const ways = [
+    { name: "Previous", key: "Page up", Icon: IconChevronLeft, by: -1, isEnd: standing !== undefined && at === 0 },
+    { name: "Next", key: "Page down", Icon: IconChevronRight, by: 1, isEnd: !standing || isNewest },
+    { name: "Newest", key: "End", Icon: IconChevronsRight, by: Number.POSITIVE_INFINITY, isEnd: isNewest },
+  ];
   return (
     // biome-ignore lint/a11y/useSemanticElements: a fieldset would draw a frame of its own
     <div className={styles.captures} role="group" aria-label="Captures" data-standing={standing !== undefined}>
-      <ActionIcon
-        size={24}
-        variant="default"
-        aria-label="Previous capture"
-        title="Previous capture (Page up)"
-        disabled={captures.length === 0 || (standing !== undefined && at === 0)}
-        onClick={() => onBrowse(-1)}
-      >
-        <IconChevronLeft size={15} />
-      </ActionIcon>
-      <ActionIcon
-        size={24}
-        variant="default"
-        aria-label="Next capture"
-        title="Next capture (Page down)"
-        disabled={!standing || captures.length === 0 || at === last}
-        onClick={() => onBrowse(1)}
-      >
-        <IconChevronRight size={15} />
-      </ActionIcon>
-      <ActionIcon
-        size={24}
-        variant="default"
-        aria-label="Newest capture"
-        title="Newest capture (End)"
-        disabled={captures.length === 0 || (standing !== undefined && at === last)}
-        onClick={() => onBrowse(Number.POSITIVE_INFINITY)}
-      >
-        <IconChevronsRight size={15} />
-      </ActionIcon>
+      {ways.map(({ name, key, Icon, by, isEnd }) => (
+        <ActionIcon
+          key={name}
+          size={24}
+          variant="default"
+          aria-label={`${name} capture`}
+          title={`${name} capture (${key})`}
+          disabled={captures.length === 0 || isEnd}
+          onClick={() => onBrowse(by)}
+        >
+          <Icon size={15} />
+        </ActionIcon>
+      ))}
       {captures.length > 1 && (
         <input
           type="range"
