@@ -237,7 +237,7 @@ class Conversation:
         client, session = self._client, self._client.session
         indices = session.indices(message.signals)
         trigger = None
-        if message.mode == "triggered" and message.trigger is not None:
+        if message.mode != "roll" and message.trigger is not None and message.window_ms is not None:
             try:
                 (trigger,) = session.indices([message.trigger.signal])
             except InputError as error:

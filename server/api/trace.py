@@ -8,6 +8,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel
 
+from core.board.history import Float32Array
 from core.errors import InputError
 from server.api.bodies import StrictRoute
 from server.api.deps import SeenDep, ServiceDep
@@ -66,6 +67,7 @@ async def get_trace(
     if kind is None:
         span = Span.between(start, end, columns)
         cut = await asyncio.to_thread(history.columns, indices, span.start, span.end, span.columns)
+        session.captures.fold(cut, indices, span.start, span.end)
         return Trace(
             start_tick=span.start,
             end_tick=span.end,
@@ -75,19 +77,25 @@ async def get_trace(
                 for name, (low, high) in zip(names, cut, strict=True)
             },
         )
-    start, end = max(start, first), min(end, head)
+    end = min(end, head)
+    captured = session.captures.covering(indices, start, end) if start < first else None
+    if captured is None:
+        start = max(start, first)
     if end <= start:
-        raise InputError(f"nothing is kept of that span; the history has {first} to {head}", "start_tick")
+        text = f"nothing is kept of that span; the history has {first} to {head}"
+        raise InputError(text, "start_tick", "captures tells which spans triggers have kept")
     if end - start > service.settings.max_trace_ticks:
         most = service.settings.max_trace_ticks
         raise ApiError(422, "too_long", f"{end - start} ticks; at most {most} at once", "end_tick")
-    table = await asyncio.to_thread(_table, session, names, indices, start, end)
+    table = await asyncio.to_thread(_table, session, names, indices, start, end, captured)
     return await table_response(service, table, f"{session.scenario_id}-{start}-{end}", kind)
 
 
-def _table(session: Seen, names: list[str], indices: list[int], start: int, end: int) -> object:
-    """Read every sample of a span."""
-    samples = session.history.read(indices, start, end)
+def _table(
+    session: Seen, names: list[str], indices: list[int], start: int, end: int, captured: Float32Array | None
+) -> object:
+    """Read every sample of a span, unless a capture has them."""
+    samples = session.history.read(indices, start, end) if captured is None else captured
     # Ticks that the bench overwrote during the read are missing at the old end.
     first = end - samples.shape[1]
     units = {signal.name: signal.unit for signal in session.signals}

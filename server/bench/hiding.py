@@ -13,6 +13,7 @@ from core.errors import unknown
 from core.signals import Signal
 from scenarios.narrator.doings import MEASURED
 from server.bench.blind import ACTOR, MAY_SET, Blind
+from server.bench.captures import CapturedBench, Captures
 from server.bench.events import Event, EventLog
 from server.bench.narration import Narration
 from server.bench.portrait import ShownBench, bench_of, document_now
@@ -37,10 +38,11 @@ BENCH = (
 """Fields of a status and of a bench that people are told; they are told no others."""
 
 
-class HidingBench(ShownBench, Protocol):
+class HidingBench(ShownBench, CapturedBench, Protocol):
     """A bench on which a fault can be hidden."""
 
     class_id: str
+    captures: Captures
 
     def done_otherwise(self) -> None:
         """Note for the past that the board has become another in a way that no command says."""
@@ -132,6 +134,7 @@ class BlindView:
         # whether and when the measured error comes back differs with what is hidden
         told = [signal for signal in self.signals if signal.name != MEASURED]
         self.narration = Narration(bench.board.spec, told, signals.outputs)
+        self.captures = Captures(bench, bench.captures.most_bytes)
         self._known: tuple[BenchStatus, int] | None = None
         self._status: BenchStatus | None = None
 

@@ -10,9 +10,9 @@ from core.board.history import History
 from scenarios.schema import Scenario
 from server.bench.commands import MAX_SCALE, MIN_SCALE
 from server.bench.replay import Replay, narrated, played
-from server.bench.session import STUDENT_TRACK_BYTES, Session
+from server.bench.session import STUDENT_CAPTURE_BYTES, STUDENT_TRACK_BYTES, Session
 from server.bench.tick_source import TickSource
-from server.bench.timeline import TRACK_BYTES
+from server.bench.timeline import CAPTURE_BYTES, TRACK_BYTES
 from server.metrics import Metrics
 from server.settings import Settings
 from server.store.recordings import RecordingDetail
@@ -40,9 +40,9 @@ class Maker:
     def around(self, scenario: Scenario, board: Board, time_scale: float | None, class_id: str = "") -> Session:
         """Put a bench around a board; one for a student of a class has less room for its history."""
         if class_id:
-            kept = self._kept(board, self._settings.student_history_mb, STUDENT_TRACK_BYTES)
+            kept = self._kept(board, self._settings.student_history_mb, STUDENT_TRACK_BYTES + 2 * STUDENT_CAPTURE_BYTES)
         else:
-            kept = self._kept(board, self._settings.history_mb, TRACK_BYTES)
+            kept = self._kept(board, self._settings.history_mb, TRACK_BYTES + 2 * CAPTURE_BYTES)
         session = Session(scenario, board, time_scale, kept, self._metrics, self._clock)
         if class_id:
             session.belong(class_id, self._settings.student_ticks_per_s)
@@ -58,15 +58,15 @@ class Maker:
         """
         scenario, tape, recorded = played(recording, path)
         pace = min(max(recorded * speed, MIN_SCALE), MAX_SCALE)
-        kept = self._kept(tape, self._settings.history_mb, 0)
+        kept = self._kept(tape, self._settings.history_mb, 2 * CAPTURE_BYTES)
         said = narrated(tape, path, recording.events or [])
         session = Replay(recording, scenario, tape, pace, kept, self._metrics, self._clock, said)
         session.recorded_scale = recorded
         return session
 
-    def _kept(self, board: TickSource, megabytes: int, track_bytes: int) -> int:
-        """Return for how many ticks the signals of a board are kept, beside the checkpoints of its past."""
+    def _kept(self, board: TickSource, megabytes: int, beside_bytes: int) -> int:
+        """Return for how many ticks the signals of a board are kept, beside what else is kept of its past."""
         affordable = History.ticks_within(
-            megabytes - track_bytes * 1e-6, board.signals.outputs, len(board.signals.taps)
+            megabytes - beside_bytes * 1e-6, board.signals.outputs, len(board.signals.taps)
         )
         return min(self._settings.history_ticks, affordable)

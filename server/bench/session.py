@@ -38,6 +38,8 @@ STUDENT_PAST_TICKS = 2000
 """Ticks of the past that a jump on the bench of a student brings along."""
 STUDENT_TRACK_BYTES = 1_500_000
 """Memory of the checkpoints of a student's bench."""
+STUDENT_CAPTURE_BYTES = 500_000
+"""Memory of the captures of a student's bench, and as much while a fault is hidden on it."""
 
 
 class Session(Jumping):
@@ -137,6 +139,7 @@ class Session(Jumping):
         """Be the bench of a student, one of many: never let go, limited in pace, with less history."""
         self.class_id, self.keep = class_id, True
         self.past_ticks, self.track_bytes = STUDENT_PAST_TICKS, STUDENT_TRACK_BYTES
+        self.captures.most_bytes = STUDENT_CAPTURE_BYTES
         if isinstance(self.board, Board):
             self.track = Track(self.board, self.track_bytes)
             self._remember()

@@ -13,6 +13,7 @@ from core.device.geometry import Geometry
 from core.device.two_axis import TwoAxis
 from core.signals import Signal
 from scenarios.schema import Scenario
+from server.bench.captures import Captures
 from server.bench.moment import Branches, Moment
 from server.bench.status import Origin
 from server.bench.tick_source import TickSource
@@ -21,6 +22,9 @@ PAST_TICKS = 20_000
 """Ticks of the past that a fork brings along, or a jump that is undone."""
 TRACK_BYTES = 8_000_000
 """Memory of the checkpoints from which the past is computed again; that of the history is so much less."""
+CAPTURE_BYTES = 2_500_000
+"""Memory of the captures of those who see all of the bench, and as much of those from whom a fault is hidden; that of
+the history is so much less."""
 SLICE_S = 0.005
 """Longest slice, by what a tick takes; other benches and commands wait for it."""
 MOST_SLOWER = 4.0
@@ -55,6 +59,7 @@ class Timeline:
         self._branches = Branches()
         self._index = {signal.name: signal.index for signal in board.signals}
         self.track = Track(board, self.track_bytes) if isinstance(board, Board) else None
+        self.captures = Captures(self, CAPTURE_BYTES)
 
     @property
     def is_past(self) -> bool:
@@ -63,6 +68,15 @@ class Timeline:
         if origin is None or track is None:
             return False
         return self.board.tick == origin.tick and not track.has_deeds_since(origin.tick)
+
+    @property
+    def branch(self) -> int:
+        """The branch of time of now."""
+        return self._branches.current
+
+    def has_in_past(self, branch: int, tick: int) -> bool:
+        """Whether what lies before a tick of a branch is of the past of now."""
+        return self._branches.share(branch, tick)
 
     @property
     def now(self) -> float:

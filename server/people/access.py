@@ -91,6 +91,7 @@ _DOORS = {
         GET {BENCH}/scenario
         GET {BENCH}/digest
         GET {BENCH}/trace  *
+        GET {BENCH}/captures  *
         GET {BENCH}/unstable-region
         GET {BENCH}/plants
         GET {BENCH}/flops

@@ -176,11 +176,12 @@ class Client:
         return messages
 
     def _status(self) -> list[bytes]:
-        """Return the status; the scenario as it is now only if it has changed since."""
+        """Return the status, with the scenario only if that has changed since; then the captures that are new."""
         self._wants_status = False
         status = self._news.status(self._edition, self.dropped)
         self._edition = self._news.edition
-        return [status]
+        captured = [panel.captures(number) for number, panel in self.panels.items()]
+        return [status, *(text_message(one.model_dump_json()) for one in captured if one is not None)]
 
     def _picture(self) -> list[bytes]:
         """Return the pictures that have changed as one frame."""

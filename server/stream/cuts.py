@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from weakref import WeakSet, WeakValueDictionary
+from weakref import WeakKeyDictionary, WeakSet, WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
+from server.bench.captures import Captured, CaptureSet
 from server.bench.session import Seen
 from server.stream.behind import Behind
 from server.stream.codec import Moment, Picture
-from server.stream.view import View
+from server.stream.view import View, window_of
 from server.stream.wire import Subscribe
 
 
@@ -30,11 +31,12 @@ class SharedCuts:
         self._views: WeakValueDictionary[str, View] = WeakValueDictionary()
         self._with_behind: WeakSet[View] = WeakSet()
         self._history = session.history
-        self._pictures: dict[View, Picture] = {}
+        self._pictures: WeakKeyDictionary[View, Picture] = WeakKeyDictionary()
         self.refresh()
 
     def refresh(self) -> int:
         """Take the present moment; return its tick."""
+        self._session.captures.follow()
         if self._session.history is not self._history:
             self._history = self._session.history
             for view in self._views.values():
@@ -62,7 +64,8 @@ class SharedCuts:
 
         People may see other benches than others do, so a view with benches behind it is its own.
         """
-        fresh = View(spec, indices, trigger_index, self.moment.dt_ms, self.moment.head, behind)
+        captures = self._captures(spec, indices) if trigger_index is not None else None
+        fresh = View(spec, indices, trigger_index, self.moment.dt_ms, self.moment.head, behind, captures)
         if behind:
             self._with_behind.add(fresh)
             return fresh
@@ -71,7 +74,23 @@ class SharedCuts:
         key = f"{self.moment.dt_ms} {spec.model_copy(update={'panel': 0}).model_dump_json()}"
         return self._views.setdefault(key, fresh)
 
-    # Views read the history by the methods below.
+    def gather(self) -> None:
+        """Find what is to be captured at this moment, whether or not pages take pictures, and copy some of it."""
+        captures = self._session.captures
+        for view in [view for one in captures.sets() for view in one.views]:
+            view.find(self)
+        captures.gather()
+
+    def _captures(self, spec: Subscribe, indices: list[int]) -> CaptureSet | None:
+        """Return the captures of a subscription; all that differ in width or sweep alone share them."""
+        assert spec.trigger is not None
+        named = dict(sorted(zip(spec.signals, indices, strict=True)))
+        window, before = window_of(spec, self.moment.dt_ms)
+        trigger = spec.trigger.model_dump(exclude={"position", "sweep", "signal"})
+        what = Captured(tuple(named), spec.trigger.signal, **trigger, window=window, before=before)
+        return self._session.captures.open(what, list(named.values()))
+
+    # Views read the history by the methods below, and say what they find.
 
     @property
     def end_tick(self) -> int:
@@ -89,4 +108,10 @@ class SharedCuts:
 
     def columns(self, signals: list[int], start: int, stop: int, columns: int) -> NDArray[np.float32]:
         """Return ``(n, 2, columns)`` minima and maxima."""
-        return self._history.columns(signals, start, stop, columns)
+        found = self._history.columns(signals, start, stop, columns)
+        self._session.captures.fold(found, signals, start, stop)
+        return found
+
+    def capture(self, captures: CaptureSet, tick: int, at: float) -> None:
+        """Keep the window around a crossing."""
+        self._session.captures.found(captures, tick, at)

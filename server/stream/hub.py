@@ -86,6 +86,7 @@ class Hub:
         """Remove a stream."""
         room = self._rooms[client.session]
         room.clients.discard(client)
+        client.panels.clear()  # at once, not when the collector comes: their views would find captures for nobody
         if not room.clients:
             del self._rooms[client.session]
         self._metrics.clients.set(len(self))
@@ -175,6 +176,8 @@ class Hub:
         while True:
             due = time.monotonic() + STATUS_S
             await asyncio.sleep(STATUS_S)
+            for room in self._rooms.values():
+                room.cuts.gather()  # of a bench that stands, too
             for client in self._all():
                 # The time due counts: a loop that stood still has not read the acknowledgements of that time yet.
                 if client.stalled(due):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from server.bench.captures import MOST
 from server.stream.codec import Picture
 from server.stream.cuts import SharedCuts
 from server.stream.view import View
+from server.stream.wire import CaptureList, CaptureMark
 
 
 class Panel:
@@ -21,6 +23,7 @@ class Panel:
     def __init__(self, view: View, revision: int) -> None:
         self.view, self.revision = view, revision
         self._sent: Picture | None = None
+        self._edition = -1
 
     @property
     def points(self) -> int:
@@ -35,3 +38,13 @@ class Panel:
             return None
         self._sent = picture
         return picture
+
+    def captures(self, number: int) -> CaptureList | None:
+        """Return the captures of its trigger, or nothing if they were sent already."""
+        spec, kept = self.view.spec, self.view.captures
+        edition = kept.edition if kept is not None else 0
+        if spec.trigger is None or spec.mode == "roll" or edition == self._edition:
+            return None
+        self._edition = edition
+        marks = [CaptureMark.of(one) for one in kept.captures] if kept is not None else []
+        return CaptureList(panel=number, captures=marks, most=MOST, is_short=kept is None or kept.is_short)

@@ -41,6 +41,7 @@ class Room:
     def publish(self, now: float) -> Iterator[None]:
         """Offer every page the news; pause between groups of pages."""
         head, last = self.cuts.refresh(), self.session.events.last
+        self.cuts.gather()
         status = last != self._status_event and now - self._status_at >= STATUS_S
         if status:
             self._status_event, self._status_at = last, now

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.board.history import FACTOR
+from server.bench.captures import MOST, CaptureSet
 from server.stream.behind import Behind
 from server.stream.codec import FROZEN, TRIGGERED, WAITING, Picture
 from server.stream.trigger import Samples, Trigger, crossing_time
@@ -22,6 +23,9 @@ class History(Samples, Protocol):
 
     def columns(self, signals: list[int], start: int, stop: int, columns: int) -> NDArray[np.float32]:
         """Return ``(n, 2, columns)`` minima and maxima."""
+
+    def capture(self, captures: CaptureSet, tick: int, at: float) -> None:
+        """Keep the window around a crossing."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +70,12 @@ def column_step(ticks: int, width: int) -> int:
     return step
 
 
+def window_of(spec: Subscribe, dt_ms: float) -> tuple[int, int]:
+    """Return the ticks of a window, and how many of them lie before the trigger."""
+    window = max(2, round((spec.window_ms or 0.0) / dt_ms))
+    return window, round(spec.trigger.position * window) if spec.trigger is not None else 0
+
+
 class _State(NamedTuple):
     """Identifies a picture: its kind, a tick that differs for others of that kind, its flags, what is behind it."""
 
@@ -92,6 +102,8 @@ class View:
         First tick not computed yet.
     behind : sequence of Behind
         Other benches that are shown behind the picture.
+    captures : CaptureSet, optional
+        What is kept around the crossings of the trigger; a triggered view adds to it, a frozen one looks at it.
     """
 
     def __init__(
@@ -102,10 +114,15 @@ class View:
         dt_ms: float,
         head: int,
         behind: Sequence[Behind] = (),
+        captures: CaptureSet | None = None,
     ) -> None:
-        self.spec, self.indices, self._behind = spec, indices, behind
-        self._window = max(2, round((spec.window_ms or 0.0) / dt_ms))
-        self._sweep = _Sweep(spec, trigger_index, self._window, head) if trigger_index is not None else None
+        self.spec, self.indices, self._behind, self.captures = spec, indices, behind, captures
+        if captures is not None:
+            captures.views.add(self)
+        self._window, before = window_of(spec, dt_ms)
+        self._sweep: _Sweep | None = None
+        if trigger_index is not None and spec.mode == "triggered":
+            self._sweep = _Sweep(spec, trigger_index, self._window, before, head)
         self._frozen: Span | None = None
         if spec.mode == "frozen" and spec.start_tick is not None and spec.end_tick is not None:
             self._frozen = Span.between(spec.start_tick, spec.end_tick, spec.width)
@@ -125,6 +142,20 @@ class View:
     def forget(self) -> None:
         """Take a new picture even of the same ticks, because their samples may have changed."""
         self._state = None
+
+    def find(self, history: History) -> None:
+        """Find what is to be captured, also while no page takes a picture."""
+        if self._sweep is not None:
+            self._find(history, self._sweep)
+
+    def _find(self, history: History, sweep: _Sweep) -> tuple[int | None, int]:
+        """Return the crossing to show, if any, and the flags; windows that are complete are captured."""
+        shown = sweep.update(history)
+        if self.captures is not None:
+            for tick in sweep.complete:
+                if self.captures.wants(tick):
+                    history.capture(self.captures, tick, sweep.exact(history, tick))
+        return shown
 
     def picture(self, history: History) -> Picture:
         """Return the picture of now; the same object while nothing in it changes."""
@@ -153,7 +184,7 @@ class View:
             return _State("frozen", min(max(head, self._frozen.start), self._frozen.end), FROZEN)
         if self._sweep is None:
             return _State("rolling", head, 0)
-        tick, flags = self._sweep.update(history)
+        tick, flags = self._find(history, self._sweep)
         if tick is not None:
             return _State("triggered", tick, flags)
         return _State("rolling", head, flags) if self._sweep.is_auto else _State("empty", 0, flags)
@@ -177,16 +208,17 @@ class View:
 class _Sweep:
     """The time base of a triggered panel: it chooses the crossing to show."""
 
-    def __init__(self, spec: Subscribe, index: int, window: int, head: int) -> None:
+    def __init__(self, spec: Subscribe, index: int, window: int, before: int, head: int) -> None:
         assert spec.trigger is not None
-        self._spec, self._window = spec.trigger, window
-        self.before = round(spec.trigger.position * window)
-        # Begin one whole window before the newest tick, so that a paused bench shows its last picture.
-        start = head - 4 * window if spec.trigger.sweep != "single" else head
+        self._spec, self._window, self.before = spec.trigger, window, before
+        # Begin before the newest tick, so that a paused bench shows its last picture, and captures that came before.
+        start = head - (MOST + 1) * window if spec.trigger.sweep != "single" else head
         wanted = spec.trigger
         upper = math.inf if wanted.upper is None else wanted.upper
         self._trigger = Trigger(index, wanted.edge, wanted.level, wanted.hysteresis, start, upper)
         self._waiting: list[int] = []
+        self.complete: list[int] = []
+        """Crossings whose windows have become complete with the last update."""
         self._shown: int | None = None
         self._armed = True
 
@@ -211,10 +243,10 @@ class _Sweep:
                 self._waiting = self._trigger.scan(history, first_only=True)
         else:
             self._waiting += self._trigger.scan(history)
-        complete = [tick for tick in self._waiting if tick + after <= history.end_tick]
-        if complete:
-            self._waiting = self._waiting[len(complete) :]
-            self._shown = complete[-1]
+        self.complete = [tick for tick in self._waiting if tick + after <= history.end_tick]
+        if self.complete:
+            self._waiting = self._waiting[len(self.complete) :]
+            self._shown = self.complete[-1]
             self._armed = self._spec.sweep != "single"
         if self._spec.sweep == "single":
             return self._shown, (WAITING if self._armed else 0) | (TRIGGERED if self._shown is not None else 0)

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, model_validator
 
 from scenarios.narrator.sentence import Sentence
+from server.bench.captures import Capture
 from server.bench.commands import Command
 from server.bench.events import Event
 from server.bench.status import Bench, BenchStatus
@@ -74,7 +75,9 @@ class Subscribe(Message):
     window_ms: float | None = Field(None, gt=0, le=1e9)
     start_tick: int | None = Field(None, ge=-MAX_TICK, le=MAX_TICK)
     end_tick: int | None = Field(None, ge=-MAX_TICK, le=MAX_TICK)
-    trigger: TriggerSpec | None = None
+    trigger: TriggerSpec | None = Field(
+        None, description="Of a frozen panel, with window_ms: the scope whose captures it looks at"
+    )
     behind: list[BehindSpec] = Field([], max_length=MAX_BEHIND)
 
     @model_validator(mode="after")
@@ -171,6 +174,34 @@ class Narrated(BaseModel):
     sentences: list[Sentence]
 
 
+class CaptureMark(BaseModel):
+    """A capture of a triggered panel."""
+
+    tick: int = Field(description="The first tick beyond the crossing")
+    trigger_tick: float = Field(description="Where it lies between ticks, on the line between them")
+    start_tick: int
+    end_tick: int
+
+    @classmethod
+    def of(cls, capture: Capture) -> CaptureMark:
+        """Describe a capture."""
+        crossing = capture.crossing
+        return cls(tick=crossing.tick, trigger_tick=crossing.at, start_tick=capture.start, end_tick=capture.stop)
+
+
+class CaptureList(BaseModel):
+    """The captures kept of the trigger of a panel, oldest first: sent when they have changed.
+
+    Frozen panels show them at full rate, also where the history has gone on.
+    """
+
+    type: Literal["captures"] = "captures"
+    panel: int
+    captures: list[CaptureMark]
+    most: int = Field(description="Captures of one trigger")
+    is_short: bool = Field(description="Memory leaves room for fewer, or the bench keeps those of too many triggers")
+
+
 class Reply(BaseModel):
     """The answer to a command."""
 
@@ -204,4 +235,4 @@ class Ping(BaseModel):
     type: Literal["ping"] = "ping"
 
 
-ServerMessage = Hello | Status | Events | Narrated | Reply | ErrorMessage | Notice | Ping
+ServerMessage = Hello | Status | Events | Narrated | CaptureList | Reply | ErrorMessage | Notice | Ping

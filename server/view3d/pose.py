@@ -10,12 +10,14 @@ from typing import Any, TypeVar
 import numpy as np
 
 from core.block import BlockParams
-from core.board.history import Float32Array
+from core.board.commands import Inject
+from core.board.history import Float32Array, History
 from core.board.instances import faults_of
 from core.board.spec import Spec
 from core.board.wiring import needed
 from core.diagnose.hypothesis import names_of
 from core.faults.fault import Fault, FaultParams
+from core.format import format_in
 from core.plant.plane import PlaneParams
 from core.sense.dual_beam import DualBeam
 from server.bench.session import Session
@@ -36,6 +38,8 @@ LASERS = ("through_wafer", "dual_beam", "doppler")
 """Sensors that look at the grating with light."""
 APART_UM = 11.0
 """Least distance of two beams of light, so that they are seen to be two."""
+LATELY = 31
+"""Ticks within which the signals of a sensor that runs are not all 0."""
 STEPS = 50
 """Number of shades and sizes of a severity or a warning; it is small, so that they seldom change."""
 
@@ -94,6 +98,8 @@ class Pose:
         Beams of light on the grating.
     caption : str
         The differences from the true motion, in words.
+    when : str
+        The moment in words, if it is not that of now.
     """
 
     displacement_um: float = 0.0
@@ -108,6 +114,7 @@ class Pose:
     faults: tuple[Active, ...] = ()
     lasers: tuple[Laser, ...] = ()
     caption: str = ""
+    when: str = ""
 
 
 class Observer:
@@ -127,19 +134,24 @@ class Observer:
         self._bank = _bank(session)
         names = (*SIGNALS, *(f"faults.{name}" for name in self._faults), *self._bank)
         self._indices = session.indices(names)
+        self._light = {
+            name: [signal.index for signal in session.signals if signal.name.startswith(f"{name}.")] for name in LASERS
+        }
         self._known: dict[str, Any] = {}
         self._factor = self._turn_factor = 1.0
 
-    def pose(self) -> Pose:
-        """Return the pose of now, or of the moment that the strobe shows."""
+    def pose(self, looked: int | None = None) -> Pose:
+        """Return the pose of a tick of the history; else that of now, or of the moment that the strobe shows."""
         session, history = self._session, self._session.history
-        head, spec = history.end_tick, session.board.spec
+        spec = session.board.spec
+        looked = kept(history, looked)
+        head = history.end_tick if looked is None else looked + 1
         if head <= history.first_tick:
             return Pose()
         period = session.drive_period_ticks
         # A bench that runs as fast as possible is strobed like one in real time.
         rate = (session.status.achieved_scale if session.is_running else 0.0) / (session.dt_ms * 1e-3)
-        at = moment(head, period, rate, time.monotonic())
+        at = moment(head, period, rate if looked is None else 0.0, time.monotonic())
         tick = max(at.tick, history.first_tick)
         values = history.read(self._indices, tick, tick + 1)[:, 0].astype(float)
         values[~np.isfinite(values)] = 0.0
@@ -160,9 +172,10 @@ class Observer:
             warnings=(_step(warning(closed_share(combs[0], gap))), _step(warning(closed_share(combs[1], gap)))),
             contact=int(contact),
             short=int(short),
-            faults=acting(session, self._faults, self._known, values[len(SIGNALS) : end]),
-            lasers=self._lasers(spec),
+            faults=acting(session, self._faults, self._known, values[len(SIGNALS) : end], looked),
+            lasers=self._lasers(spec, needed(spec) if looked is None else self._lit(looked)),
             caption=caption(self._factor, self._turn_factor if turns else None, at.is_strobed),
+            when=when(session, looked),
         )
 
     def _magnify(self, recent: Float32Array) -> None:
@@ -179,18 +192,13 @@ class Observer:
         winner = int(values[0])
         return (measured - float(values[1 + winner])) * self._factor if 0 <= winner < len(values) - 1 else None
 
-    def _acting(self, severities: FloatArray) -> tuple[Active, ...]:
-        """Return the faults that act; one healed a moment ago is still known by its last parameters."""
-        self._known |= dict(self._session.board.faults)
-        return tuple(
-            Active(block, self._known[name], severity)
-            for (name, block), severity in zip(self._faults.items(), severities.tolist(), strict=True)
-            if severity != 0.0 and name in self._known
-        )
+    def _lit(self, tick: int) -> set[str]:
+        """Return the sensors with light that ran at a tick: the signals of the others rest at 0."""
+        read = self._session.history.read
+        return {name for name, signals in self._light.items() if read(signals, tick - LATELY, tick + 1).any()}
 
-    def _lasers(self, spec: Spec) -> tuple[Laser, ...]:
-        """Return the places where the light of the running sensors meets the grating."""
-        in_use = needed(spec)
+    def _lasers(self, spec: Spec, in_use: set[str]) -> tuple[Laser, ...]:
+        """Return the places where the light of sensors meets the grating."""
         beams: dict[float, bool] = {}
         for name in LASERS:
             if name in in_use:
@@ -237,16 +245,42 @@ def _step(share: float) -> float:
     return round(share * STEPS) / STEPS
 
 
+def kept(history: History, looked: int | None) -> int | None:
+    """Return a tick that is looked at if the history has it."""
+    return looked if looked is not None and history.first_tick <= looked < history.end_tick else None
+
+
+def when(session: Session, looked: int | None) -> str:
+    """Return in words which moment is looked at."""
+    return f"at {format_in(looked * session.dt_ms, 'ms', 3)}" if looked is not None else ""
+
+
 def acting(
-    session: Session, faults: dict[str, type[Any]], known: dict[str, Any], severities: FloatArray
+    session: Session,
+    faults: dict[str, type[Any]],
+    known: dict[str, Any],
+    severities: FloatArray,
+    looked: int | None = None,
 ) -> tuple[Active, ...]:
-    """Return the faults that act; one healed a moment ago is still ``known`` by its last parameters."""
+    """Return the faults that act, as at a tick; one healed a moment ago is still ``known`` by its last parameters."""
     known |= dict(session.board.faults)
+    if looked is not None and severities.any():
+        known = known | _injected(session, faults, looked)
     return tuple(
         Active(block, known[name], severity)
         for (name, block), severity in zip(faults.items(), severities.tolist(), strict=True)
         if severity != 0.0 and name in known
     )
+
+
+def _injected(session: Session, faults: dict[str, type[Any]], tick: int) -> dict[str, Any]:
+    """Return the parameters that each fault was last given by a tick, as the log has them."""
+    found: dict[str, Any] = {}
+    for event in session.events.after(0)[1]:
+        name = event.command.get("fault") if event.command is not None else None
+        if event.tick <= tick and event.kind == Inject.kind and name in faults:
+            found[name] = faults[name].Params.model_validate(event.new)
+    return found
 
 
 def seen(faults: tuple[Active, ...]) -> list[Any]:

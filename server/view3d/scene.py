@@ -66,8 +66,8 @@ class ResonatorScene(Stage):
                     self._stators[name].batched_colors = in_batch(ATTENTION if short else FIXED)
             if pose.lasers != before.lasers:
                 self._show_lasers(pose.lasers)
-            if pose.caption != before.caption:
-                self._caption.text = pose.caption
+            if (pose.caption, pose.when) != (before.caption, before.when):
+                self.say(pose.caption, pose.when)
         self._server.flush()
 
     def _move(self, pose: Pose, before: Pose) -> None:

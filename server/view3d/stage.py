@@ -29,6 +29,7 @@ class Stage:
         scene.world_axes.visible = False
         # the page writes it at the edge of the picture, where no camera can lose it
         self._caption = scene.add_label("/caption", "", visible=False)
+        self._when = scene.add_label("/when", "", visible=False)
 
     @property
     def path(self) -> Path:
@@ -38,6 +39,10 @@ class Stage:
     def close(self) -> None:
         """Stop the server and disconnect its clients."""
         self._private.stop()
+
+    def say(self, caption: str, when: str) -> None:
+        """Write the caption, and which moment is shown if it is not that of now."""
+        self._caption.text, self._when.text = caption, when
 
     def mesh(self, name: str, mesh: Mesh, color: Color, **options: Any) -> Any:
         """Add a rigid mesh, or one whose vertices are moved."""

@@ -12,7 +12,7 @@ from server.bench.session import Session
 from server.view3d.gyroscope.parts import Parts
 from server.view3d.gyroscope.pose import GyroscopeObserver
 from server.view3d.layout import Layout
-from server.view3d.pose import Observer
+from server.view3d.pose import Observer, kept
 
 log = logging.getLogger(__name__)
 
@@ -22,8 +22,8 @@ FRAME_S = 1.0 / 60.0
 class Observing(Protocol):
     """Reads the moments of one bench."""
 
-    def pose(self) -> Any:
-        """Return the pose to show."""
+    def pose(self, looked: int | None = None) -> Any:
+        """Return the pose of a tick that is looked at, if the history has it; else that of now."""
 
 
 class Scene(Protocol):
@@ -40,8 +40,25 @@ class Scene(Protocol):
         """Stop the server and disconnect its clients."""
 
 
+class Looked:
+    """The tick that one page looks at; none for now."""
+
+    def __init__(self) -> None:
+        self.tick: int | None = None
+        self.first = asyncio.Event()
+        """Set once it has looked at any."""
+
+    def look(self, tick: int | None) -> None:
+        """Look at a tick, or at now."""
+        self.tick = tick
+        if tick is not None:
+            self.first.set()
+
+
 class Show:
     """The scene of one bench and the number of its viewers.
+
+    A page that looks at another moment gets a scene of its own from then on, so that it moves nobody else's.
 
     Parameters
     ----------
@@ -55,6 +72,7 @@ class Show:
         self._scene: Scene | None = None
         self._ready = asyncio.Lock()
         self._task: asyncio.Task[None] | None = None
+        self._own: dict[Looked, tuple[Scene, asyncio.Task[None]]] = {}
 
     @property
     def watchers(self) -> int:
@@ -68,7 +86,7 @@ class Show:
             async with self._ready:
                 if self._scene is None:
                     self._scene = await asyncio.to_thread(build_scene, self._session)
-                    self._task = asyncio.create_task(self._play(self._scene))
+                    self._task = asyncio.create_task(self._play(self._scene, None))
                 return self._scene.path
         except BaseException:
             self._watchers -= 1
@@ -85,27 +103,50 @@ class Show:
             if self._watchers == 0:
                 await self.close()
 
-    async def close(self) -> None:
-        """Stop moving and close the scene."""
-        task, scene, self._task, self._scene = self._task, self._scene, None, None
-        if task is not None:
-            task.cancel()
-            await asyncio.gather(task, return_exceptions=True)
-        if scene is not None:
-            await asyncio.to_thread(scene.close)
+    async def own(self, looked: Looked) -> Path:
+        """Build the scene of one page, as the shared one is now; return its socket."""
+        scene = await asyncio.to_thread(build_scene, self._session)
+        scene.show(observer_of(self._session).pose())
+        self._own[looked] = scene, asyncio.create_task(self._play(scene, looked))
+        return scene.path
 
-    async def _play(self, scene: Scene) -> None:
-        """Show the bench 60 times a second."""
+    async def close_own(self, looked: Looked) -> None:
+        """Close the scene of a page that leaves, if it has one."""
+        if looked in self._own:
+            scene, task = self._own.pop(looked)
+            await _end(scene, task)
+
+    async def close(self) -> None:
+        """Stop moving and close the scenes."""
+        for looked in list(self._own):
+            await self.close_own(looked)
+        task, scene, self._task, self._scene = self._task, self._scene, None, None
+        if task is not None and scene is not None:
+            await _end(scene, task)
+
+    async def _play(self, scene: Scene, looked: Looked | None) -> None:
+        """Show the bench 60 times a second: a page its moment, others now."""
         observer = observer_of(self._session)
-        due = time.monotonic()
+        due, shown = time.monotonic(), None
         while True:
             try:
-                scene.show(observer.pose())
+                at = kept(self._session.history, looked.tick) if looked is not None else None
+                is_seen = looked is not None or self._watchers > len(self._own)
+                if is_seen and (at is None or at != shown):  # a moment of the past stays as it is
+                    scene.show(observer.pose(at))
+                shown = at
             except Exception:
                 log.exception("the 3D view of bench %s failed", self._session.id)
                 return
             due = max(due + FRAME_S, time.monotonic())
             await asyncio.sleep(due - time.monotonic())
+
+
+async def _end(scene: Scene, task: asyncio.Task[None]) -> None:
+    """Stop moving a scene and close it."""
+    task.cancel()
+    await asyncio.gather(task, return_exceptions=True)
+    await asyncio.to_thread(scene.close)
 
 
 class Viewers:

@@ -17,7 +17,7 @@ from server.bench.session import Session
 from server.view3d.gyroscope.orbit import caption, full_scale, magnified, met
 from server.view3d.layout import FloatArray
 from server.view3d.motion import SEEN_HZ, STROBE_HZ
-from server.view3d.pose import Active, acting
+from server.view3d.pose import Active, acting, kept, when
 
 PERIODS, LONG = 3.2, 400.0
 """Drive periods looked at: for the strobe and the orbit, and for the largest values."""
@@ -48,6 +48,8 @@ class GyroscopePose:
         The faults that act.
     caption : str
         The differences from the true motion, in words.
+    when : str
+        The moment in words, if it is not that of now.
     """
 
     places: tuple[tuple[float, float], ...] = ()
@@ -58,6 +60,7 @@ class GyroscopePose:
     largest_force: str = ""
     faults: tuple[Active, ...] = ()
     caption: str = ""
+    when: str = ""
 
 
 class GyroscopeObserver:
@@ -80,10 +83,12 @@ class GyroscopeObserver:
         self._factors = (1.0, 1.0)
         self._half_ring = 100.0
 
-    def pose(self) -> GyroscopePose:
-        """Return the pose of now, or of the moment that the strobe shows."""
+    def pose(self, looked: int | None = None) -> GyroscopePose:
+        """Return the pose of a tick of the history; else that of now, or of the moment that the strobe shows."""
         session, history = self._session, self._session.history
-        head, period = history.end_tick, session.drive_period_ticks or 1.0
+        looked = kept(history, looked)
+        head = history.end_tick if looked is None else looked + 1
+        period = session.drive_period_ticks or 1.0
         first = max(head - math.ceil(PERIODS * period), history.first_tick)
         if head <= history.first_tick:
             return GyroscopePose()
@@ -91,7 +96,7 @@ class GyroscopeObserver:
         largest = np.abs(_finite(history.columns(self._indices, head - round(LONG * period), head, 1))).max(axis=(1, 2))
         self._magnify(largest)
         ticks_s = (session.status.achieved_scale if session.is_running else 0.0) / (session.dt_ms * 1e-3)
-        is_strobed = ticks_s > SEEN_HZ * period
+        is_strobed = looked is None and ticks_s > SEEN_HZ * period
         at = None
         if is_strobed:
             at = met(recent[0 if largest[0] >= largest[1] else 1], (time.monotonic() * STROBE_HZ) % 1.0)
@@ -109,8 +114,9 @@ class GyroscopeObserver:
             rate=_signed(rate, self._half_ring),
             force=force / float(largest[-1]) if follows and largest[-1] > 0.0 else None,
             largest_force=format_short(float(largest[-1]), "uN", 2) if follows else "",
-            faults=acting(session, self._faults, self._known, severities),
+            faults=acting(session, self._faults, self._known, severities, looked),
             caption=caption(self._factors, self._half_ring, is_strobed),
+            when=when(session, looked),
         )
 
     def _magnify(self, largest: FloatArray) -> None:

@@ -64,8 +64,8 @@ class GyroscopeScene(Stage):
             if pose.rate != before.rate:
                 self._rate.text = f"rate {pose.rate}"
             self._show_force(pose, before)
-            if pose.caption != before.caption:
-                self._caption.text = pose.caption
+            if (pose.caption, pose.when) != (before.caption, before.when):
+                self.say(pose.caption, pose.when)
         self._server.flush()
 
     def _show_force(self, pose: GyroscopePose, before: GyroscopePose) -> None:

@@ -2072,6 +2072,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/benches/{bench_id}/captures": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Captures
+         * @description List the captures of a bench; a trace of the signals, start_tick and end_tick of one has every sample of it.
+         */
+        get: operations["list_captures_api_v1_benches__bench_id__captures_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/votes": {
         parameters: {
             query?: never;
@@ -3085,6 +3105,14 @@ export interface components {
             let_go_in_s?: number | null;
         };
         /**
+         * BenchCaptures
+         * @description The captures of a bench, by trigger; the one whose scope was opened last comes last.
+         */
+        BenchCaptures: {
+            /** Triggers */
+            triggers: components["schemas"]["TriggerCaptures"][];
+        };
+        /**
          * BenchList
          * @description The live benches, oldest first.
          */
@@ -3350,6 +3378,26 @@ export interface components {
             share: number;
             /** Loads */
             loads: components["schemas"]["Load"][];
+        };
+        /**
+         * CaptureMark
+         * @description A capture of a triggered panel.
+         */
+        CaptureMark: {
+            /**
+             * Tick
+             * @description The first tick beyond the crossing
+             */
+            tick: number;
+            /**
+             * Trigger Tick
+             * @description Where it lies between ticks, on the line between them
+             */
+            trigger_tick: number;
+            /** Start Tick */
+            start_tick: number;
+            /** End Tick */
+            end_tick: number;
         };
         /**
          * CaseDigest
@@ -7232,6 +7280,41 @@ export interface components {
             share: number;
         };
         /**
+         * TriggerCaptures
+         * @description The captures of one trigger, oldest first.
+         */
+        TriggerCaptures: {
+            /** Signals */
+            signals: string[];
+            /**
+             * Trigger
+             * @description The signal that triggers
+             */
+            trigger: string;
+            /** Edge */
+            edge: string;
+            /** Level */
+            level: number;
+            /** Upper */
+            upper: number | null;
+            /** Hysteresis */
+            hysteresis: number;
+            /** Window Ticks */
+            window_ticks: number;
+            /**
+             * Before Ticks
+             * @description Ticks of the window before the trigger
+             */
+            before_ticks: number;
+            /** Captures */
+            captures: components["schemas"]["CaptureMark"][];
+            /**
+             * Is Short
+             * @description Memory leaves room for no more of them
+             */
+            is_short: boolean;
+        };
+        /**
          * Trip
          * @description Why the board stopped.
          */
@@ -7750,7 +7833,10 @@ export interface components {
              * @default null
              */
             end_tick?: number | null;
-            /** @default null */
+            /**
+             * @description Of a frozen panel, with window_ms: the scope whose captures it looks at
+             * @default null
+             */
             trigger?: components["schemas"]["TriggerSpec"] | null;
             /**
              * Behind
@@ -7819,6 +7905,34 @@ export interface components {
             panel: number;
         };
         ClientMessage: components["schemas"]["Subscribe"] | components["schemas"]["Rearm"] | components["schemas"]["Unsubscribe"] | components["schemas"]["Ack"] | components["schemas"]["Resume"] | components["schemas"]["Pong"] | components["schemas"]["CommandMessage"];
+        /**
+         * CaptureList
+         * @description The captures kept of the trigger of a panel, oldest first: sent when they have changed.
+         *
+         *     Frozen panels show them at full rate, also where the history has gone on.
+         */
+        CaptureList: {
+            /**
+             * Type
+             * @default captures
+             * @constant
+             */
+            type?: "captures";
+            /** Panel */
+            panel: number;
+            /** Captures */
+            captures: components["schemas"]["CaptureMark"][];
+            /**
+             * Most
+             * @description Captures of one trigger
+             */
+            most: number;
+            /**
+             * Is Short
+             * @description Memory leaves room for fewer, or the bench keeps those of too many triggers
+             */
+            is_short: boolean;
+        };
         /**
          * ErrorBody
          * @description An error: one line, the field at fault, a hint.
@@ -8151,7 +8265,7 @@ export interface components {
              */
             dropped_frames: number;
         };
-        ServerMessage: components["schemas"]["Hello"] | components["schemas"]["Status"] | components["schemas"]["Events"] | components["schemas"]["Narrated"] | components["schemas"]["Reply"] | components["schemas"]["ErrorMessage"] | components["schemas"]["Notice"] | components["schemas"]["Ping"];
+        ServerMessage: components["schemas"]["Hello"] | components["schemas"]["Status"] | components["schemas"]["Events"] | components["schemas"]["Narrated"] | components["schemas"]["CaptureList"] | components["schemas"]["Reply"] | components["schemas"]["ErrorMessage"] | components["schemas"]["Notice"] | components["schemas"]["Ping"];
         /**
          * ErrorReply
          * @description The one error shape of every answer.
@@ -12285,6 +12399,37 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Outcomes"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_captures_api_v1_benches__bench_id__captures_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BenchCaptures"];
                 };
             };
             /** @description Refused or failed */

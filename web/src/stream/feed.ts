@@ -1,5 +1,5 @@
 import type { PanelFrame } from "./panel-frame";
-import { type Subscription, tracesOf } from "./wire";
+import { type CaptureList, type Subscription, tracesOf } from "./wire";
 
 const tracesIn = ({ signals, behind }: Subscription): string => JSON.stringify([signals, behind]);
 
@@ -18,12 +18,21 @@ export class Feed {
   due = 0;
   /** The server refused something, so its count of our subscriptions may lag behind ours. */
   uncertain = false;
+  /** Hears which captures its trigger has. */
+  readonly hear: (captures: CaptureList) => void;
 
-  constructor(panel: number, subscription: Subscription, draw: (frame: PanelFrame) => void, everyMs: number) {
+  constructor(
+    panel: number,
+    subscription: Subscription,
+    draw: (frame: PanelFrame) => void,
+    everyMs: number,
+    hear: (captures: CaptureList) => void,
+  ) {
     this.panel = panel;
     this.subscription = subscription;
     this.draw = draw;
     this.everyMs = everyMs;
+    this.hear = hear;
   }
 
   /** Take a picture from the wire, unless it answers an older subscription. */

@@ -39,6 +39,18 @@ describe("Feeds", () => {
     feeds = new Feeds((message) => sent.push(message));
   });
 
+  it("tells a panel, and no other, which captures its trigger has", () => {
+    const [hear, other] = [vi.fn(), vi.fn()];
+    const feed = feeds.open(roll, vi.fn(), 0, hear);
+    feeds.open(roll, vi.fn(), 0, other);
+    const list = { type: "captures", panel: feed.panel, captures: [], most: 50, is_short: false } as const;
+    feeds.captured({ ...list, captures: [] });
+    expect(hear).toHaveBeenCalledExactlyOnceWith(list);
+    expect(other).not.toHaveBeenCalled();
+    feeds.captured({ ...list, captures: [], panel: 999 });
+    expect(hear).toHaveBeenCalledTimes(1);
+  });
+
   it("draws the newest picture once and acknowledges after drawing", () => {
     const draw = vi.fn(() => expect(sent.some((m) => m.type === "ack")).toBe(false));
     const feed = feeds.open(roll, draw);

@@ -1,7 +1,7 @@
 import type { Frame } from "./decode-frame";
 import { Feed } from "./feed";
 import type { PanelFrame } from "./panel-frame";
-import type { ClientMessage, Subscription } from "./wire";
+import type { CaptureList, ClientMessage, Subscription } from "./wire";
 
 const PANEL_IDS = 65535;
 
@@ -25,9 +25,14 @@ export class Feeds {
     return this.feeds.size;
   }
 
-  open(subscription: Subscription, draw: (frame: PanelFrame) => void, everyMs = 0): Feed {
+  open(
+    subscription: Subscription,
+    draw: (frame: PanelFrame) => void,
+    everyMs = 0,
+    hear: (captures: CaptureList) => void = () => undefined,
+  ): Feed {
     while (this.feeds.has(this.nextPanel)) this.nextPanel = (this.nextPanel % PANEL_IDS) + 1;
-    const feed = new Feed(this.nextPanel, subscription, draw, everyMs);
+    const feed = new Feed(this.nextPanel, subscription, draw, everyMs, hear);
     this.nextPanel = (this.nextPanel % PANEL_IDS) + 1;
     this.feeds.set(feed.panel, feed);
     this.subscribe(feed);
@@ -66,6 +71,10 @@ export class Feeds {
   receive(frame: Frame): void {
     this.received = Math.max(this.received, frame.frame);
     for (const picture of frame.panels) this.feeds.get(picture.panel)?.store(picture);
+  }
+
+  captured(captures: CaptureList): void {
+    this.feeds.get(captures.panel)?.hear(captures);
   }
 
   /** Draw what is new and due, and say what has arrived. Returns how many panels were drawn. */

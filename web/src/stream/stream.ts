@@ -95,6 +95,9 @@ function receive(message: ServerMessage): void {
     case "narration":
       useBench.setState((s) => ({ narration: narrate(s.narration, message) }));
       return;
+    case "captures":
+      client.feeds.captured(message);
+      return;
     case "notice":
       if (message.code === "ask_me") useBench.setState((s) => ({ called: s.called + 1 }));
       else useBench.setState({ notice: { code: message.code, message: message.message } });

@@ -9,9 +9,12 @@ export const SUBPROTOCOL = `combbench.v${WIRE_VERSION}`;
 
 export type Trigger = Required<Schemas["TriggerSpec"]>;
 
+export type CaptureList = Schemas["CaptureList"];
+export type CaptureMark = Schemas["CaptureMark"];
+
 export type Subscription = { signals: string[]; width: number; behind?: Required<Schemas["BehindSpec"]>[] } & (
   | { mode: "roll"; window_ms: number }
-  | { mode: "frozen"; start_tick: number; end_tick: number }
+  | { mode: "frozen"; start_tick: number; end_tick: number; window_ms?: number; trigger?: Trigger }
   | { mode: "triggered"; window_ms: number; trigger: Trigger }
 );
 
@@ -35,6 +38,7 @@ export type ServerMessage =
   | Status
   | Schemas["Events"]
   | Schemas["Narrated"]
+  | CaptureList
   | Schemas["Reply"]
   | Schemas["ErrorMessage"]
   | Schemas["Notice"]

@@ -1,3 +1,5 @@
+import { useEffect, useState } from "react";
+
 type Listener = (tick: number | undefined, source: object | undefined) => void;
 
 const listeners = new Set<Listener>();
@@ -20,6 +22,28 @@ export const hover = {
     };
   },
 };
+
+const REST_MS = 120;
+
+/** The tick under a pointer that rests: what is asked of the server for it is not asked at every step of the way. */
+export function useRestingTick(wanted = true): number | undefined {
+  const [rested, setRested] = useState<number | undefined>(undefined);
+  useEffect(() => {
+    if (!wanted) return;
+    let timer: ReturnType<typeof setTimeout> | undefined;
+    const stop = hover.listen((tick) => {
+      clearTimeout(timer);
+      if (tick === undefined) setRested(undefined);
+      else timer = setTimeout(() => setRested(Math.floor(tick)), REST_MS);
+    });
+    return () => {
+      stop();
+      clearTimeout(timer);
+      setRested(undefined);
+    };
+  }, [wanted]);
+  return rested;
+}
 
 /** Where the time panels should look: a tick of the past, or live. */
 export type JumpTarget = { tick: number } | "live";

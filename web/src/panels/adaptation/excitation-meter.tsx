@@ -4,14 +4,17 @@ import { useMay } from "../../api/me";
 import { openVariant } from "../../bench/open-bench";
 import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
+import { middles } from "../../stream/panel-frame";
 import { useFeed } from "../../stream/use-feed";
 import { formatShort, formatSi } from "../../ui/format";
+import { useRestingTick } from "../../ui/hover";
+import { usePanelVisible } from "../../ui/panel-visible";
 import styles from "./adaptation.module.css";
 
 const EVERY_MS = 150;
 const USUAL_LEAST = 1e-5;
 
-/** How much the input tells: the smallest eigenvalue of the windowed Gram matrix of the regressor, against the least that will do. */
+/** How much the input tells, now or at the tick a pointer rests at: the smallest eigenvalue of the windowed Gram matrix of the regressor, against the least that will do. */
 export function ExcitationMeter() {
   const signals = useBench((s) => s.bench?.signals);
   const parameters = useBench((s) => s.bench?.parameters);
@@ -24,23 +27,19 @@ export function ExcitationMeter() {
   const least = section?.least_excitation ?? USUAL_LEAST;
   const fill = useRef<HTMLDivElement>(null);
   const words = useRef<HTMLElement>(null);
-  const subscription = useMemo(
-    () =>
-      source
-        ? {
-            mode: "roll" as const,
-            signals: [`${source}.excitation_relative`, `${source}.excitation`, `${source}.identifiable`],
-            window_ms: 0.5,
-            width: 2,
-          }
-        : undefined,
-    [source],
-  );
+  const rested = useRestingTick(usePanelVisible());
+  const subscription = useMemo(() => {
+    if (!source) return undefined;
+    const signals = [`${source}.excitation_relative`, `${source}.excitation`, `${source}.identifiable`];
+    return rested === undefined
+      ? { mode: "roll" as const, signals, window_ms: 0.5, width: 2 }
+      : { mode: "frozen" as const, signals, start_tick: rested, end_tick: rested + 1, width: 1 };
+  }, [source, rested]);
   useFeed(
     subscription,
     (frame) => {
       if (!fill.current || !words.current) return;
-      const [relative, , identifiable] = frame.latest;
+      const [relative, , identifiable] = frame.frozen ? [0, 1, 2].map((i) => middles(frame, i)[0]) : frame.latest;
       fill.current.style.setProperty("--share", `${100 * meterShare(relative)}%`);
       fill.current.dataset.enough = String(identifiable > 0);
       words.current.textContent = `${formatSi(Math.max(0, relative), "", 2)}: ${

@@ -14,7 +14,7 @@ import { scopeSubscription } from "../scope/use-time-view";
 import styles from "./lanes.module.css";
 import type { LaneTime } from "./use-lane-time";
 
-/** A frame of device time, the ticks of it that are seen, and the one under the pointer. */
+/** A frame of device time, the ticks of it that are seen, and of these the one under the pointer. */
 export interface LaneShown {
   frame: PanelFrame;
   span: { start: number; end: number };
@@ -94,7 +94,9 @@ export function LaneCanvas({ label, legend, signals, time, left, right, paint, o
       dirty.current = false;
       ctx.setTransform(size.ratio, 0, 0, size.ratio, 0, 0);
       ctx.clearRect(0, 0, size.width, size.height);
-      paint(ctx, size, { frame: frame.current, span: shown.current, hover: hover.tick }, { scheme, fontSize });
+      const { start, end } = shown.current;
+      const inSight = hover.tick !== undefined && hover.tick >= start && hover.tick < end ? hover.tick : undefined;
+      paint(ctx, size, { frame: frame.current, span: shown.current, hover: inSight }, { scheme, fontSize });
     });
   }, [visible, canvas, size, paint, scheme, fontSize]);
 

@@ -3,11 +3,18 @@ import type { RefObject } from "react";
 import { ticketed } from "../../api/launch";
 import { PictureMenu } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
+import type { CaptureMark } from "../../stream/wire";
 import { scopePicture } from "./paint-scope";
 import type { ScopePlot } from "./scope-plot";
 
+interface ExportMenuProps {
+  plot: RefObject<ScopePlot | undefined>;
+  /** The capture it stands on. */
+  capture: CaptureMark | undefined;
+}
+
 /** What the scope shows as a file: a picture with titled axes and events, or every sample of the span. */
-export function ExportMenu({ plot }: { plot: RefObject<ScopePlot | undefined> }) {
+export function ExportMenu({ plot, capture }: ExportMenuProps) {
   const take = () => {
     const { bench } = useBench.getState();
     const shown = plot.current?.picture();
@@ -21,8 +28,8 @@ export function ExportMenu({ plot }: { plot: RefObject<ScopePlot | undefined> })
     const query = new URLSearchParams({
       format,
       signals: picture.traces.map((t) => t.name).join(","),
-      start_tick: String(Math.max(bench.first_tick, Math.floor(picture.span.start))),
-      end_tick: String(Math.ceil(picture.span.end)),
+      start_tick: String(Math.max(capture?.start_tick ?? bench.first_tick, Math.floor(picture.span.start))),
+      end_tick: String(Math.min(capture?.end_tick ?? Number.MAX_SAFE_INTEGER, Math.ceil(picture.span.end))),
     });
     ticketed(`./api/v1/benches/${bench.id}/trace?${query}`).then((address) => window.location.assign(address));
   };

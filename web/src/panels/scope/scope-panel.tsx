@@ -4,12 +4,14 @@ import { behindText, useBehind } from "../../bench/behind";
 import { marksNow } from "../../bench/marks";
 import { NORMAL_PX, useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
+import type { PanelFrame } from "../../stream/panel-frame";
 import { onBench, type ScopeConfig } from "../../stream/scope-config";
 import { stream } from "../../stream/stream";
 import { useFeed } from "../../stream/use-feed";
 import { EmptyState } from "../../ui/empty-state";
 import { formatSi } from "../../ui/format";
 import { useScheme } from "../../ui/use-canvas";
+import { CaptureStrip } from "./capture-strip";
 import { EnvelopeNote } from "./envelope-note";
 import { ExportMenu } from "./export-menu";
 import { MeasureStrip } from "./measure-strip";
@@ -20,6 +22,7 @@ import { ScopePlot } from "./scope-plot";
 import { ScopeToolbar } from "./scope-toolbar";
 import { SignalPicker } from "./signal-picker";
 import { RearmContext, type TriggerState } from "./trigger-menu";
+import { useCaptures } from "./use-captures";
 import { useScopeKeys } from "./use-scope-keys";
 import { scopeSubscription, useTimeView } from "./use-time-view";
 import { useTraces, useTracesBehind } from "./use-traces";
@@ -43,7 +46,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
   const tracesBehind = useTracesBehind(traces, behind, difference);
   const host = useRef<HTMLDivElement>(null);
   const plot = useRef<ScopePlot | undefined>(undefined);
-  const { view, span, look, goLive } = useTimeView(config.windowMs, dtMs, (start, end) =>
+  const { view, span, look, stand, goLive } = useTimeView(config.windowMs, dtMs, (start, end) =>
     plot.current?.move(start, end),
   );
   const [pixels, setPixels] = useState(0);
@@ -56,12 +59,15 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
     return scopeSubscription({ ...config, signals: traces.map((t) => t.name) }, view, pixels, dtMs, behind);
   }, [config, traces, view, pixels, dtMs, behind]);
 
-  const feed = useFeed(subscription, (frame) => {
+  const capture = view.kind === "past" ? view.capture : undefined;
+  const { captures, hear, browse } = useCaptures(config, capture, stand, goLive);
+  const draw = (frame: PanelFrame) => {
     if (frame.frozen !== (span.current !== undefined)) return;
-    plot.current?.draw(frame, span.current);
+    plot.current?.draw(frame, span.current, capture?.trigger_tick);
     const state: TriggerState = frame.waiting ? "waiting" : frame.triggered ? "triggered" : "none";
     if (state !== trigger) setTrigger(state);
-  });
+  };
+  const feed = useFeed(subscription, draw, 0, hear);
 
   useEffect(() => {
     if (!host.current || traces.length === 0) return;
@@ -102,7 +108,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
       ? formatSi((shown.span.start + share * (shown.span.end - shown.span.start)) * shown.frame.dtMs, "ms")
       : "";
   };
-  const onKeyDown = useScopeKeys(plot, look, goLive);
+  const onKeyDown = useScopeKeys(plot, look, goLive, browse);
   if (dtMs === undefined)
     return <EmptyState title="No bench yet">The scope fills as soon as a bench is connected.</EmptyState>;
   return (
@@ -114,7 +120,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
           past={view.kind === "past"}
           onLive={goLive}
           trigger={trigger}
-          exporter={traces.length > 0 && <ExportMenu plot={plot} />}
+          exporter={traces.length > 0 && <ExportMenu plot={plot} capture={capture} />}
         >
           {!config.measure && ( // the table names them too, and its rows want the room
             <ScopeLegend
@@ -146,7 +152,9 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
               // biome-ignore lint/a11y/noNoninteractiveTabindex: the plot is worked by keys
               tabIndex={0}
               onKeyDown={onKeyDown}
-              aria-label="Plot. Arrow keys move, plus and minus zoom, L returns to live."
+              aria-label={`Plot. Arrow keys move, plus and minus zoom, L returns to live.${
+                captures ? " Page up and page down go through the captures, End to the newest." : ""
+              }`}
             />
             <EnvelopeNote traces={traces} plot={plot} />
             {config.measure && area && (
@@ -159,6 +167,9 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
               />
             )}
           </div>
+          {captures && (
+            <CaptureStrip captures={captures} standing={capture} dtMs={dtMs} onStand={stand} onBrowse={browse} />
+          )}
           {behind.length > 0 && <p className={styles.behind}>{behindText(behind, difference)}</p>}
           {config.measure && <MeasureStrip traces={traces} plot={plot} at={cursors} />}
         </>

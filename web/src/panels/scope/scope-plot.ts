@@ -59,8 +59,8 @@ export class ScopePlot {
   private ranges: (AxisRange | undefined)[] = [];
   private envelopes: Envelope[] = [];
   private times: Float64Array = new Float64Array(0);
-  /** Tick that the time axis calls zero: 0, or the trigger. */
-  private origin = 0;
+  /** Tick of the trigger, which the time axis calls zero. */
+  private trigger: number | undefined;
   private hovered = false;
   private readonly raster = new BarRaster();
   /** What the raster is laid over the grid with. */
@@ -96,10 +96,15 @@ export class ScopePlot {
     return (this.plot.bbox.width / uPlot.pxRatio) * Math.min(window.devicePixelRatio, 2);
   }
 
-  draw(frame: PanelFrame, span?: { start: number; end: number }): void {
+  /** Draw a frame: the span of it that is looked at, about the trigger of a capture or its own. */
+  draw(
+    frame: PanelFrame,
+    span?: { start: number; end: number },
+    trigger = frame.triggered ? frame.triggerTick : undefined,
+  ): void {
     this.frame = frame;
     this.span = span ?? { start: frame.startTick, end: frame.endTick };
-    this.origin = frame.triggered ? frame.triggerTick : 0;
+    this.trigger = trigger;
     const { columns, data } = frame;
     this.envelopes = Array.from({ length: frame.signals }, (_, i) => ({
       low: data.subarray(i * 2 * columns, (i * 2 + 1) * columns),
@@ -121,7 +126,7 @@ export class ScopePlot {
   /** Show another span of what is there, at once; the data follow. */
   move(start: number, end: number): void {
     this.span = { start, end };
-    if (this.frame) this.draw(this.frame, this.span);
+    if (this.frame) this.draw(this.frame, this.span, this.trigger);
   }
 
   /** Value of a trace at the hovered tick if that is in sight, else the newest one. */
@@ -144,7 +149,7 @@ export class ScopePlot {
     return this.frame && { ...this.shown(this.frame), bands: this.bands()?.traces ?? [] };
   }
 
-  private shown({ triggered, dtMs }: PanelFrame): ScopeShown {
+  private shown({ dtMs }: PanelFrame): ScopeShown {
     return {
       traces: this.options.traces,
       envelopes: this.envelopes,
@@ -155,7 +160,7 @@ export class ScopePlot {
       ranges: this.units.map((_, axis) => this.ranges[axis] ?? { min: -1, max: 1 }),
       span: this.span,
       origin: this.origin,
-      isTriggered: triggered,
+      isTriggered: this.trigger !== undefined,
       isLog: this.options.isLog,
       dtMs,
       marks: this.options.marks(),
@@ -172,6 +177,11 @@ export class ScopePlot {
   /** The scale of a unit's axis, or undefined if it has got none. */
   scaleOf(unit: string): UnitScale | undefined {
     return this.scales[this.units.indexOf(unit)];
+  }
+
+  /** Tick that the time axis calls zero. */
+  private get origin(): number {
+    return this.trigger ?? 0;
   }
 
   private model(): ScopeModel {

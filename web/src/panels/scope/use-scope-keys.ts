@@ -2,11 +2,12 @@ import { type KeyboardEvent, type RefObject, useCallback } from "react";
 import type { ScopePlot } from "./scope-plot";
 import { zoomSpan } from "./use-time-view";
 
-/** Arrow keys pan, plus and minus zoom, L goes live: what the mouse does, from the keyboard. */
+/** Arrow keys pan, plus and minus zoom, L goes live, page keys go through captures: all without a mouse. */
 export function useScopeKeys(
   plot: RefObject<ScopePlot | undefined>,
   look: (start: number, end: number) => void,
   goLive: () => void,
+  browse: (by: number) => void,
 ) {
   return useCallback(
     (event: KeyboardEvent) => {
@@ -19,6 +20,9 @@ export function useScopeKeys(
       else if (event.key === "+" || event.key === "=") zoom(0.7);
       else if (event.key === "-") zoom(1 / 0.7);
       else if (event.key === "l" || event.key === "L") goLive();
+      else if (event.key === "PageUp") browse(-1);
+      else if (event.key === "PageDown") browse(1);
+      else if (event.key === "End") browse(Number.POSITIVE_INFINITY);
       else return;
       event.preventDefault();
       event.stopPropagation();
@@ -29,6 +33,6 @@ export function useScopeKeys(
         look(next.start, next.end);
       }
     },
-    [plot, look, goLive],
+    [plot, look, goLive, browse],
   );
 }

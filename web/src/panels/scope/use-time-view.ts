@@ -1,7 +1,7 @@
 import { useCallback, useEffect, useRef, useState } from "react";
 import type { Behind } from "../../bench/behind";
 import type { ScopeConfig } from "../../stream/scope-config";
-import type { Subscription } from "../../stream/wire";
+import type { CaptureMark, Subscription } from "../../stream/wire";
 import { jump } from "../../ui/hover";
 
 const LIVE: TimeWindow = { kind: "live" };
@@ -9,7 +9,7 @@ const REFETCH_MS = 60;
 
 /**
  * Where a time panel looks. `span` moves at once with the hand and holds ticks while the panel is detached;
- * `view` follows a moment later and asks the server for the detail.
+ * `view` follows a moment later and asks the server for the detail. On a capture it stands until it goes live.
  */
 export function useTimeView(windowMs: number, dtMs: number | undefined, onMove: (start: number, end: number) => void) {
   const span = useRef<{ start: number; end: number } | undefined>(undefined);
@@ -17,35 +17,45 @@ export function useTimeView(windowMs: number, dtMs: number | undefined, onMove: 
   const move = useRef(onMove);
   move.current = onMove;
   const [view, setView] = useState<TimeWindow>(LIVE);
+  const capture = useRef<CaptureMark | undefined>(undefined);
 
   const goLive = useCallback(() => {
     clearTimeout(refetch.current);
-    span.current = undefined;
+    span.current = capture.current = undefined;
     setView(LIVE);
+  }, []);
+
+  const stand = useCallback((on: CaptureMark) => {
+    clearTimeout(refetch.current);
+    capture.current = on;
+    const shown = { start: on.start_tick, end: on.end_tick };
+    span.current = shown;
+    setView({ kind: "past", ...shown, capture: on });
   }, []);
 
   const look = useCallback((start: number, end: number) => {
     span.current = { start, end };
     move.current(start, end);
     clearTimeout(refetch.current);
-    refetch.current = setTimeout(() => setView({ kind: "past", start, end }), REFETCH_MS);
+    refetch.current = setTimeout(() => setView({ kind: "past", start, end, capture: capture.current }), REFETCH_MS);
   }, []);
 
   useEffect(
     () =>
       jump.listen((target) => {
         if (target === "live") return goLive();
+        capture.current = undefined;
         const width = windowMs / (dtMs ?? 1);
         look(target.tick - width * 0.25, target.tick + width * 0.75);
       }),
     [goLive, look, windowMs, dtMs],
   );
   useEffect(() => () => clearTimeout(refetch.current), []);
-  return { view, span, look, goLive };
+  return { view, span, look, stand, goLive };
 }
 
-/** What a scope looks at: the newest data, or a span of the past that stays. */
-export type TimeWindow = { kind: "live" } | { kind: "past"; start: number; end: number };
+/** What a scope looks at: the newest data, or a span of the past that stays, of a capture or not. */
+export type TimeWindow = { kind: "live" } | { kind: "past"; start: number; end: number; capture?: CaptureMark };
 
 const LEAST_TICKS = 8;
 
@@ -73,12 +83,13 @@ export function scopeSubscription(
   };
   const most = Math.min(4096, Math.floor(MOST_POINTS / (config.signals.length * (1 + behind.length))));
   const width = (ticks: number) => Math.max(2, Math.min(Math.round(pixels), Math.ceil(ticks), most));
+  const window_ms = config.windowMs;
   if (window.kind === "past") {
     const start_tick = Math.floor(window.start);
     const end_tick = Math.max(start_tick + 1, Math.ceil(window.end));
-    return { mode: "frozen", ...asked, start_tick, end_tick, width: width(end_tick - start_tick) };
+    const scope = config.mode === "triggered" && { window_ms, trigger: config.trigger };
+    return { mode: "frozen", ...asked, start_tick, end_tick, width: width(end_tick - start_tick), ...scope };
   }
-  const window_ms = config.windowMs;
   if (config.mode === "triggered")
     return { mode: "triggered", ...asked, window_ms, width: width(window_ms / dtMs), trigger: config.trigger };
   return { mode: "roll", ...asked, window_ms, width: width(window_ms / dtMs) };

@@ -3,6 +3,7 @@ import { ticketed } from "../../api/launch";
 import { isInFrame, sessionHeaders } from "../../api/session";
 import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
+import { hover } from "../../ui/hover";
 import { usePageVisible } from "../../ui/panel-visible";
 import { useScheme } from "../../ui/use-canvas";
 import styles from "./view3d.module.css";
@@ -10,6 +11,8 @@ import styles from "./view3d.module.css";
 const POLL_MS = 1000;
 /** The traces come first: loading the 3D page holds the main thread for a while. */
 const HEAD_START_MS = 1200;
+/** Between two moments that the device is shown at under a moving pointer. */
+const HOVER_MS = 50;
 /** Out of sight for so long, it lets go of its scene, which costs the server; the camera is kept. */
 const IDLE_MS = 120_000;
 
@@ -81,8 +84,9 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
     return () => clearInterval(timer);
   }, [closed, path, visible, gone]);
 
-  const tell = (message: { scheme?: string; fontPx?: number; camera?: Camera; look?: Look }) =>
+  const tell = (message: { scheme?: string; fontPx?: number; camera?: Camera; look?: Look; tick?: number | null }) =>
     frame.current?.contentWindow?.postMessage(message, window.location.origin);
+  useHovered(connected > 0 && visible, (tick) => tell({ tick }));
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: a page that has just connected has to be told
   useEffect(() => tell({ scheme, fontPx }), [scheme, fontPx, connected]);
@@ -127,6 +131,34 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
       )}
     </div>
   );
+}
+
+/** Tell the tick under the pointer, at most so often, and null at once when there is none any more. */
+function useHovered(wanted: boolean, tell: (tick: number | null) => void): void {
+  const say = useRef(tell);
+  say.current = tell;
+  useEffect(() => {
+    if (!wanted) return;
+    let timer: ReturnType<typeof setTimeout> | undefined;
+    let told: number | null = null;
+    const now = () => {
+      timer = undefined;
+      const tick = hover.tick === undefined ? null : Math.floor(hover.tick);
+      if (tick === told) return;
+      told = tick;
+      say.current(tick);
+      timer = setTimeout(now, HOVER_MS);
+    };
+    const stop = hover.listen((tick) => {
+      if (tick === undefined) clearTimeout(timer);
+      if (tick === undefined || timer === undefined) now();
+    });
+    return () => {
+      stop();
+      clearTimeout(timer);
+      if (told !== null) say.current(null);
+    };
+  }, [wanted]);
 }
 
 /** Where the frame is loaded from; in a page that has no cookie, by tickets that are made for each time it loads. */

@@ -10,7 +10,9 @@ import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatClock } from "../../ui/format";
 import { Formula } from "../../ui/formula";
+import { useRestingTick } from "../../ui/hover";
 import { NumberField } from "../../ui/number-field";
+import { usePanelVisible } from "../../ui/panel-visible";
 import { ModelTable } from "./model-table";
 import styles from "./why.module.css";
 import { correctionLatex, densityLatex, floorLatex, posteriorLatex } from "./why-latex";
@@ -23,7 +25,11 @@ const LAST_TICK = 2 ** 53;
 export function WhyPanel() {
   const bench = useBench((s) => s.bench?.id);
   const diagnosers = useBench((s) => s.bench?.diagnosers);
-  const sample = useView((s) => s.sample);
+  const picked = useView((s) => s.sample);
+  const rested = useRestingTick(usePanelVisible());
+  const isKept = useBench((s) => rested !== undefined && rested > (s.bench?.first_tick ?? 0));
+  const tick = isKept ? rested : picked?.tick;
+  const sample = picked && tick !== undefined ? { ...picked, tick } : undefined;
   const {
     answer: account,
     refusal,

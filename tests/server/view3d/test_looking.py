@@ -1,0 +1,175 @@
+"""A page that looks at another moment: the pose of that tick from the history, and nobody else's picture moves."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+import zstandard
+from websockets.exceptions import ConnectionClosed
+
+from server.view3d.gyroscope.pose import GyroscopeObserver
+from server.view3d.layout import UM_PER_UNIT
+from server.view3d.pose import Observer
+from server.view3d.viewers import observer_of
+from tests.server.people.group import watcher
+from tests.server.view3d.test_view3d import join
+
+
+def look(page: Any, tick: int | None) -> None:
+    page.send(msgspec.msgpack.encode({"type": "look", "tick": tick}))
+
+
+def stepped(live: Any, *commands: tuple[int, dict[str, Any]], ticks: int, **bench: Any) -> Any:
+    """Return a session that stands, on which something was done at some ticks."""
+    made = live.bench(paused=True, **bench)["id"]
+    session = live.service.benches.get(made)
+    for tick, command in [*commands, (ticks, {})]:
+        while (left := tick - session.board.tick) > 0:
+            assert live.command(made, "step", ticks=min(left, 1000)).status_code == 200
+        if command:
+            answer = live.command(made, **command)
+            assert answer.status_code == 200, answer.text
+    return session
+
+
+def sample(session: Any, name: str, tick: int) -> float:
+    return float(session.history.read(session.indices([name]), tick, tick + 1)[0, 0])
+
+
+def test_a_pose_is_that_of_the_tick(live: Any) -> None:
+    session = stepped(
+        live,
+        (300, {"fault": "added_mass", "severity": 0.2}),
+        (500, {"heal": ["added_mass"]}),
+        (700, {"fault": "added_mass", "severity": 0.4}),
+        ticks=900,
+    )
+    for tick, severity in ((250, None), (400, 0.2), (600, None), (800, 0.4)):
+        # one that has never looked before: the log tells the parameters
+        observer = observer_of(session)
+        assert isinstance(observer, Observer)
+        pose = observer.pose(tick)
+        factor = observer._factor
+        assert pose.displacement_um == pytest.approx(factor * sample(session, "plant.displacement", tick), rel=1e-6)
+        assert pose.reference_um == pytest.approx(factor * sample(session, "model.displacement", tick), rel=1e-6)
+        winner = int(sample(session, "kalman.winner", tick))
+        name = session.board.spec.diagnosers["kalman"].params.hypotheses[winner].name
+        estimate = sample(session, "sensor.displacement", tick) - sample(session, f"kalman.residual.{name}", tick)
+        assert pose.estimate_um == pytest.approx(factor * estimate, rel=1e-6)
+        assert [fault.params.severity for fault in pose.faults] == ([] if severity is None else [severity])
+        assert pose.when == f"at {tick * session.dt_ms:.3f}\u00a0ms"
+    assert observer.pose(session.history.end_tick) == observer.pose(None) == observer.pose(-1)
+    assert observer.pose().when == ""
+
+
+def test_a_pose_has_the_light_of_then(live: Any) -> None:
+    ideal = {"set": {"sensor.kind": "ideal"}}
+    alone = {"sensors.quadrature_kalman.always": False}
+    session = stepped(live, (300, ideal), scenario="ch2-dual-beam", set=alone, ticks=500)
+
+    def light(tick: int | None) -> list[bool]:
+        observer = observer_of(session)
+        assert isinstance(observer, Observer)
+        return [beam.is_through for beam in observer.pose(tick).lasers]
+
+    assert light(250) == [True, True]
+    assert light(450) == light(None) == []
+
+
+def test_a_gyroscope_is_shown_as_it_was(live: Any) -> None:
+    session = stepped(live, scenario="gyro-adaptive", ticks=3000)
+    observer = observer_of(session)
+    assert isinstance(observer, GyroscopeObserver)
+    for tick in (1200, 2345):
+        pose = observer.pose(tick)
+        x, y = (sample(session, f"plant.{axis}", tick) for axis in session.board.spec.axes[:2])
+        np.testing.assert_allclose(pose.places[0], np.array(observer._factors) * (x, y), rtol=1e-6)
+        assert pose.when.startswith("at ") and "strobe" not in pose.caption
+    assert observer.pose(10**9).when == ""
+
+
+def moments(page: Any, enough: Callable[[list[str]], bool], seconds: float = 30.0) -> list[str]:
+    """Take what a scene sends until it has said enough about the moment it shows; return what it said."""
+    said: list[str] = []
+    end = time.monotonic() + seconds
+    while not enough(said):
+        data = page.recv(timeout=max(0.01, end - time.monotonic()))
+        packed = zstandard.ZstdDecompressor().decompress(data[16 : 16 + int.from_bytes(data[8:16], "little")])
+        for message in msgspec.msgpack.decode(packed)["messages"]:
+            told = message.get("props") or message.get("updates") or {}
+            if message.get("name") == "/when" and "text" in told:
+                said.append(told["text"].replace("\u00a0", " "))
+    return said
+
+
+def quiet(page: Any) -> list[str]:
+    """Take what comes until nothing comes for a while."""
+    said: list[str] = []
+    with contextlib.suppress(TimeoutError):
+        while True:
+            said += moments(page, bool, 1.0)
+    return said
+
+
+def test_only_the_page_that_looks_is_moved_and_it_comes_back(live: Any) -> None:
+    session = stepped(live, ticks=900)
+    show = live.service.viewers.show_of(session)
+    assert session.dt_ms == 0.02
+    with join(live, {"id": session.id}) as page, join(live, {"id": session.id}) as other:
+        assert moments(page, bool) == moments(other, bool) == [""]
+        quiet(page), quiet(other)
+        shared = show._scene._shown
+        look(page, 250)
+        moments(page, lambda said: said[-1:] == ["at 5.000 ms"])
+        (looked, (own, _)) = next(iter(show._own.items()))
+        assert looked.tick == 250
+        assert own._shuttle.position[0] == pytest.approx(own._shown.displacement_um / UM_PER_UNIT, rel=1e-5)
+        assert own._shown.displacement_um != shared.displacement_um
+        assert quiet(other) == []
+        assert show._scene._shown == shared and shared.when == ""
+        look(page, None)
+        assert moments(page, bool) == [""]
+        assert own._shown == shared
+        assert show.watchers == 2 and len(show._own) == 1
+    end = time.monotonic() + 20
+    while show._own or show._scene is not None:
+        assert time.monotonic() < end, "a scene stays lit for nobody"
+        time.sleep(0.05)
+
+
+def test_a_tick_that_the_history_has_not_leaves_the_page_with_now(live: Any) -> None:
+    session = stepped(live, ticks=300)
+    show = live.service.viewers.show_of(session)
+    with join(live, {"id": session.id}) as page:
+        moments(page, bool)
+        look(page, 10**12)
+        assert set(quiet(page)) <= {""}
+        for said in ({"type": "look", "tick": "x"}, {"type": "look"}, {"type": "look", "tick": 1, "more": 2}):
+            page.send(msgspec.msgpack.encode(said))
+        page.send(b"\x81" * 40)
+        look(page, 100)
+        moments(page, lambda said: said[-1:] == ["at 2.000 ms"])
+        assert len(show._own) == 1
+        live.http.delete(f"/api/v1/benches/{session.id}")
+        with pytest.raises(ConnectionClosed):
+            moments(page, lambda _: False)
+    assert not show._own
+
+
+def test_watchers_look_too_and_a_fault_that_is_hidden_ends_it(live: Any) -> None:
+    session = stepped(live, ticks=300)
+    guest = watcher(live, session.id)
+    with join(live, {"id": session.id}, additional_headers=guest.headers) as page:
+        moments(page, bool)
+        look(page, 100)
+        moments(page, lambda said: said[-1:] == ["at 2.000 ms"])
+        # what is hidden from now on closes the scene of a page that looks, too
+        assert live.http.post(f"/api/v1/benches/{session.id}/blind", json={"seed": 1}).status_code == 201
+        with pytest.raises(ConnectionClosed):
+            moments(page, lambda _: False)
