@@ -23,6 +23,7 @@ from core.table import Table
 from scenarios.expectation import Expectation, Verdict, overall
 from scenarios.measure.stretch import Stretch
 from scenarios.own import compile_apart
+from scenarios.printed import Printed
 from scenarios.studies import parse_study
 
 MAX_SAMPLES = 200_000_000
@@ -44,6 +45,7 @@ class Head(Table):
     duration_ms: float | None = Field(None, gt=0, le=LONGEST_MS)
     events: list[dict[str, Any]] = Field([], max_length=100_000)
     expect: list[Expectation] = Field([], max_length=1000)
+    printed: list[Printed] = Field([], max_length=200)
     metrics: Stretch = Stretch()
     study: dict[str, Any] | None = None
 
@@ -106,6 +108,19 @@ class Scenario:
             for path in entry.fitted:
                 if not has(document, path):
                     raise InputError(f"this scenario has no {short(path)}", f"expect.{position}.fitted")
+        for position, mark in enumerate([] if is_alike else self.head.printed):
+            self._check_printed(mark, f"printed.{position}")
+
+    def _check_printed(self, entry: Printed, field: str) -> None:
+        """Refuse a printed mark of a metric that nothing is expected of, or of an event that has no moment."""
+        if entry.metric and entry.metric not in [row.metric for row in self.head.expect]:
+            raise InputError(f"this scenario expects nothing of {short(entry.metric)}", f"{field}.metric")
+        if entry.event is None:
+            return
+        if entry.event >= len(self.events):
+            raise InputError(f"there are {len(self.events)} events, counted from 0", f"{field}.event")
+        if self.events[entry.event][0].tick(self.spec.dt_ms) is None or self.events[entry.event][0].when:
+            raise InputError("this event waits for a condition; take one at a moment", f"{field}.event")
 
     @classmethod
     def load(cls, text: str | Document, like: Scenario | None = None) -> Scenario:
