@@ -100,32 +100,46 @@ def marks(scenario: Scenario, signals: Sequence[Signal], metric: str | None = No
 
 
 def check_marks(scenario: Scenario, signals: Sequence[Signal]) -> None:
-    """Refuse marks of signals that the bench of a scenario does not have, or of another unit.
+    """Refuse marks that the bench of a scenario cannot draw, or that nothing judges.
 
     Raises
     ------
     InputError
         Naming the first of them.
     """
-    for position, mark in enumerate(marks(scenario, signals)):
-        if mark.problem:
-            raise InputError(mark.problem, f"printed.{position}.signal")
+    units = {signal.name: signal.unit for signal in signals}
+    for position, entry in enumerate(scenario.head.printed):
+        field, problem = _problem(entry, scenario, units)
+        if not problem and entry.metric and entry.metric not in [row.metric for row in scenario.head.expect]:
+            field, problem = "metric", f"this scenario expects nothing of {entry.metric}"
+        if problem:
+            raise InputError(problem, f"printed.{position}.{field}")
 
 
 def _mark(entry: Printed, scenario: Scenario, units: Mapping[str, str]) -> Mark:
-    unit = units.get(entry.signal)
-    problem = ""
-    if unit is None:
-        problem = f"this bench has no signal {entry.signal}"
-    elif unit != entry.unit:
-        problem = f"{entry.signal} is in {unit or 'no unit'}, the mark in {entry.unit or 'no unit'}"
-    dt_ms = scenario.spec.dt_ms
-    since = 0 if entry.event is None else scenario.events[entry.event][0].tick(dt_ms) or 0
-    first, last = entry.ticks(since, dt_ms)
+    _, problem = _problem(entry, scenario, units)
+    since = 0
+    if entry.event is not None and not problem:
+        since = scenario.events[entry.event][0].tick(scenario.spec.dt_ms) or 0
+    first, last = entry.ticks(since, scenario.spec.dt_ms)
     said = entry.model_dump(
         include={"figure", "section", "words", "number", "reading", "signal", "unit", "low", "high"}
     )
     return Mark(**said, kind=entry.kind, values=entry.values, from_tick=first, until_tick=last, problem=problem)
+
+
+def _problem(entry: Printed, scenario: Scenario, units: Mapping[str, str]) -> tuple[str, str]:
+    """Return the field that is wrong with a mark, and why; nothing if it can be drawn."""
+    unit, events = units.get(entry.signal), scenario.events
+    if unit is None:
+        return "signal", f"this bench has no signal {entry.signal}"
+    if unit != entry.unit:
+        return "unit", f"{entry.signal} is in {unit or 'no unit'}, the mark in {entry.unit or 'no unit'}"
+    if entry.event is not None and entry.event >= len(events):
+        return "event", f"there are {len(events)} events, counted from 0"
+    if entry.event is not None and (events[entry.event][0].when or events[entry.event][0].tick(1.0) is None):
+        return "event", "this event waits for a condition; take one at a moment"
+    return "", ""
 
 
 def _claim(entry: Expectation, measured: float | None, drawn: list[Mark], is_over: bool) -> Claim:

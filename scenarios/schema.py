@@ -108,19 +108,6 @@ class Scenario:
             for path in entry.fitted:
                 if not has(document, path):
                     raise InputError(f"this scenario has no {short(path)}", f"expect.{position}.fitted")
-        for position, mark in enumerate([] if is_alike else self.head.printed):
-            self._check_printed(mark, f"printed.{position}")
-
-    def _check_printed(self, entry: Printed, field: str) -> None:
-        """Refuse a printed mark of a metric that nothing is expected of, or of an event that has no moment."""
-        if entry.metric and entry.metric not in [row.metric for row in self.head.expect]:
-            raise InputError(f"this scenario expects nothing of {short(entry.metric)}", f"{field}.metric")
-        if entry.event is None:
-            return
-        if entry.event >= len(self.events):
-            raise InputError(f"there are {len(self.events)} events, counted from 0", f"{field}.event")
-        if self.events[entry.event][0].tick(self.spec.dt_ms) is None or self.events[entry.event][0].when:
-            raise InputError("this event waits for a condition; take one at a moment", f"{field}.event")
 
     @classmethod
     def load(cls, text: str | Document, like: Scenario | None = None) -> Scenario:

@@ -98,6 +98,7 @@ _DOORS = {
         GET {BENCH}/diagnosers/{{name}}/turn
         GET {BENCH}/diagnosers/{{name}}/aliases
         GET {BENCH}/readouts/{{name}}
+        GET {BENCH}/claims
         GET {BENCH}/snapshots
         GET {BENCH}/recordings
         SOCKET {BENCH}/stream  *

@@ -48,9 +48,6 @@ def scenario(*printed: dict[str, Any], **rest: Any) -> Scenario:
         ({"number": "4"}, "printed.0", "not in the words"),
         ({"low": 1.5}, "printed.0", "1.5 is drawn and not in the words"),
         ({"after_ms": 3.0, "until_ms": 2.0}, "printed.0", "after_ms < until_ms"),
-        ({"metric": "control.rms_error_um"}, "printed.0.metric", "expects nothing of"),
-        ({"event": 2}, "printed.0.event", "2 events"),
-        ({"event": 1}, "printed.0.event", "waits for a condition"),
         ({"colour": "red"}, "printed.0.colour", ""),
     ],
 )
@@ -75,17 +72,23 @@ def test_times_count_from_the_event() -> None:
     assert found == [("band", 0, None), ("band", 40, 70), ("moment", 33, 33), ("moment", 20, 20)]
 
 
-def test_a_mark_is_of_a_signal_in_its_unit() -> None:
-    for change, words in (
-        ({"signal": "plant.nothing"}, "this bench has no signal plant.nothing"),
-        ({"unit": "V"}, "plant.displacement is in um, the mark in V"),
-    ):
-        one = scenario({**BAND, **change})
-        signals = build(one).signals
-        assert marks(one, signals)[0].problem == words
-        with pytest.raises(InputError, match=r"plant\.") as refused:
-            check_marks(one, signals)
-        assert refused.value.field == "printed.0.signal"
+@pytest.mark.parametrize(
+    ("change", "field", "words"),
+    [
+        ({"signal": "plant.nothing"}, "signal", "this bench has no signal plant.nothing"),
+        ({"unit": "V"}, "unit", "plant.displacement is in um, the mark in V"),
+        ({"metric": "control.rms_error_um"}, "metric", "this scenario expects nothing of control.rms_error_um"),
+        ({"event": 2}, "event", "there are 2 events, counted from 0"),
+        ({"event": 1}, "event", "this event waits for a condition; take one at a moment"),
+    ],
+)
+def test_what_cannot_be_drawn_says_why(change: dict[str, Any], field: str, words: str) -> None:
+    one = scenario({**BAND, **change})
+    signals = build(one).signals
+    assert marks(one, signals)[0].problem == ("" if field == "metric" else words)
+    with pytest.raises(InputError) as refused:
+        check_marks(one, signals)
+    assert (refused.value.field, refused.value.message) == (f"printed.0.{field}", words)
 
 
 def test_no_run_depends_on_what_is_printed() -> None:

@@ -597,6 +597,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/benches/{bench_id}/claims": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Claims
+         * @description Measure the claims of a bench over what it has run since tick 0, with the bits of a headless run.
+         */
+        get: operations["list_claims_api_v1_benches__bench_id__claims_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/benches/{bench_id}/snapshots": {
         parameters: {
             query?: never;
@@ -3083,6 +3103,70 @@ export interface components {
             let_go_in_s?: number | null;
         };
         /**
+         * BenchClaim
+         * @description A claim of a live bench, with the numbers that may be turned for it.
+         */
+        BenchClaim: {
+            /** Metric */
+            metric: string;
+            /** Published */
+            published: string;
+            /** Published Value */
+            published_value: number | null;
+            /**
+             * Printed Low
+             * @description Range in which a figure agrees with the text; null: open, or none
+             */
+            printed_low: number | null;
+            /** Printed High */
+            printed_high: number | null;
+            /**
+             * Is Published
+             * @description Whether the text says something that a figure is compared with
+             */
+            is_published: boolean;
+            /** Expected */
+            expected: string;
+            /**
+             * Low
+             * @description Smallest value that counts as expected
+             */
+            low: number | null;
+            /** High */
+            high: number | null;
+            /** Note */
+            note: string;
+            /** Reason */
+            reason: string;
+            /** Fitted */
+            fitted: string[];
+            /**
+             * Measured
+             * @description Over what has run
+             */
+            measured: number | null;
+            /**
+             * As Expected
+             * @description Null without a measured value
+             */
+            as_expected: boolean | null;
+            /**
+             * State
+             * @description Of the printed claim; of the expectation where nothing is printed
+             * @enum {string}
+             */
+            state: "holds" | "fails" | "not yet";
+            /**
+             * Verdict
+             * @description Null until the run has come to its end
+             */
+            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
+            /** Marks */
+            marks: components["schemas"]["Mark"][];
+            /** Knobs */
+            knobs: components["schemas"]["Knob"][];
+        };
+        /**
          * BenchList
          * @description The live benches, oldest first.
          */
@@ -3400,6 +3484,56 @@ export interface components {
              * @default *
              */
             only?: string;
+        };
+        /**
+         * ClaimList
+         * @description The claims of the scenario of a live bench, judged by the figures of a headless run.
+         */
+        ClaimList: {
+            /** Scenario Id */
+            scenario_id: string;
+            /** Title */
+            title: string;
+            /** Source */
+            source: string;
+            /** Claim */
+            claim: string;
+            /** Seed */
+            seed: number;
+            /** Version */
+            version: string;
+            /**
+             * Tick
+             * @description Ticks that are measured
+             */
+            tick: number;
+            /**
+             * Ends At
+             * @description Tick at which a headless run ends; what runs beyond it does not count
+             */
+            ends_at: number;
+            /**
+             * Is Over
+             * @description Whether the run has come to its end; until then nothing is ticked or crossed
+             */
+            is_over: boolean;
+            /**
+             * Reason
+             * @description Why nothing is measured; empty if it is
+             */
+            reason: string;
+            /**
+             * Verdict
+             * @description Null until the run has come to its end
+             */
+            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
+            /** Claims */
+            claims: components["schemas"]["BenchClaim"][];
+            /**
+             * Marks
+             * @description All that is printed of the figure; also what no claim judges
+             */
+            marks: components["schemas"]["Mark"][];
         };
         /**
          * Class
@@ -4699,6 +4833,41 @@ export interface components {
             bench: string;
         };
         /**
+         * Knob
+         * @description A number of a scenario, and the range over which it may be looked for.
+         */
+        Knob: {
+            /** Path */
+            path: string;
+            /** Label */
+            label: string;
+            /** Unit */
+            unit: string;
+            /** Value */
+            value: number;
+            /** Low */
+            low: number;
+            /** High */
+            high: number;
+            /** Is Log */
+            is_log: boolean;
+            /**
+             * Is Fitted
+             * @description Chosen so that the figure agrees with the text
+             */
+            is_fitted: boolean;
+            /**
+             * Is Live
+             * @description Whether a live bench can be given another value as it runs
+             */
+            is_live: boolean;
+            /**
+             * Fault
+             * @description The fault whose severity it is
+             */
+            fault?: string | null;
+        };
+        /**
          * LectureCard
          * @description A lecture among others.
          */
@@ -4989,6 +5158,55 @@ export interface components {
              * @default 60
              */
             gains?: number;
+        };
+        /**
+         * Mark
+         * @description A printed number as it is drawn over a signal of a bench.
+         */
+        Mark: {
+            /** Figure */
+            figure: string;
+            /** Section */
+            section: string;
+            /** Words */
+            words: string;
+            /**
+             * Number
+             * @description The part of the words that is the number
+             */
+            number: string;
+            /**
+             * Reading
+             * @description How what is drawn follows from the words, where it does not stand in them
+             */
+            reading: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "band" | "value" | "moment";
+            /** Signal */
+            signal: string;
+            /** Unit */
+            unit: string;
+            /** Low */
+            low: number | null;
+            /** High */
+            high: number | null;
+            /** Values */
+            values: number[];
+            /** From Tick */
+            from_tick: number;
+            /**
+             * Until Tick
+             * @description Null for the end of the run
+             */
+            until_tick: number | null;
+            /**
+             * Problem
+             * @description Why it cannot be drawn on this bench
+             */
+            problem: string;
         };
         /**
          * MatrixSource
@@ -9289,6 +9507,37 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["RateReadout"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_claims_api_v1_benches__bench_id__claims_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ClaimList"];
                 };
             };
             /** @description Refused or failed */
