@@ -69,7 +69,7 @@ def _parts(scenario: Scenario, metric: str) -> Iterator[str]:
 def _knob(scenario: Scenario, path: str, is_fitted: bool) -> Knob | None:
     head, _, leaf = path.rpartition(".")
     card, value, fault = _card(scenario, head, leaf)
-    if isinstance(value, bool) or not isinstance(value, int | float):
+    if isinstance(value, bool) or not isinstance(value, int | float) or (card and card.type != "number"):
         return None
     low, high, is_log = _range(leaf, float(value), card)
     if not low < high:

@@ -15,7 +15,7 @@ from server.api.deps import ServiceDep, SessionDep
 from server.bench.measuring import Run
 from server.version import VERSION
 
-router = APIRouter(prefix="/benches/{bench_id}/claims", tags=["claims"], route_class=StrictRoute)
+router = APIRouter(prefix="/benches/{bench_id}", tags=["claims"], route_class=StrictRoute)
 
 
 class BenchClaim(Claim):
@@ -39,10 +39,21 @@ class ClaimList(BaseModel):
     reason: str = Field(description="Why nothing is measured; empty if it is")
     verdict: Verdict | None = Field(description="Null until the run has come to its end")
     claims: list[BenchClaim]
-    marks: list[Mark] = Field(description="All that is printed of the figure; also what no claim judges")
 
 
-@router.get("")
+class MarkList(BaseModel):
+    """What is printed of the figure of a bench, to be drawn under its traces; also what no claim judges."""
+
+    marks: list[Mark]
+
+
+@router.get("/printed")
+async def list_printed(session: SessionDep) -> MarkList:
+    """List what is printed of the figure, with the ticks at which it is drawn."""
+    return MarkList(marks=marks(session.scenario, session.signals))
+
+
+@router.get("/claims")
 async def list_claims(session: SessionDep, service: ServiceDep) -> ClaimList:
     """Measure the claims of a bench over what it has run since tick 0, with the bits of a headless run."""
     run = await service.engine.call(Run.of, session)
@@ -65,5 +76,4 @@ async def list_claims(session: SessionDep, service: ServiceDep) -> ClaimList:
             BenchClaim(**dict(claim), knobs=knobs(scenario, entry))
             for claim, entry in zip(found, scenario.head.expect, strict=True)
         ],
-        marks=marks(scenario, signals),
     )

@@ -22,6 +22,11 @@ def claims(live: Any, bench: str) -> dict[str, Any]:
     return found
 
 
+def printed(live: Any, bench: str) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = live.http.get(f"/api/v1/benches/{bench}/printed").json()["marks"]
+    return found
+
+
 def measured(found: dict[str, Any]) -> dict[str, float]:
     return {claim["metric"]: claim["measured"] for claim in found["claims"]}
 
@@ -84,11 +89,13 @@ def test_what_is_done_by_hand_counts_and_a_reset_begins_anew(live: Any) -> None:
 
 
 def test_marks_are_told_with_their_ticks(live: Any) -> None:
-    found = claims(live, live.bench(STEPS, paused=True)["id"])
-    assert [(mark["from_tick"], mark["until_tick"]) for mark in found["marks"]][1:3] == [(2000, 3000), (3000, 4000)]
+    bench = live.bench(STEPS, paused=True)["id"]
+    found, drawn = claims(live, bench), printed(live, bench)
+    assert [(mark["from_tick"], mark["until_tick"]) for mark in drawn][1:3] == [(2000, 3000), (3000, 4000)]
     first = found["claims"][0]
     assert first["metric"] == "diagnosis.kalman.correct_fraction"
-    assert len(first["marks"]) == len(found["marks"]) == 7
+    assert first["marks"] == drawn
+    assert len(drawn) == 7
     assert (first["printed_low"], first["printed_high"], first["low"], first["high"]) == (0.95, 1.0, 0.98, None)
 
 
@@ -136,6 +143,7 @@ def test_what_was_hidden_is_withheld_and_then_cannot_be_told(live: Any) -> None:
     assert live.http.post(f"{path}/blind", json={"seed": 4}).status_code in (200, 201)
     refused = live.http.get(f"{path}/claims")
     assert (refused.status_code, refused.json()["error"]["code"]) == (403, "blind")
+    assert live.http.get(f"{path}/printed").status_code == 403
     step(live, bench, 9_000)
     assert live.http.delete(f"{path}/blind").status_code in (200, 204)
     found = claims(live, bench)
@@ -159,4 +167,4 @@ def test_a_mark_of_another_signal_is_refused_where_a_scenario_is_checked(live: A
     assert answer.json()["error"]["field"] == "printed.0.signal"
     # a bench is opened all the same, and says that it cannot draw it
     bench = live.bench({**QUIET, "printed": [mark]}, paused=True)["id"]
-    assert claims(live, bench)["marks"][0]["problem"] == "this bench has no signal plant.nothing"
+    assert printed(live, bench)[0]["problem"] == "this bench has no signal plant.nothing"

@@ -597,6 +597,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/benches/{bench_id}/printed": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Printed
+         * @description List what is printed of the figure, with the ticks at which it is drawn.
+         */
+        get: operations["list_printed_api_v1_benches__bench_id__printed_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/benches/{bench_id}/claims": {
         parameters: {
             query?: never;
@@ -1336,6 +1356,50 @@ export interface paths {
         put?: never;
         post?: never;
         delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/thresholds": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Find Threshold
+         * @description Look headless where a claim begins to hold; it does not disturb the live benches.
+         */
+        post: operations["find_threshold_api_v1_thresholds_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/thresholds/{threshold_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Threshold
+         * @description Return how far a search is, and what it found once it is done.
+         */
+        get: operations["get_threshold_api_v1_thresholds__threshold_id__get"];
+        put?: never;
+        post?: never;
+        /**
+         * Cancel Threshold
+         * @description Cancel a search that waits or is under way; the runs that are done stay.
+         */
+        delete: operations["cancel_threshold_api_v1_thresholds__threshold_id__delete"];
         options?: never;
         head?: never;
         patch?: never;
@@ -3529,11 +3593,6 @@ export interface components {
             verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
             /** Claims */
             claims: components["schemas"]["BenchClaim"][];
-            /**
-             * Marks
-             * @description All that is printed of the figure; also what no claim judges
-             */
-            marks: components["schemas"]["Mark"][];
         };
         /**
          * Class
@@ -5209,6 +5268,14 @@ export interface components {
             problem: string;
         };
         /**
+         * MarkList
+         * @description What is printed of the figure of a bench, to be drawn under its traces; also what no claim judges.
+         */
+        MarkList: {
+            /** Marks */
+            marks: components["schemas"]["Mark"][];
+        };
+        /**
          * MatrixSource
          * @description A square matrix.
          */
@@ -5619,6 +5686,45 @@ export interface components {
              * @default
              */
             label?: string;
+        };
+        /**
+         * NewThreshold
+         * @description The scenario, the claim and the number that are looked at.
+         */
+        NewThreshold: {
+            /** Metric */
+            metric: string;
+            /** Path */
+            path: string;
+            /** Low */
+            low: number;
+            /** High */
+            high: number;
+            /**
+             * Scale
+             * @default linear
+             * @enum {string}
+             */
+            scale?: "linear" | "log";
+            /**
+             * Points
+             * @description Of the grid, both ends included
+             * @default 17
+             */
+            points?: number;
+            /**
+             * Scenario
+             * @description Library id, TOML text, or document
+             */
+            scenario?: string | {
+                [key: string]: unknown;
+            } | null;
+            /**
+             * Bench
+             * @description Instead: a live bench, whose scenario it is, as it began
+             * @default
+             */
+            bench?: string;
         };
         /**
          * NewVote
@@ -7310,6 +7416,57 @@ export interface components {
             cold?: boolean;
         };
         /**
+         * Threshold
+         * @description Where a claim holds over the range of a number.
+         */
+        Threshold: {
+            /** Metric */
+            metric: string;
+            /** Path */
+            path: string;
+            /** Low */
+            low: number;
+            /** High */
+            high: number;
+            /**
+             * Scale
+             * @enum {string}
+             */
+            scale: "linear" | "log";
+            /**
+             * Tried
+             * @description By rising value
+             */
+            tried: components["schemas"]["Tried"][];
+            /** Turns */
+            turns: components["schemas"]["scenarios__campaign__threshold__Turn"][];
+            /** Words */
+            words: string;
+        };
+        /**
+         * ThresholdRun
+         * @description A search for a threshold as the API shows it.
+         */
+        ThresholdRun: {
+            /** Id */
+            id: string;
+            /** State */
+            state: string;
+            /** Scenario Id */
+            scenario_id: string;
+            /**
+             * Progress
+             * @default 0
+             */
+            progress?: number;
+            /** @description Null until it is done */
+            found?: components["schemas"]["Threshold"] | null;
+            /** Error */
+            error: {
+                [key: string]: unknown;
+            } | null;
+        };
+        /**
          * Tile
          * @description A student and the bench, in brief.
          */
@@ -7448,6 +7605,18 @@ export interface components {
             share: number;
         };
         /**
+         * Tried
+         * @description A value that was tried, the figure measured with it, and whether the claim holds there.
+         */
+        Tried: {
+            /** Value */
+            value: number;
+            /** Measured */
+            measured: number | null;
+            /** Holds */
+            holds: boolean;
+        };
+        /**
          * Trip
          * @description Why the board stopped.
          */
@@ -7462,27 +7631,6 @@ export interface components {
             signal: string;
             /** Value */
             value: number | null;
-        };
-        /**
-         * Turn
-         * @description The last change of the verdict up to a sample.
-         */
-        Turn: {
-            /**
-             * Tick
-             * @description The first sample with the verdict there is; none in what is kept
-             */
-            tick: number | null;
-            /**
-             * Before
-             * @description The verdict before it; empty without a change
-             */
-            before: string;
-            /**
-             * Since
-             * @description The first sample kept
-             */
-            since: number;
         };
         /**
          * Undo
@@ -7771,6 +7919,47 @@ export interface components {
             title?: string | null;
             /** Note */
             note?: string | null;
+        };
+        /**
+         * Turn
+         * @description The last change of the verdict up to a sample.
+         */
+        core__board__explain__Turn: {
+            /**
+             * Tick
+             * @description The first sample with the verdict there is; none in what is kept
+             */
+            tick: number | null;
+            /**
+             * Before
+             * @description The verdict before it; empty without a change
+             */
+            before: string;
+            /**
+             * Since
+             * @description The first sample kept
+             */
+            since: number;
+        };
+        /**
+         * Turn
+         * @description A place where a claim begins to hold, or ceases to, as the number grows.
+         */
+        scenarios__campaign__threshold__Turn: {
+            /**
+             * Value
+             * @description The value nearest to it at which the claim holds
+             */
+            value: number;
+            /** Begins */
+            begins: boolean;
+            /**
+             * Low
+             * @description It lies between this value and the next
+             */
+            low: number;
+            /** High */
+            high: number;
         };
         /**
          * Question
@@ -9474,7 +9663,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Turn"];
+                    "application/json": components["schemas"]["core__board__explain__Turn"];
                 };
             };
             /** @description Refused or failed */
@@ -9507,6 +9696,37 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["RateReadout"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_printed_api_v1_benches__bench_id__printed_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MarkList"];
                 };
             };
             /** @description Refused or failed */
@@ -11053,6 +11273,110 @@ export interface operations {
                 };
                 content: {
                     "text/x-python": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    find_threshold_api_v1_thresholds_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewThreshold"];
+            };
+        };
+        responses: {
+            /** @description The same search is there already */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ThresholdRun"];
+                };
+            };
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ThresholdRun"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_threshold_api_v1_thresholds__threshold_id__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                threshold_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ThresholdRun"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    cancel_threshold_api_v1_thresholds__threshold_id__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                threshold_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ThresholdRun"];
                 };
             };
             /** @description Refused or failed */
