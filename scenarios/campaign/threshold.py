@@ -92,7 +92,7 @@ class Tried(BaseModel):
     holds: bool
 
 
-class Turn(BaseModel):
+class ThresholdTurn(BaseModel):
     """A place where a claim begins to hold, or ceases to, as the number grows."""
 
     value: float = Field(description="The value nearest to it at which the claim holds")
@@ -110,7 +110,7 @@ class Threshold(BaseModel):
     high: float
     scale: Literal["linear", "log"]
     tried: list[Tried] = Field(description="By rising value")
-    turns: list[Turn]
+    turns: list[ThresholdTurn]
     words: str
 
 
@@ -149,7 +149,9 @@ class Halving:
         """Return what is known so far."""
         wanted = self._wanted
         turns = [
-            Turn(value=other.value if other.holds else one.value, begins=other.holds, low=one.value, high=other.value)
+            ThresholdTurn(
+                value=other.value if other.holds else one.value, begins=other.holds, low=one.value, high=other.value
+            )
             for one, other in self._turning()
         ]
         return Threshold(
@@ -162,7 +164,7 @@ class Halving:
     def _turning(self) -> list[tuple[Tried, Tried]]:
         return [(one, other) for one, other in pairwise(self._sorted()) if one.holds != other.holds]
 
-    def _words(self, turns: Sequence[Turn]) -> str:
+    def _words(self, turns: Sequence[ThresholdTurn]) -> str:
         """Say where it holds."""
         low, high = (format_short(end, "", 4) for end in (self._wanted.low, self._wanted.high))
         if not turns:

@@ -27,6 +27,7 @@ class BenchClaim(Claim):
 class ClaimList(BaseModel):
     """The claims of the scenario of a live bench, judged by the figures of a headless run."""
 
+    bench_id: str
     scenario_id: str
     title: str
     source: str
@@ -61,6 +62,7 @@ async def list_claims(session: SessionDep, service: ServiceDep) -> ClaimList:
     scenario, signals = run.scenario, session.signals
     found = claims(scenario, figures.metrics or {}, signals, figures.is_over)
     return ClaimList(
+        bench_id=session.id,
         scenario_id=scenario.id,
         title=scenario.head.title,
         source=scenario.head.source,

@@ -3554,6 +3554,8 @@ export interface components {
          * @description The claims of the scenario of a live bench, judged by the figures of a headless run.
          */
         ClaimList: {
+            /** Bench Id */
+            bench_id: string;
             /** Scenario Id */
             scenario_id: string;
             /** Title */
@@ -7439,7 +7441,7 @@ export interface components {
              */
             tried: components["schemas"]["Tried"][];
             /** Turns */
-            turns: components["schemas"]["scenarios__campaign__threshold__Turn"][];
+            turns: components["schemas"]["ThresholdTurn"][];
             /** Words */
             words: string;
         };
@@ -7465,6 +7467,26 @@ export interface components {
             error: {
                 [key: string]: unknown;
             } | null;
+        };
+        /**
+         * ThresholdTurn
+         * @description A place where a claim begins to hold, or ceases to, as the number grows.
+         */
+        ThresholdTurn: {
+            /**
+             * Value
+             * @description The value nearest to it at which the claim holds
+             */
+            value: number;
+            /** Begins */
+            begins: boolean;
+            /**
+             * Low
+             * @description It lies between this value and the next
+             */
+            low: number;
+            /** High */
+            high: number;
         };
         /**
          * Tile
@@ -7631,6 +7653,27 @@ export interface components {
             signal: string;
             /** Value */
             value: number | null;
+        };
+        /**
+         * Turn
+         * @description The last change of the verdict up to a sample.
+         */
+        Turn: {
+            /**
+             * Tick
+             * @description The first sample with the verdict there is; none in what is kept
+             */
+            tick: number | null;
+            /**
+             * Before
+             * @description The verdict before it; empty without a change
+             */
+            before: string;
+            /**
+             * Since
+             * @description The first sample kept
+             */
+            since: number;
         };
         /**
          * Undo
@@ -7919,47 +7962,6 @@ export interface components {
             title?: string | null;
             /** Note */
             note?: string | null;
-        };
-        /**
-         * Turn
-         * @description The last change of the verdict up to a sample.
-         */
-        core__board__explain__Turn: {
-            /**
-             * Tick
-             * @description The first sample with the verdict there is; none in what is kept
-             */
-            tick: number | null;
-            /**
-             * Before
-             * @description The verdict before it; empty without a change
-             */
-            before: string;
-            /**
-             * Since
-             * @description The first sample kept
-             */
-            since: number;
-        };
-        /**
-         * Turn
-         * @description A place where a claim begins to hold, or ceases to, as the number grows.
-         */
-        scenarios__campaign__threshold__Turn: {
-            /**
-             * Value
-             * @description The value nearest to it at which the claim holds
-             */
-            value: number;
-            /** Begins */
-            begins: boolean;
-            /**
-             * Low
-             * @description It lies between this value and the next
-             */
-            low: number;
-            /** High */
-            high: number;
         };
         /**
          * Question
@@ -9663,7 +9665,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["core__board__explain__Turn"];
+                    "application/json": components["schemas"]["Turn"];
                 };
             };
             /** @description Refused or failed */

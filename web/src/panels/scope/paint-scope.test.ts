@@ -36,6 +36,7 @@ const PICTURE: ScopeShown = {
     ] as unknown as ScopeShown["marks"]["events"],
     faults: [{ name: "added_mass", severity: 0.05, start: 150, end: undefined }],
   },
+  printed: [],
 };
 
 const drawn = (title: string) =>
