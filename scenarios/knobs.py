@@ -18,7 +18,7 @@ from scenarios.schema import Scenario
 TRUE_ONES = ("sensor.noise_um", "plant.drive_noise_v", "reference.amplitude_v", "reference.amplitude_um")
 NAMED = ("gain", "forgetting", "rate", "covariance", "noise", "slope", "floor", "anchor", "layer", "bound")
 """Words in the names of parameters that set how a controller, a diagnoser or an identifier works."""
-WIDER = ("gain", "noise", "covariance", "rate", "anchor")
+WIDER = ("gain", "noise", "covariance", "rate", "anchor", "frequency")
 """Words in the names of those that are told by factors: a decade to either side."""
 LEAST_NOISE = 0.1
 """Upper end for a noise that is 0."""
@@ -140,4 +140,4 @@ def _label(path: str, card: ParameterCard | None, fault: str | None) -> str:
     if fault is not None:
         return f"{block('faults', fault).title}, severity (event {int(path.split('.')[1]) + 1})"
     leaf = path.rpartition(".")[2]
-    return card.label or card.meaning if card is not None else leaf.replace("_", " ")
+    return card.meaning or card.label if card is not None else leaf.replace("_", " ")

@@ -47,33 +47,48 @@ export function paintPrinted(
         pen.restore();
         for (const edge of [mark.low, mark.high])
           paintRule(pen, [left, y(edge)], [right, y(edge)], { ...stroke, width: 1 });
-        say(mark, left + 6, bottom - top > 2 * look.fontSize ? top + look.fontSize : top - look.fontSize * 0.8, colour);
+        say(mark, left, right, bottom - top > 2 * look.fontSize ? [top + look.fontSize] : besides(top, bottom), colour);
       } else if (mark.kind === "moment") {
         paintRule(pen, [left, field.top], [left, field.bottom], stroke);
-        say(mark, left + 6, field.top + look.fontSize, colour);
+        say(mark, left, field.right, [field.top + look.fontSize], colour);
       } else {
         mark.values.forEach((value, i) => {
           paintRule(pen, [left, y(value)], [right, y(value)], stroke);
-          if (i === 0) say(mark, left + 6, y(value) - look.fontSize * 0.8, colour);
+          if (i === 0) say(mark, left, right, besides(y(value), y(value)), colour);
         });
       }
     }
   });
 
-  /** Beside its mark, unless another says something there. */
-  function say({ number }: PrintedMark, left: number, middle: number, colour: string): void {
+  /** Above what reaches from top to bottom, or below it. */
+  function besides(top: number, bottom: number): number[] {
+    return [top - look.fontSize * 0.85, bottom + look.fontSize * 0.85];
+  }
+
+  /** Where there is room for it beside the mark: that it is printed, and the number; or the number alone. */
+  function say({ number }: PrintedMark, left: number, right: number, rows: number[], colour: string): void {
     const { fontSize, scheme } = look;
-    const text = `printed: ${number}`;
     pen.font = fontFor(fontSize, 1, 600);
     pen.textAlign = "left";
     pen.textBaseline = "middle";
-    const room = { left: left - 3, right: left + pen.measureText(text).width + 3, top: middle - 9, bottom: middle + 9 };
-    if (room.right > field.right || labels.some((other) => overlap(other, room))) return;
-    labels.push(room);
-    pen.fillStyle = `${CANVAS[scheme].panel}cc`;
-    pen.fillRect(room.left, middle - fontSize * 0.7, room.right - room.left, fontSize * 1.4);
-    pen.fillStyle = colour;
-    pen.fillText(text, left, middle);
+    for (const text of [`printed: ${number}`, number])
+      for (const middle of rows) {
+        const half = fontSize * 0.7;
+        const room = {
+          left: left + 3,
+          right: left + pen.measureText(text).width + 9,
+          top: middle - half,
+          bottom: middle + half,
+        };
+        if (room.right > right || room.top < field.top || room.bottom > field.bottom) continue;
+        if (labels.some((other) => overlap(other, room))) continue;
+        labels.push(room);
+        pen.fillStyle = `${CANVAS[scheme].panel}cc`;
+        pen.fillRect(room.left, room.top, room.right - room.left, room.bottom - room.top);
+        pen.fillStyle = colour;
+        pen.fillText(text, left + 6, middle);
+        return;
+      }
   }
 }
 

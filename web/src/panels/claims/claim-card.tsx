@@ -29,7 +29,11 @@ interface ClaimCardProps {
 export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
   const teaches = useMay("teach");
   const words = claimWords(claim);
-  const said = [...new Set(claim.marks.map((mark) => `“${micro(mark.words)}”, ${placeIn(mark)}`))];
+  const places = [...new Set(claim.marks.map(placeIn))];
+  const said = places.map((place) => {
+    const here = claim.marks.filter((mark) => placeIn(mark) === place);
+    return `${[...new Set(here.map((mark) => `“${micro(mark.words)}”`))].join(", ")}: ${place}`;
+  });
   const readings = [...new Set(claim.marks.flatMap(({ reading }) => (reading ? [micro(reading)] : [])))];
   const drawn = [...new Set(claim.marks.flatMap(({ signal, problem }) => (problem ? [] : [signal])))];
   const problems = [...new Set(claim.marks.flatMap(({ problem }) => (problem ? [problem] : [])))];
@@ -78,7 +82,7 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
         ))}
         {claim.note && <p className={styles.reading}>Why: {micro(claim.note)}.</p>}
         {claim.fitted.length > 0 && (
-          <p className={styles.reading}>Chosen so that it agrees: {claim.fitted.map(fieldWords).join(", ")}.</p>
+          <p className={styles.reading}>Chosen so that it agrees: {claim.fitted.join(", ")}.</p>
         )}
         <div className={styles.buttons}>
           {teaches && claim.knobs.length > 0 && (
@@ -103,5 +107,3 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
     </li>
   );
 }
-
-const fieldWords = (path: string) => path.replaceAll("_", " ");

@@ -64,7 +64,8 @@ export function paintThreshold(
     const at = x(turn.value);
     paintRule(pen, [at, field.top], [at, field.bottom], { colour: ink.accent, width: 1.6, dashes: [2, 3] });
     const text = `${turn.begins ? "from" : "up to"} ${formatShort(turn.value, knob.unit === "1" ? "" : knob.unit)}`;
-    const isLeft = at + pen.measureText(text).width + 8 > field.right;
+    const room = pen.measureText(text).width + 8;
+    const isLeft = at + room > field.right || (!turn.begins && at - room > field.left);
     pen.textAlign = isLeft ? "right" : "left";
     pen.fillStyle = ink.accent;
     pen.fillText(text, at + (isLeft ? -6 : 6), field.top + look.fontSize * (0.9 + 1.3 * (i % 3)));

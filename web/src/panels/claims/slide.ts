@@ -27,7 +27,8 @@ export function slideSvg(claim: Claim, list: ClaimList, shown: ScopeShown | unde
   pen.textBaseline = "middle";
   write(pen, title, EDGE, 46, 34, 650, WIDTH - 2 * EDGE);
   const mark = claim.marks[0];
-  const quoted = mark?.words ?? claim.published ?? "";
+  const said = new Set(claim.marks.map((one) => one.words));
+  const quoted = said.size === 1 || !claim.published ? (mark?.words ?? claim.published) : claim.published;
   const place = mark ? placeIn(mark) : list.source;
   pen.fillStyle = INK.muted;
   write(pen, capital(micro(place)), EDGE, 88, 20, 560, WIDTH - 2 * EDGE, INK.muted);
@@ -81,7 +82,7 @@ function paintTraces(pen: Pen, shown: ScopeShown, { left, top, right, bottom }: 
   const picture = scopePicture(shown, "", "");
   pen.save();
   pen.translate(left, top);
-  const below = paintLegend(pen, picture.legend ?? [], 0, 8, right - left) + 10;
+  const below = paintLegend(pen, picture.legend ?? [], 0, 10, right - left, LETTERS - 2) + 12;
   pen.translate(0, below);
   const box = { width: right - left, height: bottom - top - below - 6 };
   picture.paint(pen, box, look);

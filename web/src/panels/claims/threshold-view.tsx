@@ -1,5 +1,5 @@
 import { Button, NativeSelect } from "@mantine/core";
-import { useCallback, useState } from "react";
+import { useCallback, useEffect, useRef, useState } from "react";
 import { api } from "../../api/api";
 import { useMay } from "../../api/me";
 import { useAnswer } from "../../api/queries";
@@ -11,6 +11,7 @@ import { useBench } from "../../stream/bench-store";
 import { formatFigure, formatPercent, formatShort } from "../../ui/format";
 import { Knob } from "../../ui/knob";
 import { metricScale } from "../../ui/metric-name";
+import { unitText } from "../../ui/unit-scale";
 import styles from "./claims.module.css";
 import { paintThreshold } from "./paint-threshold";
 
@@ -64,6 +65,11 @@ function Turned({ claim, knob }: { claim: Claim; knob: ClaimKnob }) {
     (pen: Pen, box: Box, look: Look) => found && paintThreshold(pen, box, look, { found, claim, knob, value }),
     [found, claim, knob, value],
   );
+  const unit = unitText(knob.unit);
+  const place = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    if (found) place.current?.scrollIntoView({ block: "nearest" });
+  }, [found]);
   const near = found && nearest(found.tried, value);
   const scale = metricScale(claim.metric, [near?.measured]);
   const apply = (next: number) => {
@@ -88,8 +94,11 @@ function Turned({ claim, knob }: { claim: Claim; knob: ClaimKnob }) {
       </div>
       {found && (
         <>
-          <p className={styles.found}>It {found.words}.</p>
-          <div className={styles.plot}>
+          <p className={styles.found}>
+            It {found.words}
+            {unit && `, in ${unit}`}.
+          </p>
+          <div ref={place} className={styles.plot}>
             <Painted label={`${claim.metric} over ${knob.label}: ${found.words}`} paint={paint} />
           </div>
           <p className={styles.hint}>
@@ -100,7 +109,7 @@ function Turned({ claim, knob }: { claim: Claim; knob: ClaimKnob }) {
       )}
       <Knob
         label={knob.label}
-        unit={knob.unit === "1" ? "" : knob.unit}
+        unit={unit ? knob.unit : ""}
         low={knob.low}
         high={knob.high}
         step={0}
@@ -111,7 +120,7 @@ function Turned({ claim, knob }: { claim: Claim; knob: ClaimKnob }) {
           near?.measured === undefined || near.measured === null
             ? undefined
             : `${scale.name} ${formatFigure(claim.metric, scale.shown(near.measured))} ${scale.unit}, measured at ` +
-              `${formatShort(near.value, knob.unit === "1" ? "" : knob.unit)}: ${near.holds ? "holds" : "does not hold"}`
+              `${formatShort(near.value, unit ? knob.unit : "")}: ${near.holds ? "holds" : "does not hold"}`
         }
         onMove={setValue}
         onChange={apply}

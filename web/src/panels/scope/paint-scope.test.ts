@@ -84,5 +84,6 @@ it("draws every value where its axis says, in the colours of white paper", () =>
 
 it("says no more than three quantities on one axis", () => {
   expect(axisTitle(["a.p", "b.q", "c.r", "d.s"], MICRO)).toBe("p, q, r, …, µm");
+  expect(axisTitle(["a.p.b", "a.p.c", "a.p.d", "a.p.e"], MICRO)).toBe("p, µm");
   expect(axisTitle(["plant.displacement", "model.displacement"], MICRO)).toBe("displacement, µm");
 });

@@ -143,9 +143,13 @@ const words = (name: string) => name.replaceAll(/[._]/g, " ");
 /** What an axis shows: the quantities on it, and their unit. */
 export function axisTitle(names: readonly string[], scale: UnitScale): string {
   const quantities = [...new Set(names.map((name) => words(name.split(".").slice(1).join(" ") || name)))];
+  const alike = new Set(quantities.map((quantity) => quantity.split(" ")[0]));
+  if (quantities.length > 3 && alike.size === 1) return titled([...alike][0], scale);
   const said = quantities.length > 3 ? `${quantities.slice(0, 3).join(", ")}, …` : quantities.join(", ");
-  return scale.unit ? `${said}, ${scale.unit}` : said;
+  return titled(said, scale);
 }
+
+const titled = (said: string, { unit }: UnitScale) => (unit ? `${said}, ${unit}` : said);
 
 /** The colour of a trace in a scheme, whatever it is on the screen. */
 function inkOf({ slot, behind }: PlotTrace, scheme: Scheme): string {
