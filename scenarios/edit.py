@@ -24,9 +24,12 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
 def written(document: Document, values: dict[str, Any]) -> Document:
     """Return a scenario with values written over; a fitted field that goes with that is no longer named.
 
-    It shares the tables that stay as they are.
+    Printed marks belong to the events they count from, so other events have none. It shares the tables that stay as
+    they are.
     """
     changed = written_over(document, values)
+    if "events" in values and "printed" not in values:
+        changed.pop("printed", None)
     rows = changed.get("expect")
     if isinstance(rows, list) and any(isinstance(row, dict) and isinstance(row.get("fitted"), list) for row in rows):
         changed["expect"] = [_fitted(row, document, changed) for row in rows]

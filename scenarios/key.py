@@ -27,8 +27,12 @@ def code_version() -> str:
 
 
 def content_hash(document: dict[str, Any]) -> str:
-    """Return a hash of a scenario without its seed, with the packages it names; the order of fields does not matter."""
-    content = {name: value for name, value in written_over(carried(document), {}).items() if name != "seed"}
+    """Return a hash of a scenario without its seed, with the packages it names; the order of fields does not matter.
+
+    What is drawn of the printed figure is left out: no run depends on it.
+    """
+    whole = written_over(carried(document), {})
+    content = {name: value for name, value in whole.items() if name not in ("seed", "printed")}
     return hashlib.sha256(json.dumps(content, sort_keys=True, default=str).encode()).hexdigest()
 
 

@@ -249,7 +249,7 @@ def _state(cue: Cue, before: State | None) -> State:
 
 def _bare(document: dict[str, Any]) -> dict[str, Any]:
     """Return a scenario without what is done and expected."""
-    return {key: value for key, value in document.items() if key not in ("events", "expect")}
+    return {key: value for key, value in document.items() if key not in ("events", "expect", "printed")}
 
 
 def _of_cue(field: str, done: int) -> str:

@@ -237,11 +237,7 @@ def run(
                 on_tick(board.tick)
         columns = dict(zip((one.name for one in kept), stored.columns(), strict=True))
     elapsed = time.perf_counter() - began
-    metrics = figures(board, columns, scenario)
-    if isinstance(board, Ensemble):
-        for name, twin in board.twins.items():
-            own = figures(twin, columns, scenario, f"{name}:")
-            metrics |= {f"twins.{name}.{metric}": value for metric, value in own.items()}
+    metrics = all_figures(board, columns, scenario)
     return Result(
         scenario,
         board.spec.seed,
@@ -254,6 +250,16 @@ def run(
         columns,
         narration,
     )
+
+
+def all_figures(board: Board, trace: dict[str, FloatArray], scenario: Scenario) -> dict[str, float]:
+    """Return the figures of a board and of its twins from the trace of what has run."""
+    metrics = figures(board, trace, scenario)
+    if isinstance(board, Ensemble):
+        for name, twin in board.twins.items():
+            own = figures(twin, trace, scenario, f"{name}:")
+            metrics |= {f"twins.{name}.{metric}": value for metric, value in own.items()}
+    return metrics
 
 
 def figures(board: Board, trace: dict[str, FloatArray], scenario: Scenario, prefix: str = "") -> dict[str, float]:

@@ -23,6 +23,7 @@ from core.table import Table
 from scenarios.expectation import Expectation, Verdict, overall
 from scenarios.measure.stretch import Stretch
 from scenarios.own import compile_apart
+from scenarios.printed import Printed
 from scenarios.studies import parse_study
 
 MAX_SAMPLES = 200_000_000
@@ -44,6 +45,7 @@ class Head(Table):
     duration_ms: float | None = Field(None, gt=0, le=LONGEST_MS)
     events: list[dict[str, Any]] = Field([], max_length=100_000)
     expect: list[Expectation] = Field([], max_length=1000)
+    printed: list[Printed] = Field([], max_length=200)
     metrics: Stretch = Stretch()
     study: dict[str, Any] | None = None
 

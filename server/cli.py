@@ -22,6 +22,7 @@ from scenarios.report.text import gallery_text, run_text
 from scenarios.report.traces import TraceFile
 from scenarios.run import run as run_scenario
 from scenarios.samples import temporary_folder
+from scenarios.schema import Scenario
 from scenarios.seeds import parse_seeds
 from server.benchmarking import benchmark
 from server.blocks import blocks
@@ -88,6 +89,12 @@ def run(
         typer.Option(metavar="COMMAND", help="A program that drives, asked over a pipe (docs/other-languages.md)."),
     ] = None,
     controller_timeout: Annotated[float, typer.Option(metavar="S", help="Longest time for one of its answers.")] = 10.0,
+    threshold: Annotated[
+        str | None, typer.Option(metavar="METRIC", help="Find where this claim holds, over the range of --over.")
+    ] = None,
+    over: Annotated[
+        str | None, typer.Option(metavar="PATH=LOW:HIGH[:log]", help="The number to turn for --threshold.")
+    ] = None,
 ) -> None:
     """Run a scenario headless: 0 all expectations hold, 1 some do not, 2 invalid input."""
     from scenarios.campaign.single import beside, run_seeds  # each worker process loads this file, and not these
@@ -96,6 +103,8 @@ def run(
     from scenarios.report.traces import write_json
 
     chosen = with_values(load(scenario, units), dict(parse_assignment(text) for text in assign or []))
+    if threshold is not None or over is not None:
+        _find(chosen if seed is None else with_values(chosen, {"seed": seed}), threshold, over, as_json)
     if seed is not None and seeds is not None:
         raise InputError("give --seed or --seeds, not both", "--seeds")
     if seeds is not None and out is not None:
@@ -138,6 +147,21 @@ def run(
     else:
         say(run_text(summary))
     raise typer.Exit(0 if summary["ok"] else 1)
+
+
+def _find(scenario: Scenario, threshold: str | None, over: str | None, as_json: bool) -> None:
+    """Find where a claim holds, say it and end: 0 somewhere in the range, 1 nowhere."""
+    from server.finding import find, threshold_text
+
+    if threshold is None or over is None:
+        given, missing = ("--over", "--threshold") if threshold is None else ("--threshold", "--over")
+        raise InputError(f"goes with {missing}", given)
+    found = find(scenario, threshold, over)
+    if as_json:
+        say_json(found.model_dump())
+    else:
+        say(threshold_text(found))
+    raise typer.Exit(0 if any(one.holds for one in found.tried) else 1)
 
 
 @app.command()

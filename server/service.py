@@ -41,6 +41,7 @@ from server.runs.figures import Figures
 from server.runs.jobs import Jobs
 from server.runs.queue import Queue
 from server.runs.sweeps import Sweeps
+from server.runs.thresholds import Thresholds
 from server.security.limits import Buckets
 from server.security.public import PublicOrigin
 from server.settings import Settings
@@ -109,7 +110,7 @@ class Service:
         self.links = Links(self.shared, settings.max_links)
         self.idling = Idling(self._present, settings.idle_minutes)
         self.queue = Queue(self.shared, settings, self.metrics)
-        self.jobs = Jobs(self.queue, settings)
+        self.jobs, self.thresholds = Jobs(self.queue, settings), Thresholds(self.queue, settings)
         self.sweeps = Sweeps(self.queue, settings, self.shared)
         self.figures = Figures(self.queue, settings)
         self.keeping = Keeping(self.database, self.shared, settings)

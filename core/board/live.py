@@ -97,13 +97,18 @@ def value_at(spec: Spec, path: str) -> Any:
     in_use |= {f"slots.{slot}": name for slot, name in spec.driving.items()}
     if path in in_use:
         return in_use[path]
+    section = section_at(spec, head)
+    if section is None:
+        return None
+    return section.block.name if leaf in ("kind", "model") else getattr(section.params, leaf, None)
+
+
+def section_at(spec: Spec, head: str) -> Section | None:
+    """Return the section that a path leads to, such as ``controller`` or ``sensors.ideal``."""
     sections: dict[str, Section] = {key: getattr(spec, key) for key in LIVE_SECTIONS}
     for key in ("controllers", "sensors", *CHOSEN):
         sections |= {f"{key}.{name}": section for name, section in getattr(spec, key).items()}
     sections |= spec.generators
     sections["controller"] = spec.controllers[spec.active]
     sections["sensor"] = spec.sensors[spec.measuring]
-    section = sections.get(head)
-    if section is None:
-        return None
-    return section.block.name if leaf in ("kind", "model") else getattr(section.params, leaf, None)
+    return sections.get(head)

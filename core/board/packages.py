@@ -24,7 +24,7 @@ from core.table import Table
 
 TABLE = "packages"
 NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,99}")
-SILENT = ("id", "title", "summary", "claim", "source", "verdict", "expect", "units", TABLE)
+SILENT = ("id", "title", "summary", "claim", "source", "verdict", "expect", "printed", "units", TABLE)
 """Parts of a scenario in which a word names no block."""
 
 

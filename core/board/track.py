@@ -176,6 +176,14 @@ class Track:
         deeds = self._deeds[mark.deeds : last(self._deeds, tick, key=_tick)]
         return Passage(mark.checkpoint, tuple(deeds), tick)
 
+    def onward(self, board: Board, tick: int) -> Passage:
+        """Return the way of a board on to a later tick; at its own tick of this past nothing has been done to it yet.
+
+        What is done at the tick where the way ends is left out, so that it can go on from there.
+        """
+        first, last = (bisect_left(self._deeds, end, key=_tick) for end in (board.tick, tick))
+        return Passage(board.checkpoint(), tuple(self._deeds[first:last]), tick)
+
     def _cut(self, tick: int) -> None:
         """Forget what came at a tick and after it."""
         self._marks = [mark for mark in self._marks if mark.tick < tick]

@@ -9,6 +9,7 @@ from pydantic import BaseModel, Field
 
 from core.board.document import plant_of
 from core.errors import InputError
+from scenarios.claims import check_marks
 from scenarios.expectation import Verdict
 from scenarios.library import get, ids, library
 from scenarios.schema import Scenario
@@ -98,7 +99,8 @@ def get_scenario(scenario_id: str) -> ScenarioText:
 @router.post("/check")
 def check_scenario(body: ScenarioSource) -> ScenarioText:
     """Check a scenario without running it; the answer 422 says what is wrong with it."""
-    scenario, _ = prepare(body.scenario, {}, None)
+    scenario, board = prepare(body.scenario, {}, None)
+    check_marks(scenario, board.signals)
     try:
         return ScenarioText(document=scenario.document, toml=scenario.toml(), warnings=scenario.warnings)
     except (TypeError, ValueError) as error:

@@ -22,6 +22,7 @@ from server.bench.changes import Changes
 from server.bench.events import Event, EventLog
 from server.bench.hiding import BlindView, Hiding
 from server.bench.jumping import Jumping
+from server.bench.measuring import Measuring
 from server.bench.narration import Narration
 from server.bench.pacing import Pacer
 from server.bench.portrait import bench_of, document_now, status_of
@@ -94,7 +95,7 @@ class Session(Jumping):
         self.created = datetime.now(UTC)
         self.running = Running(self, time_scale, scenario.samples, metrics)
         self.changes, self.snapshots = Changes(self, clock), Snapshots(self)
-        self.recordings, self.hiding = Recordings(self), Hiding(self)
+        self.recordings, self.hiding, self.measuring = Recordings(self), Hiding(self), Measuring()
         self._metrics = metrics
         self.narration = Narration(board.spec, board.signals, board.signals.outputs)
         self._remember()

@@ -99,6 +99,8 @@ _DOORS = {
         GET {BENCH}/diagnosers/{{name}}/turn
         GET {BENCH}/diagnosers/{{name}}/aliases
         GET {BENCH}/readouts/{{name}}
+        GET {BENCH}/claims
+        GET {BENCH}/printed
         GET {BENCH}/snapshots
         GET {BENCH}/recordings
         SOCKET {BENCH}/stream  *
@@ -165,6 +167,9 @@ _DOORS = {
         GET {API}/sweeps/{{sweep_id}}/runs
         GET {API}/sweeps/{{sweep_id}}/report
         GET {API}/sweeps/{{sweep_id}}/script
+        POST {API}/thresholds
+        GET {API}/thresholds/{{threshold_id}}
+        DELETE {API}/thresholds/{{threshold_id}}
         POST {API}/gallery/run
         POST {API}/sheets
         DELETE {API}/sheets/{{sheet_id}}

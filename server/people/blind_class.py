@@ -17,7 +17,9 @@ from server.people.classes import Classes
 from server.people.draw import device_of
 from server.people.person import Person
 
-LEFT_OUT = frozenset({"events", "samples", "duration_ms", "expect", "metrics", "claim", "note", "faults", "twins"})
+LEFT_OUT = frozenset(
+    {"events", "samples", "duration_ms", "expect", "printed", "metrics", "claim", "note", "faults", "twins"}
+)
 """Parts of a scenario that would tell the fault, or that have nothing to do with the bench."""
 
 

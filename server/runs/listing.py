@@ -25,7 +25,7 @@ ACTIVE = ("queued", "running")
 MOST = 200
 """Rows of one list."""
 LONGEST_LABEL = 120
-Kind = Literal["run", "campaign"]
+Kind = Literal["run", "campaign", "threshold"]
 State = Literal["queued", "running", "done", "failed", "cancelled", "aborted"]
 
 
@@ -99,7 +99,11 @@ class Requests:
 
     def __init__(self, database: Database, data: Path, shard: str = "") -> None:
         self._database, self._shard = database, shard
-        self.folders: dict[Kind, Path] = {"run": data / "runs", "campaign": data / "sweeps"}
+        self.folders: dict[Kind, Path] = {
+            "run": data / "runs",
+            "campaign": data / "sweeps",
+            "threshold": data / "thresholds",  # which keeps no files
+        }
 
     async def settle(self, row: RequestRow, has_room: bool) -> RequestRow | None:
         """Return the same request if it waits, is under way or done, named anew; otherwise put it there if it may.

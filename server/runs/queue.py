@@ -110,8 +110,12 @@ class Queue:
         self.kinds: dict[str, Requested[Any]] = {}
         self.results, self.processes = Results(database), Processes(workers, NICE)
         self.requests = Requests(database, settings.data, settings.shard)
-        self._turns = {"run": asyncio.Semaphore(workers), "campaign": asyncio.Semaphore(1)}
-        self._threads = ThreadPoolExecutor(workers + 2, thread_name_prefix="combbench-campaign")  # figures are made too
+        self._turns = {
+            "run": asyncio.Semaphore(workers),
+            "campaign": asyncio.Semaphore(1),
+            "threshold": asyncio.Semaphore(1),
+        }
+        self._threads = ThreadPoolExecutor(workers + 3, thread_name_prefix="combbench-campaign")  # figures are made too
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self.campaigns: dict[str, Campaign] = {}
         self._is_closing = False

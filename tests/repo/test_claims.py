@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from core import registry
-from scenarios.library import ids
+from scenarios.library import ids, library
 from tests.scenarios.test_library_rules import FIGURES, TABLES
 
 OF_THE_TEXT = ("ch1-", "ch2-", "ch3-", "ch4-", "ch5-", "ch6-", "app")
@@ -61,3 +61,17 @@ def test_where_there_is_none_the_reason_stands_beside_it(rows: list[list[str]]) 
     assert without and all(len(row[3].split()) >= 5 for row in without)
     shown = [row for row in rows if row != COLUMNS and row[2] != "none"]
     assert all("`" in row[2] or re.search(r"page|panel|3D view", row[2]) for row in shown)
+
+
+def test_every_figure_on_a_bench_has_printed_marks_or_a_reason(root: Path) -> None:
+    text = (root / "docs" / "claims.md").read_text().split("## Figures described in numbers")[1]
+    reasons = {
+        name: words
+        for names, words in re.findall(r"^- ((?:`[^`]+`,? ?)+): (.+)$", text, re.MULTILINE)
+        for name in re.findall(r"`([^`]+)`", names)
+    }
+    of_a_figure = {one.id for one in library() if one.study is None and "figure" in one.head.source.lower()}
+    drawn = {one.id for one in library() if one.head.printed}
+    assert of_a_figure - drawn == set(reasons)
+    assert all(len(words.split()) >= 4 for words in reasons.values())
+    assert not [one.id for one in library() if one.study is not None and one.head.printed]

@@ -12,6 +12,7 @@ import type {
   NewBench,
   NewLink,
   NewRun,
+  NewThreshold,
   PointQuery,
   RunFilter,
   SweptSine,
@@ -24,6 +25,7 @@ const run = (run_id: string) => ({ params: { path: { run_id } } });
 const recording = (recording_id: string) => ({ params: { path: { recording_id } } });
 const parameterSet = (set_id: string) => ({ params: { path: { set_id } } });
 const link = (link_id: string) => ({ params: { path: { link_id } } });
+const threshold = (threshold_id: string) => ({ params: { path: { threshold_id } } });
 const sweep = (sweep_id: string) => ({ params: { path: { sweep_id } } });
 
 /** The REST calls of the page. */
@@ -64,6 +66,11 @@ export const api = {
   instabilityMap: (body: MapSource) => data(client.POST("/api/v1/theory/instability-map", { body })),
   readout: (bench_id: string, name: string) =>
     data(client.GET("/api/v1/benches/{bench_id}/readouts/{name}", { params: { path: { bench_id, name } } })),
+  printed: async (id: string) => (await data(client.GET("/api/v1/benches/{bench_id}/printed", bench(id)))).marks,
+  claims: (id: string) => data(client.GET("/api/v1/benches/{bench_id}/claims", bench(id))),
+  findThreshold: (body: NewThreshold) => data(client.POST("/api/v1/thresholds", { body })),
+  threshold: (id: string) => data(client.GET("/api/v1/thresholds/{threshold_id}", threshold(id))),
+  cancelThreshold: (id: string) => data(client.DELETE("/api/v1/thresholds/{threshold_id}", threshold(id))),
   plants: (id: string) => data(client.GET("/api/v1/benches/{bench_id}/plants", bench(id))),
   devices: async () => (await data(client.GET("/api/v1/devices"))).devices,
   scenarios: async () => (await data(client.GET("/api/v1/scenarios"))).scenarios,

@@ -599,6 +599,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/benches/{bench_id}/printed": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Printed
+         * @description List what is printed of the figure, with the ticks at which it is drawn.
+         */
+        get: operations["list_printed_api_v1_benches__bench_id__printed_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/claims": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Claims
+         * @description Measure the claims of a bench over what it has run since tick 0, with the bits of a headless run.
+         */
+        get: operations["list_claims_api_v1_benches__bench_id__claims_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/benches/{bench_id}/snapshots": {
         parameters: {
             query?: never;
@@ -1318,6 +1358,50 @@ export interface paths {
         put?: never;
         post?: never;
         delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/thresholds": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Find Threshold
+         * @description Look headless where a claim begins to hold; it does not disturb the live benches.
+         */
+        post: operations["find_threshold_api_v1_thresholds_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/thresholds/{threshold_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Threshold
+         * @description Return how far a search is, and what it found once it is done.
+         */
+        get: operations["get_threshold_api_v1_thresholds__threshold_id__get"];
+        put?: never;
+        post?: never;
+        /**
+         * Cancel Threshold
+         * @description Cancel a search that waits or is under way; the runs that are done stay.
+         */
+        delete: operations["cancel_threshold_api_v1_thresholds__threshold_id__delete"];
         options?: never;
         head?: never;
         patch?: never;
@@ -3113,6 +3197,70 @@ export interface components {
             triggers: components["schemas"]["TriggerCaptures"][];
         };
         /**
+         * BenchClaim
+         * @description A claim of a live bench, with the numbers that may be turned for it.
+         */
+        BenchClaim: {
+            /** Metric */
+            metric: string;
+            /** Published */
+            published: string;
+            /** Published Value */
+            published_value: number | null;
+            /**
+             * Printed Low
+             * @description Range in which a figure agrees with the text; null: open, or none
+             */
+            printed_low: number | null;
+            /** Printed High */
+            printed_high: number | null;
+            /**
+             * Is Published
+             * @description Whether the text says something that a figure is compared with
+             */
+            is_published: boolean;
+            /** Expected */
+            expected: string;
+            /**
+             * Low
+             * @description Smallest value that counts as expected
+             */
+            low: number | null;
+            /** High */
+            high: number | null;
+            /** Note */
+            note: string;
+            /** Reason */
+            reason: string;
+            /** Fitted */
+            fitted: string[];
+            /**
+             * Measured
+             * @description Over what has run
+             */
+            measured: number | null;
+            /**
+             * As Expected
+             * @description Null without a measured value
+             */
+            as_expected: boolean | null;
+            /**
+             * State
+             * @description Of the printed claim; of the expectation where nothing is printed
+             * @enum {string}
+             */
+            state: "holds" | "fails" | "not yet";
+            /**
+             * Verdict
+             * @description Null until the run has come to its end
+             */
+            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
+            /** Marks */
+            marks: components["schemas"]["Mark"][];
+            /** Knobs */
+            knobs: components["schemas"]["Knob"][];
+        };
+        /**
          * BenchList
          * @description The live benches, oldest first.
          */
@@ -3450,6 +3598,53 @@ export interface components {
              * @default *
              */
             only?: string;
+        };
+        /**
+         * ClaimList
+         * @description The claims of the scenario of a live bench, judged by the figures of a headless run.
+         */
+        ClaimList: {
+            /** Bench Id */
+            bench_id: string;
+            /** Scenario Id */
+            scenario_id: string;
+            /** Title */
+            title: string;
+            /** Source */
+            source: string;
+            /** Claim */
+            claim: string;
+            /** Seed */
+            seed: number;
+            /** Version */
+            version: string;
+            /**
+             * Tick
+             * @description Ticks that are measured
+             */
+            tick: number;
+            /**
+             * Ends At
+             * @description Tick at which a headless run ends; what runs beyond it does not count
+             */
+            ends_at: number;
+            /**
+             * Is Over
+             * @description Whether the run has come to its end; until then nothing is ticked or crossed
+             */
+            is_over: boolean;
+            /**
+             * Reason
+             * @description Why nothing is measured; empty if it is
+             */
+            reason: string;
+            /**
+             * Verdict
+             * @description Null until the run has come to its end
+             */
+            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
+            /** Claims */
+            claims: components["schemas"]["BenchClaim"][];
         };
         /**
          * Class
@@ -4749,6 +4944,41 @@ export interface components {
             bench: string;
         };
         /**
+         * Knob
+         * @description A number of a scenario, and the range over which it may be looked for.
+         */
+        Knob: {
+            /** Path */
+            path: string;
+            /** Label */
+            label: string;
+            /** Unit */
+            unit: string;
+            /** Value */
+            value: number;
+            /** Low */
+            low: number;
+            /** High */
+            high: number;
+            /** Is Log */
+            is_log: boolean;
+            /**
+             * Is Fitted
+             * @description Chosen so that the figure agrees with the text
+             */
+            is_fitted: boolean;
+            /**
+             * Is Live
+             * @description Whether a live bench can be given another value as it runs
+             */
+            is_live: boolean;
+            /**
+             * Fault
+             * @description The fault whose severity it is
+             */
+            fault?: string | null;
+        };
+        /**
          * LectureCard
          * @description A lecture among others.
          */
@@ -5039,6 +5269,63 @@ export interface components {
              * @default 60
              */
             gains?: number;
+        };
+        /**
+         * Mark
+         * @description A printed number as it is drawn over a signal of a bench.
+         */
+        Mark: {
+            /** Figure */
+            figure: string;
+            /** Section */
+            section: string;
+            /** Words */
+            words: string;
+            /**
+             * Number
+             * @description The part of the words that is the number
+             */
+            number: string;
+            /**
+             * Reading
+             * @description How what is drawn follows from the words, where it does not stand in them
+             */
+            reading: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "band" | "value" | "moment";
+            /** Signal */
+            signal: string;
+            /** Unit */
+            unit: string;
+            /** Low */
+            low: number | null;
+            /** High */
+            high: number | null;
+            /** Values */
+            values: number[];
+            /** From Tick */
+            from_tick: number;
+            /**
+             * Until Tick
+             * @description Null for the end of the run
+             */
+            until_tick: number | null;
+            /**
+             * Problem
+             * @description Why it cannot be drawn on this bench
+             */
+            problem: string;
+        };
+        /**
+         * MarkList
+         * @description What is printed of the figure of a bench, to be drawn under its traces; also what no claim judges.
+         */
+        MarkList: {
+            /** Marks */
+            marks: components["schemas"]["Mark"][];
         };
         /**
          * MatrixSource
@@ -5451,6 +5738,45 @@ export interface components {
              * @default
              */
             label?: string;
+        };
+        /**
+         * NewThreshold
+         * @description The scenario, the claim and the number that are looked at.
+         */
+        NewThreshold: {
+            /** Metric */
+            metric: string;
+            /** Path */
+            path: string;
+            /** Low */
+            low: number;
+            /** High */
+            high: number;
+            /**
+             * Scale
+             * @default linear
+             * @enum {string}
+             */
+            scale?: "linear" | "log";
+            /**
+             * Points
+             * @description Of the grid, both ends included
+             * @default 17
+             */
+            points?: number;
+            /**
+             * Scenario
+             * @description Library id, TOML text, or document
+             */
+            scenario?: string | {
+                [key: string]: unknown;
+            } | null;
+            /**
+             * Bench
+             * @description Instead: a live bench, whose scenario it is, as it began
+             * @default
+             */
+            bench?: string;
         };
         /**
          * NewVote
@@ -7142,6 +7468,77 @@ export interface components {
             cold?: boolean;
         };
         /**
+         * Threshold
+         * @description Where a claim holds over the range of a number.
+         */
+        Threshold: {
+            /** Metric */
+            metric: string;
+            /** Path */
+            path: string;
+            /** Low */
+            low: number;
+            /** High */
+            high: number;
+            /**
+             * Scale
+             * @enum {string}
+             */
+            scale: "linear" | "log";
+            /**
+             * Tried
+             * @description By rising value
+             */
+            tried: components["schemas"]["Tried"][];
+            /** Turns */
+            turns: components["schemas"]["ThresholdTurn"][];
+            /** Words */
+            words: string;
+        };
+        /**
+         * ThresholdRun
+         * @description A search for a threshold as the API shows it.
+         */
+        ThresholdRun: {
+            /** Id */
+            id: string;
+            /** State */
+            state: string;
+            /** Scenario Id */
+            scenario_id: string;
+            /**
+             * Progress
+             * @default 0
+             */
+            progress?: number;
+            /** @description Null until it is done */
+            found?: components["schemas"]["Threshold"] | null;
+            /** Error */
+            error: {
+                [key: string]: unknown;
+            } | null;
+        };
+        /**
+         * ThresholdTurn
+         * @description A place where a claim begins to hold, or ceases to, as the number grows.
+         */
+        ThresholdTurn: {
+            /**
+             * Value
+             * @description The value nearest to it at which the claim holds
+             */
+            value: number;
+            /** Begins */
+            begins: boolean;
+            /**
+             * Low
+             * @description It lies between this value and the next
+             */
+            low: number;
+            /** High */
+            high: number;
+        };
+        /**
          * Tile
          * @description A student and the bench, in brief.
          */
@@ -7278,6 +7675,18 @@ export interface components {
              * @description Of the ticks that it takes, those that are done
              */
             share: number;
+        };
+        /**
+         * Tried
+         * @description A value that was tried, the figure measured with it, and whether the claim holds there.
+         */
+        Tried: {
+            /** Value */
+            value: number;
+            /** Measured */
+            measured: number | null;
+            /** Holds */
+            holds: boolean;
         };
         /**
          * TriggerCaptures
@@ -9424,6 +9833,68 @@ export interface operations {
             };
         };
     };
+    list_printed_api_v1_benches__bench_id__printed_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MarkList"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_claims_api_v1_benches__bench_id__claims_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ClaimList"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     list_snapshots_api_v1_benches__bench_id__snapshots_get: {
         parameters: {
             query?: never;
@@ -10926,6 +11397,110 @@ export interface operations {
                 };
                 content: {
                     "text/x-python": unknown;
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    find_threshold_api_v1_thresholds_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewThreshold"];
+            };
+        };
+        responses: {
+            /** @description The same search is there already */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ThresholdRun"];
+                };
+            };
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ThresholdRun"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_threshold_api_v1_thresholds__threshold_id__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                threshold_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ThresholdRun"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    cancel_threshold_api_v1_thresholds__threshold_id__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                threshold_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ThresholdRun"];
                 };
             };
             /** @description Refused or failed */

@@ -22,6 +22,9 @@ export type Design = Schemas["Design"];
 /** A class. */
 export type Class = Schemas["Class"];
 export type Company = Schemas["Company"];
+/** A claim of a live bench, beside what was measured. */
+export type Claim = Schemas["BenchClaim"];
+export type ClaimList = Schemas["ClaimList"];
 export type CompareWith = Schemas["CompareWith"];
 export type Comparison = Schemas["Comparison"];
 export type Device = Schemas["DeviceCard"];
@@ -40,6 +43,8 @@ export type ExcitationReport = Schemas["ExcitationReport"];
 export type HiddenAnswer = Schemas["Answer"];
 export type Identification = Schemas["Identification"];
 export type InstabilityMap = Schemas["InstabilityMap"];
+/** A number that may be turned to see where a claim begins to hold. */
+export type ClaimKnob = Schemas["Knob"];
 export type Link = Schemas["Link"];
 export type LinkWords = Schemas["Words"];
 export type LogEntry = Omit<Schemas["Event"], "command"> & { command?: Command | null };
@@ -51,6 +56,10 @@ export type NewBench = Schemas["NewBench"];
 export type NewClass = Schemas["NewClass"];
 export type NewLink = Schemas["NewLink"];
 export type NewRun = Schemas["NewRun"];
+export type NewThreshold = Partial<Schemas["NewThreshold"]> &
+  Pick<Schemas["NewThreshold"], "metric" | "path" | "low" | "high">;
+export type ThresholdRun = Schemas["ThresholdRun"];
+export type Threshold = Schemas["Threshold"];
 export type Outcomes = Schemas["Outcomes"];
 export type Parameter = Schemas["ParameterCard"];
 export type ParameterSet = Schemas["ParameterSet"];
@@ -118,3 +127,5 @@ export type Command =
   | Schemas["ResetTrip"]
   | Schemas["Seek"]
   | Schemas["Loop"];
+/** What is printed of a figure, as it is drawn over a signal. */
+export type PrintedMark = Schemas["Mark"];

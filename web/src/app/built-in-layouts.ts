@@ -80,6 +80,7 @@ export const BUILT_IN: Layouts = {
     addTo(api, "view3d", "view3d", { below: "faults" });
     addTo(api, "why", "why", { within: "view3d", inactive: true });
     addTo(api, "lanes", "lanes", { below: "motion" });
+    addTo(api, "claims", "claims", { within: "lanes", inactive: true });
     size(api, width, height, { faults: { w: Math.max(0.3, LIST_PX / width), h: 0.42 }, lanes: { h: 0.52 } });
   },
   lab(api, width, height) {
@@ -96,6 +97,7 @@ export const BUILT_IN: Layouts = {
     addTo(api, "sheet", "sheet", { within: "lanes", inactive: true });
     addTo(api, "events", "events", { within: "lanes", inactive: true });
     addTo(api, "narrator", "narrator", { within: "lanes", inactive: true });
+    addTo(api, "claims", "claims", { within: "lanes", inactive: true });
     addTo(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
     addTo(api, "twins", "twins", { within: "lanes", inactive: true });
     addTo(api, "hypotheses", "hypotheses", { within: "lanes", inactive: true });
@@ -127,6 +129,7 @@ export const BUILT_IN: Layouts = {
     addTo(api, "blind", "blind", { within: "faults", inactive: true });
     addTo(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
     addTo(api, "lanes", "lanes", { below: "voltage" });
+    addTo(api, "claims", "claims", { within: "lanes", inactive: true });
     addTo(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
     addTo(api, "twins", "twins", { within: "lanes", inactive: true });
     addTo(api, "hypotheses", "hypotheses", { within: "lanes", inactive: true });

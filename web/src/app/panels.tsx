@@ -6,6 +6,7 @@ import { AllanPanel } from "../panels/allan/allan-panel";
 import { BehaviourPanel } from "../panels/behaviour/behaviour-panel";
 import { BlindPanel } from "../panels/blind/blind-panel";
 import { CardPanel } from "../panels/card/card-panel";
+import { ClaimsPanel } from "../panels/claims/claims-panel";
 import { ControllersPanel } from "../panels/controllers/controllers-panel";
 import { EditorPanel } from "../panels/editor/editor-panel";
 import { EnvironmentPanel } from "../panels/environment/environment-panel";
@@ -74,6 +75,7 @@ export const PANELS: Record<string, PanelKind> = {
   recordings: { title: "Recordings", component: RecordingsPanel },
   events: { title: "Events", whileBlind: true, component: EventsPanel },
   narrator: { title: "Narrator", whileBlind: true, component: NarratorPanel },
+  claims: { title: "Claims", component: ClaimsPanel },
   scores: { title: "Scoreboard", component: ScoreboardPanel },
   vote: { title: "Vote", whileBlind: true, component: VotePanel },
   view3d: { title: "3D", component: View3dPanel },

@@ -18,6 +18,7 @@ function addBelow(api: DockviewApi, beside: boolean): void {
   addTo(api, "lanes", "lanes", { within: "rate", inactive: true });
   addTo(api, "twins", "twins", { within: "forces", inactive: true });
   addTo(api, "spectrum", "spectrum", { within: "forces", inactive: true });
+  addTo(api, "claims", "claims", { within: "forces", inactive: true });
   addTo(api, "recordings", "recordings", { within: "forces", inactive: true });
 }
 
@@ -31,6 +32,7 @@ export const BUILT_IN_AXES: Layouts = {
     addTo(api, "allan", "allan", { within: "rate", inactive: true });
     addTo(api, "lanes", "lanes", { within: "rate", inactive: true });
     addTo(api, "locus", "locus", { below: "rate" });
+    addTo(api, "claims", "claims", { within: "rate", inactive: true });
     addTo(
       api,
       "view3d",

@@ -11,7 +11,7 @@ export interface LegendEntry {
   mark?: "dot" | "cross" | "field";
 }
 
-const LINE = 20;
+const SIZE = 13;
 const MARK = 28;
 const BETWEEN = 22;
 
@@ -22,9 +22,11 @@ export function paintLegend(
   left: number,
   top: number,
   width: number,
+  size = SIZE,
 ): number {
+  const line = size + 7;
   if (entries.length === 0) return top - 6;
-  pen.font = fontFor(13, 1, 400);
+  pen.font = fontFor(size, 1, 400);
   pen.textAlign = "left";
   pen.textBaseline = "middle";
   let x = left;
@@ -33,7 +35,7 @@ export function paintLegend(
     const wide = MARK + 6 + pen.measureText(name).width;
     if (x > left && x + wide > left + width) {
       x = left;
-      y += LINE;
+      y += line;
     }
     pen.fillStyle = pen.strokeStyle = colour;
     pen.beginPath();
@@ -54,5 +56,5 @@ export function paintLegend(
     pen.fillText(name, x + MARK + 6, y);
     x += wide + BETWEEN;
   }
-  return y + LINE - 6;
+  return y + line - 6;
 }

@@ -36,6 +36,7 @@ const PICTURE: ScopeShown = {
     ] as unknown as ScopeShown["marks"]["events"],
     faults: [{ name: "added_mass", severity: 0.05, start: 150, end: undefined }],
   },
+  printed: [],
 };
 
 const drawn = (title: string) =>
@@ -83,5 +84,6 @@ it("draws every value where its axis says, in the colours of white paper", () =>
 
 it("says no more than three quantities on one axis", () => {
   expect(axisTitle(["a.p", "b.q", "c.r", "d.s"], MICRO)).toBe("p, q, r, …, µm");
+  expect(axisTitle(["a.p.b", "a.p.c", "a.p.d", "a.p.e"], MICRO)).toBe("p, µm");
   expect(axisTitle(["plant.displacement", "model.displacement"], MICRO)).toBe("displacement, µm");
 });

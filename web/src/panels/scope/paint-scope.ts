@@ -1,8 +1,10 @@
+import type { PrintedMark } from "../../api/types";
 import type { Marks } from "../../bench/marks";
 import { type Axis, linearAxis, paintColumns, paintFrame, paintRows, placeOn, timeAxis } from "../../picture/axes";
 import type { EventAxis } from "../../picture/event-marks";
 import type { Box, Field, Look, Pen } from "../../picture/pen";
 import type { Picture } from "../../picture/picture";
+import { paintPrinted } from "../../picture/printed-marks";
 import { strokeEnvelope, within } from "../../picture/traces";
 import { formatSi } from "../../ui/format";
 import { CANVAS, DASHES, faded, fontFor, type Scheme, TRACE_COLOURS } from "../../ui/palette";
@@ -53,6 +55,8 @@ export interface ScopeShown {
   isLog: boolean;
   dtMs: number;
   marks: Marks;
+  /** What is printed of the figure, to be drawn under the traces. */
+  printed: readonly PrintedMark[];
 }
 
 /** Room for an upright axis, in sizes of its letters: with its unit above it, and with its title beside it. */
@@ -98,9 +102,23 @@ export function paintScope(pen: Pen, field: Field, shown: ScopeShown, look: Look
       pen.fillText(shown.isLog ? "log" : scales[i].unit, onLeft ? left - 6 : edge + 6, top - fontSize * 0.85 - 4);
     }
   });
+  if (!shown.isLog) paintPrinted(pen, field, shown.printed, printedOn(shown, field, look.scheme), look);
   const inked = traces.flatMap(({ unit }, i) => (units.includes(unit) && shown.envelopes[i] ? [i] : []));
   within(pen, field, () => options.ink(inked));
   paintFrame(pen, field, look);
+}
+
+/** Where printed marks lie on a scope, and in which colours. */
+function printedOn({ traces, units, ranges, span }: ScopeShown, { bottom, top }: Field, scheme: Scheme) {
+  const traceOf = (signal: string) => traces.find(({ name, behind }) => name === signal && behind === undefined);
+  return {
+    span,
+    placeOf(signal: string) {
+      const range = ranges[units.indexOf(traceOf(signal)?.unit ?? "")];
+      return range && placeOn({ range: [range.min, range.max] }, bottom, top);
+    },
+    colourOf: (signal: string) => TRACE_COLOURS[scheme][traceOf(signal)?.slot ?? 0],
+  };
 }
 
 /** Within so many decades 2 and 5 have a tick as well. */
@@ -125,9 +143,13 @@ const words = (name: string) => name.replaceAll(/[._]/g, " ");
 /** What an axis shows: the quantities on it, and their unit. */
 export function axisTitle(names: readonly string[], scale: UnitScale): string {
   const quantities = [...new Set(names.map((name) => words(name.split(".").slice(1).join(" ") || name)))];
+  const alike = new Set(quantities.map((quantity) => quantity.split(" ")[0]));
+  if (quantities.length > 3 && alike.size === 1) return titled([...alike][0], scale);
   const said = quantities.length > 3 ? `${quantities.slice(0, 3).join(", ")}, …` : quantities.join(", ");
-  return scale.unit ? `${said}, ${scale.unit}` : said;
+  return titled(said, scale);
 }
+
+const titled = (said: string, { unit }: UnitScale) => (unit ? `${said}, ${unit}` : said);
 
 /** The colour of a trace in a scheme, whatever it is on the screen. */
 function inkOf({ slot, behind }: PlotTrace, scheme: Scheme): string {

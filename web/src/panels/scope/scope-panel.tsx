@@ -2,6 +2,7 @@ import "uplot/dist/uPlot.min.css";
 import { useCallback, useEffect, useMemo, useRef, useState } from "react";
 import { behindText, useBehind } from "../../bench/behind";
 import { marksNow } from "../../bench/marks";
+import { marksOver, useMarks, usePrinted } from "../../bench/printed";
 import { NORMAL_PX, useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import type { PanelFrame } from "../../stream/panel-frame";
@@ -15,6 +16,7 @@ import { CaptureStrip } from "./capture-strip";
 import { EnvelopeNote } from "./envelope-note";
 import { ExportMenu } from "./export-menu";
 import { MeasureStrip } from "./measure-strip";
+import { PrintedLine } from "./printed-line";
 import styles from "./scope.module.css";
 import { type CursorPair, type PlotArea, ScopeCursors } from "./scope-cursors";
 import { ScopeLegend } from "./scope-legend";
@@ -44,6 +46,18 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
   const behind = useBehind((s) => s.behind);
   const difference = useBehind((s) => s.difference);
   const tracesBehind = useTracesBehind(traces, behind, difference);
+  const marks = useMarks();
+  const isPrinted = usePrinted((s) => s.isShown);
+  const printed = useMemo(
+    () =>
+      marksOver(
+        marks,
+        traces.map((t) => t.name),
+      ),
+    [marks, traces],
+  );
+  const drawn = useRef<typeof printed>([]);
+  drawn.current = isPrinted ? printed : [];
   const host = useRef<HTMLDivElement>(null);
   const plot = useRef<ScopePlot | undefined>(undefined);
   const { view, span, look, stand, goLive } = useTimeView(config.windowMs, dtMs, (start, end) =>
@@ -78,6 +92,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
       lineWidth: fontSize > NORMAL_PX ? 0.17 * fontSize : 1.6,
       fontSize,
       marks: marksNow,
+      printed: () => drawn.current,
       isLog: config.log ?? false,
       isShaded: () => useBehind.getState().shaded,
       gestures: { onSpan: look, onLive: goLive },
@@ -100,6 +115,9 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
       plot.current = undefined;
     };
   }, [traces, tracesBehind, config.log, scheme, fontSize, look, goLive, feed]);
+
+  // biome-ignore lint/correctness/useExhaustiveDependencies: what is printed is drawn anew
+  useEffect(() => feed.current?.redraw(), [printed, isPrinted, feed]);
 
   const rearm = useCallback(() => feed.current && stream.client.feeds.rearm(feed.current), [feed]);
   const sayTime = (share: number) => {
@@ -171,6 +189,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
             <CaptureStrip captures={captures} standing={capture} dtMs={dtMs} onStand={stand} onBrowse={browse} />
           )}
           {behind.length > 0 && <p className={styles.behind}>{behindText(behind, difference)}</p>}
+          {printed.length > 0 && <PrintedLine marks={printed} />}
           {config.measure && <MeasureStrip traces={traces} plot={plot} at={cursors} />}
         </>
       )}

@@ -1,8 +1,10 @@
 import uPlot from "uplot";
+import type { PrintedMark } from "../../api/types";
 import { flagWords } from "../../bench/flag-words";
 import type { Marks } from "../../bench/marks";
 import { markEvents } from "../../picture/event-marks";
 import type { Field, Look } from "../../picture/pen";
+import { reachMarks } from "../../picture/printed-marks";
 import { columnAt, columnTimes, type PanelFrame } from "../../stream/panel-frame";
 import { hover } from "../../ui/hover";
 import { CANVAS, DASHES, faded, fontFor } from "../../ui/palette";
@@ -33,6 +35,8 @@ export interface ScopePlotOptions extends Look {
   traces: PlotTrace[];
   lineWidth: number;
   marks: () => Marks;
+  /** What is printed of the figure, if it is to be drawn. */
+  printed: () => readonly PrintedMark[];
   /** Magnitudes on a logarithmic scale. */
   isLog: boolean;
   /** Whether the difference from what lies behind is shaded. */
@@ -164,6 +168,7 @@ export class ScopePlot {
       isLog: this.options.isLog,
       dtMs,
       marks: this.options.marks(),
+      printed: this.options.printed(),
     };
   }
 
@@ -244,6 +249,7 @@ export class ScopePlot {
         }
       });
       if (this.options.isLog) low = Math.max(low, high - MOST_DECADES);
+      else if (low <= high) [low, high] = reachMarks([low, high], this.options.printed(), unit, this.span);
       const range = nextRange(this.ranges[axis], low, high, now);
       if (range === this.ranges[axis]) return;
       const size = this.options.isLog ? 10 ** range.max : Math.max(Math.abs(range.min), Math.abs(range.max));

@@ -1,0 +1,81 @@
+"""The claims of a live bench: what is printed, what is expected, and what is measured over what has run."""
+
+from __future__ import annotations
+
+import asyncio
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from scenarios.claims import Claim, Mark, claims, marks
+from scenarios.expectation import Verdict, overall
+from scenarios.knobs import Knob, knobs
+from server.api.bodies import StrictRoute
+from server.api.deps import ServiceDep, SessionDep
+from server.bench.measuring import Run
+from server.version import VERSION
+
+router = APIRouter(prefix="/benches/{bench_id}", tags=["claims"], route_class=StrictRoute)
+
+
+class BenchClaim(Claim):
+    """A claim of a live bench, with the numbers that may be turned for it."""
+
+    knobs: list[Knob]
+
+
+class ClaimList(BaseModel):
+    """The claims of the scenario of a live bench, judged by the figures of a headless run."""
+
+    bench_id: str
+    scenario_id: str
+    title: str
+    source: str
+    claim: str
+    seed: int
+    version: str
+    tick: int = Field(description="Ticks that are measured")
+    ends_at: int = Field(description="Tick at which a headless run ends; what runs beyond it does not count")
+    is_over: bool = Field(description="Whether the run has come to its end; until then nothing is ticked or crossed")
+    reason: str = Field(description="Why nothing is measured; empty if it is")
+    verdict: Verdict | None = Field(description="Null until the run has come to its end")
+    claims: list[BenchClaim]
+
+
+class MarkList(BaseModel):
+    """What is printed of the figure of a bench, to be drawn under its traces; also what no claim judges."""
+
+    marks: list[Mark]
+
+
+@router.get("/printed")
+async def list_printed(session: SessionDep) -> MarkList:
+    """List what is printed of the figure, with the ticks at which it is drawn."""
+    return MarkList(marks=marks(session.scenario, session.signals))
+
+
+@router.get("/claims")
+async def list_claims(session: SessionDep, service: ServiceDep) -> ClaimList:
+    """Measure the claims of a bench over what it has run since tick 0, with the bits of a headless run."""
+    run = await service.engine.call(Run.of, session)
+    figures = await asyncio.to_thread(session.measuring.figures, run)
+    scenario, signals = run.scenario, session.signals
+    found = claims(scenario, figures.metrics or {}, signals, figures.is_over)
+    return ClaimList(
+        bench_id=session.id,
+        scenario_id=scenario.id,
+        title=scenario.head.title,
+        source=scenario.head.source,
+        claim=scenario.head.claim,
+        seed=session.board.spec.seed,
+        version=VERSION,
+        tick=figures.tick,
+        ends_at=run.ends_at,
+        is_over=figures.is_over,
+        reason=figures.reason,
+        verdict=overall(claim.verdict for claim in found),
+        claims=[
+            BenchClaim(**dict(claim), knobs=knobs(scenario, entry))
+            for claim, entry in zip(found, scenario.head.expect, strict=True)
+        ],
+    )

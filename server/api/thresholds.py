@@ -1,0 +1,64 @@
+"""Thresholds: where a claim begins to hold over the range of a number."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any, Self
+
+from fastapi import APIRouter, Response
+from pydantic import Field, model_validator
+
+from scenarios.campaign.threshold import Wanted
+from server.api.bodies import Body, StrictRoute
+from server.api.deps import PersonDep, RateLimited, ServiceDep
+from server.bench.making import prepare
+from server.runs.thresholds import ThresholdRun
+
+router = APIRouter(prefix="/thresholds", tags=["thresholds"], route_class=StrictRoute)
+
+
+class NewThreshold(Body, Wanted):
+    """The scenario, the claim and the number that are looked at."""
+
+    scenario: str | dict[str, Any] | None = Field(None, description="Library id, TOML text, or document")
+    bench: str = Field("", max_length=100, description="Instead: a live bench, whose scenario it is, as it began")
+
+    @model_validator(mode="after")
+    def _has_one_scenario(self) -> Self:
+        if (self.scenario is None) == (not self.bench):
+            raise ValueError("give a scenario or a bench")
+        return self
+
+
+@router.post(
+    "",
+    status_code=202,
+    dependencies=[RateLimited],
+    responses={200: {"model": ThresholdRun, "description": "The same search is there already"}},
+)
+async def find_threshold(
+    body: NewThreshold, service: ServiceDep, person: PersonDep, response: Response
+) -> ThresholdRun:
+    """Look headless where a claim begins to hold; it does not disturb the live benches."""
+    if body.scenario is None:
+        scenario = service.views.whole(body.bench, person).scenario
+    else:
+        scenario, _ = await asyncio.to_thread(prepare, body.scenario, {}, None, service.units.named_in)
+    wanted = Wanted.model_validate(body.model_dump(include=set(Wanted.model_fields)))
+    await service.keeping.room()
+    found, is_new = await service.thresholds.start(scenario, wanted)
+    response.status_code = 202 if is_new else 200
+    response.headers["Location"] = f"/api/v1/thresholds/{found.id}"
+    return found
+
+
+@router.get("/{threshold_id}")
+async def get_threshold(threshold_id: str, service: ServiceDep) -> ThresholdRun:
+    """Return how far a search is, and what it found once it is done."""
+    return await service.thresholds.get(threshold_id)
+
+
+@router.delete("/{threshold_id}", dependencies=[RateLimited])
+async def cancel_threshold(threshold_id: str, service: ServiceDep) -> ThresholdRun:
+    """Cancel a search that waits or is under way; the runs that are done stay."""
+    return await service.thresholds.cancel(threshold_id)

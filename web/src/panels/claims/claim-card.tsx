@@ -1,0 +1,109 @@
+import { Button } from "@mantine/core";
+import { IconCheck, IconClock, IconX } from "@tabler/icons-react";
+import { useMay } from "../../api/me";
+import type { Claim, ClaimList } from "../../api/types";
+import { addScope } from "../../bench/dock";
+import { placeIn } from "../../bench/printed";
+import { micro } from "../../ui/metric-name";
+import { Verdict } from "../../ui/verdict";
+import { partnersOf } from "./claim-signals";
+import { claimWords, stateWords } from "./claim-words";
+import styles from "./claims.module.css";
+import { SlideButtons } from "./slide-buttons";
+import { ThresholdView } from "./threshold-view";
+
+const ICONS = {
+  holds: <IconCheck size={20} stroke={2.8} />,
+  fails: <IconX size={20} stroke={2.8} />,
+  "not yet": <IconClock size={18} stroke={2} />,
+};
+
+interface ClaimCardProps {
+  claim: Claim;
+  list: ClaimList;
+  isOpen: boolean;
+  onOpen(isOpen: boolean): void;
+}
+
+/** One claim: ticked or crossed, printed and measured side by side, and where it begins to hold. */
+export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
+  const teaches = useMay("teach");
+  const words = claimWords(claim);
+  const places = [...new Set(claim.marks.map(placeIn))];
+  const said = places.map((place) => {
+    const here = claim.marks.filter((mark) => placeIn(mark) === place);
+    return `${[...new Set(here.map((mark) => `“${micro(mark.words)}”`))].join(", ")}: ${place}`;
+  });
+  const readings = [...new Set(claim.marks.flatMap(({ reading }) => (reading ? [micro(reading)] : [])))];
+  const drawn = [...new Set(claim.marks.flatMap(({ signal, problem }) => (problem ? [] : [signal])))];
+  const problems = [...new Set(claim.marks.flatMap(({ problem }) => (problem ? [problem] : [])))];
+  return (
+    <li className={styles.card} data-state={claim.state} aria-label={`${words.name}: ${stateWords(claim)}`}>
+      <span className={styles.mark} title={stateWords(claim)}>
+        {ICONS[claim.state]}
+      </span>
+      <div className={styles.body}>
+        <div className={styles.head}>
+          <h3>{words.name}</h3>
+          {claim.state !== "not yet" && <Verdict verdict={claim.verdict} borneOut />}
+        </div>
+        <dl className={styles.numbers}>
+          <div>
+            <dt>printed</dt>
+            <dd>
+              {words.printed}
+              {claim.published && <small>“{micro(claim.published)}”</small>}
+            </dd>
+          </div>
+          <div>
+            <dt>expected</dt>
+            <dd>{words.expected}</dd>
+          </div>
+          <div>
+            <dt>measured</dt>
+            <dd data-expected={claim.as_expected} className={styles.measured}>
+              {words.measured}
+              {claim.state !== "not yet" && claim.as_expected === false && claim.is_published && (
+                <small>other than expected</small>
+              )}
+            </dd>
+          </div>
+        </dl>
+        {said.map((text) => (
+          <p key={text} className={styles.words}>
+            {text}
+          </p>
+        ))}
+        {readings.length > 0 && <p className={styles.reading}>Drawn: {readings.join("; ")}.</p>}
+        {problems.map((text) => (
+          <p key={text} className={styles.reading}>
+            Not drawn: {text}.
+          </p>
+        ))}
+        {claim.note && <p className={styles.reading}>Why: {micro(claim.note)}.</p>}
+        {claim.fitted.length > 0 && (
+          <p className={styles.reading}>Chosen so that it agrees: {claim.fitted.join(", ")}.</p>
+        )}
+        <div className={styles.buttons}>
+          {teaches && claim.knobs.length > 0 && (
+            <Button size="compact-sm" variant="light" aria-expanded={isOpen} onClick={() => onOpen(!isOpen)}>
+              Where does it hold?
+            </Button>
+          )}
+          {drawn.length > 0 && (
+            <Button
+              size="compact-sm"
+              variant="default"
+              title={`Open a scope on ${drawn.join(", ")}`}
+              onClick={() => addScope("Printed", [...drawn, ...partnersOf(drawn)], "scope")}
+            >
+              Show on a scope
+            </Button>
+          )}
+          <SlideButtons claim={claim} list={list} />
+        </div>
+        {isOpen && <ThresholdView claim={claim} />}
+      </div>
+    </li>
+  );
+}

@@ -1,0 +1,26 @@
+const USUAL = ["plant.displacement", "model.displacement"];
+const PARTNERS: Partial<Record<string, string>> = {
+  "drive.voltage": "reference.voltage",
+  "plant.displacement": "model.displacement",
+};
+
+/** What belongs beside some signals on a scope. */
+export const partnersOf = (signals: readonly string[]): string[] =>
+  signals.flatMap((name) => PARTNERS[name] ?? []).filter((name) => !signals.includes(name));
+
+/** The signals a claim without marks is about, as far as the name of its metric tells. */
+export function signalsOf(metric: string, known: readonly string[]): string[] {
+  const [family, name] = metric.replace(/^twins\.[^.]+\./, "").split(".");
+  const wanted =
+    family === "diagnosis"
+      ? known.filter((signal) => signal.startsWith(`${name}.probability.`))
+      : family === "identify"
+        ? [`${name}.error_pct`]
+        : metric.includes("effort")
+          ? ["drive.voltage", "reference.voltage"]
+          : metric.includes("error")
+            ? ["model.tracking_error"]
+            : USUAL;
+  const found = wanted.filter((signal) => known.includes(signal));
+  return found.length > 0 ? found : known.slice(0, 2);
+}

@@ -1,0 +1,73 @@
+import { Checkbox } from "@mantine/core";
+import { useState } from "react";
+import type { ClaimList } from "../../api/types";
+import { showPrinted, usePrinted } from "../../bench/printed";
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { formatSi } from "../../ui/format";
+import { micro } from "../../ui/metric-name";
+import { Verdict } from "../../ui/verdict";
+import { ClaimCard } from "./claim-card";
+import styles from "./claims.module.css";
+import { useClaims } from "./use-claims";
+
+/** The claims of the scenario of the bench: as printed, as expected, and measured over what has run. */
+export function ClaimsPanel() {
+  const { value, error } = useClaims();
+  const isShown = usePrinted((s) => s.isShown);
+  const [open, setOpen] = useState<string | undefined>(undefined);
+  if (!value)
+    return (
+      <EmptyState title={error ? "The claims cannot be measured" : "Measuring"}>
+        {error?.body.message ?? "What is printed, what is expected and what is measured come here."}
+      </EmptyState>
+    );
+  if (value.claims.length === 0)
+    return (
+      <EmptyState title="This experiment makes no claim">
+        Open one of chapters 1 to 6 from the gallery: here is then what is printed of it, beside what is measured.
+      </EmptyState>
+    );
+  return (
+    <section className={styles.panel} aria-label="Claims" data-over={value.is_over}>
+      <header className={styles.top}>
+        <p className={styles.claim}>{micro(value.claim || value.title)}</p>
+        <div className={styles.line}>
+          {value.is_over && <Verdict verdict={value.verdict} borneOut />}
+          <span className={styles.progress}>
+            <Progress list={value} />
+          </span>
+          <Checkbox
+            size="xs"
+            label="Printed marks on the scopes"
+            checked={isShown}
+            onChange={(event) => showPrinted(event.currentTarget.checked)}
+          />
+        </div>
+      </header>
+      <ul className={styles.list}>
+        {value.claims.map((claim) => (
+          <ClaimCard
+            key={claim.metric}
+            claim={claim}
+            list={value}
+            isOpen={open === claim.metric}
+            onOpen={(isOpen) => setOpen(isOpen ? claim.metric : undefined)}
+          />
+        ))}
+      </ul>
+    </section>
+  );
+}
+
+/** How much of the run is measured, and when it is judged. */
+function Progress({ list: { tick, ends_at, is_over, reason } }: { list: ClaimList }) {
+  const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  if (reason) return <>Not measured: {reason}.</>;
+  if (is_over) return <>Measured over the whole run, {formatSi(tick * dtMs, "ms")}.</>;
+  return (
+    <>
+      Measured over {formatSi(tick * dtMs, "ms")} of {formatSi(ends_at * dtMs, "ms")}; judged at the end.
+    </>
+  );
+}
