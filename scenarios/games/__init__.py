@@ -7,7 +7,7 @@ from typing import Any
 from core.errors import unknown
 from scenarios.games.be_the_filter import BeTheFilter
 from scenarios.games.fool_the_bank import FoolTheBank
-from scenarios.games.game import Game
+from scenarios.games.game import Game, Outcome
 
 GAMES: dict[str, Game[Any]] = {game.id: game for game in (BeTheFilter(), FoolTheBank())}
 """The games by their ids."""
@@ -24,3 +24,9 @@ def game_of(name: str) -> Game[Any]:
     if name not in GAMES:
         raise unknown("game", name, GAMES, "game")
     return GAMES[name]
+
+
+def judged(name: str, seed: int, values: dict[str, Any]) -> Outcome:
+    """Return the points of what was handed in, for a process of its own."""
+    game = game_of(name)
+    return game.judge(seed, game.read(seed, values))
