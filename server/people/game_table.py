@@ -31,8 +31,8 @@ class Attempt(BaseModel):
     at: datetime
 
 
-class Line(BaseModel):
-    """A line of the table."""
+class Standing(BaseModel):
+    """An attempt in the table."""
 
     id: str
     name: str
@@ -72,7 +72,7 @@ class GameTable:
             looked=any(row.points is None for row in rows),
         )
 
-    async def lines(self, class_id: str, game: str, seed: int, person: Person, tells: bool) -> list[Line]:
+    async def lines(self, class_id: str, game: str, seed: int, person: Person, tells: bool) -> list[Standing]:
         """Return the table of a class, or of somebody alone: most points first, of the same the earlier first.
 
         Parameters
@@ -88,7 +88,7 @@ class GameTable:
         query = query.where(GameAttemptRow.points.is_not(None)).limit(MOST_SHOWN)
         order = GameAttemptRow.points.desc(), GameAttemptRow.at, GameAttemptRow.id
         return [
-            Line(
+            Standing(
                 id=row.id,
                 name=row.name,
                 mine=row.person_id == person.id,

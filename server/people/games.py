@@ -20,7 +20,7 @@ from server.bench.session import Session
 from server.errors import ApiError
 from server.people.classes import Classes
 from server.people.draw import draw
-from server.people.game_table import Attempt, GameTable, Line, Turns
+from server.people.game_table import Attempt, GameTable, Standing, Turns
 from server.people.person import Person
 
 
@@ -33,7 +33,7 @@ class Play(BaseModel):
     left: int = Field(description="How often the caller may still hand in")
     attempts: list[Attempt] = Field(description="The caller's own, oldest first")
     best: float | None = Field(description="The most points of all in the table")
-    table: list[Line] = Field(description="Most points first, of the same the earlier first")
+    table: list[Standing] = Field(description="Most points first, of the same the earlier first")
     hidden: list[Fact] | None = Field(description="What the seed hides; null while the caller may still hand in")
     bench: str | None = Field(description="The bench on which the caller plays it")
 
@@ -42,7 +42,7 @@ class ClassGame(BaseModel):
     """A game of a class, as its teacher sees it."""
 
     draw: int = Field(description="The seed that gives the same game headless; it is secret")
-    table: list[Line]
+    table: list[Standing]
     hidden: list[Fact]
 
 

@@ -91,6 +91,7 @@ export const BUILT_IN: Layouts = {
     addTo(api, "why", "why", { within: "faults", inactive: true });
     addTo(api, "labs", "labs", { within: "faults", inactive: true });
     addTo(api, "blind", "blind", { within: "faults", inactive: true });
+    addTo(api, "games", "games", { within: "faults", inactive: true });
     addTo(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
     addTo(api, "lanes", "lanes", { below: "voltage" });
     addTo(api, "sheet", "sheet", { within: "lanes", inactive: true });
@@ -125,6 +126,7 @@ export const BUILT_IN: Layouts = {
     addTo(api, "environment", "environment", { within: "faults", inactive: true });
     addTo(api, "labs", "labs", { within: "faults", inactive: true });
     addTo(api, "blind", "blind", { within: "faults", inactive: true });
+    addTo(api, "games", "games", { within: "faults", inactive: true });
     addTo(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
     addTo(api, "lanes", "lanes", { below: "voltage" });
     addTo(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
