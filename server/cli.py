@@ -27,6 +27,7 @@ from scenarios.seeds import parse_seeds
 from server.benchmarking import benchmark
 from server.blocks import blocks
 from server.exporting import fmu
+from server.games import game
 from server.lessons import lectures, sheets
 from server.terminal import JsonOption, load, plainly, say, say_json
 from server.units import UnitOption, check
@@ -57,6 +58,7 @@ app.command()(sheets)
 app.command()(check)
 app.command(name="catalog")(blocks)
 app.command()(fmu)
+app.command()(game)
 
 MOST_WORKERS = 1024
 NOT_WRITTEN = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE)

@@ -28,6 +28,8 @@ from server.people.audit import Audit
 from server.people.blinds import Blinds
 from server.people.classes import Classes
 from server.people.driving import Driving, go_without_driver
+from server.people.game_table import GameTable
+from server.people.games import Games
 from server.people.joining import Joining
 from server.people.lesson import Lesson
 from server.people.people import People
@@ -95,6 +97,7 @@ class Service:
             self.database, self.people, self.benches, self.close_bench, self.checkpoints
         )
         self.blinds, self.votes = Blinds(self.database, self.engine, self._turn_pages), Votes(self.database, shard)
+        game_table = GameTable(self.database)
         self.classes = Classes(
             self.database,
             self.people,
@@ -103,6 +106,7 @@ class Service:
             self.lesson,
             self.blinds,
             self.votes,
+            game_table,
             settings.max_students,
             shard,
         )
@@ -113,6 +117,16 @@ class Service:
         self.jobs, self.thresholds = Jobs(self.queue, settings), Thresholds(self.queue, settings)
         self.sweeps = Sweeps(self.queue, settings, self.shared)
         self.figures = Figures(self.queue, settings)
+        self.games = Games(
+            game_table,
+            self.classes,
+            self.benches,
+            self.engine,
+            self.queue.processes,
+            settings.run_workers,
+            self._turn_pages,
+            self.close_bench,
+        )
         self.keeping = Keeping(self.database, self.shared, settings)
         self.safety = Safety(
             self.engine, self.records, self.keeping, self.metrics, self.hub.show_status, self.close_bench

@@ -136,7 +136,8 @@ async def create_bench(body: NewBench, service: ServiceDep, person: PersonDep, r
     if person.role == "watcher":
         raise ApiError(403, "forbidden", "a link to watch opens one bench")
     if person.role == "student":
-        if service.views.is_blind(person, (await service.student_benches.get(person)).id):  # it may be on its way back
+        blind = (await service.student_benches.get(person)).hiding.blind  # it may be on its way back
+        if blind is not None and blind.question.game is None:  # a game may be left
             raise ApiError(409, "blind", "a fault is hidden on your bench", hint=HINT)
         service.driving.check(service.people.bench_of(person), person)  # the one before is gone with it
         session = await service.student_benches.replace(person, body.wanted())

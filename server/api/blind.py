@@ -70,7 +70,7 @@ async def get_blind(session: SessionDep, service: ServiceDep, person: PersonDep)
     """Return the question of a bench, and the answers so far."""
     hiding = session.hiding
     return Blindness(
-        question=hiding.blind.question if hiding.blind is not None else None,
+        question=hiding.blind.question if hiding.blind is not None and hiding.blind.question.game is None else None,
         rule=RULE,
         answers=service.blinds.of_person(person.id),
     )
@@ -126,7 +126,7 @@ async def reveal_class(class_id: str, service: ServiceDep, person: PersonDep) ->
     done, failed = 0, []
     for student in service.people.students(class_id):
         session = service.student_benches.find(student)
-        if session is None or session.hiding.blind is None:
+        if session is None or session.hiding.blind is None or session.hiding.blind.question.game is not None:
             continue
         try:
             await service.blinds.reveal(session, person)

@@ -1,4 +1,4 @@
-"""A fault that a bench hides until somebody answers, and the signals that people see meanwhile."""
+"""What a bench hides until somebody answers, a fault or a game, and the signals that people see meanwhile."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel, Field
 
-from core.board.commands import Command, Inject, ResetTrip, Set, Switch
+from core.board.commands import Command, Heal, Inject, ResetTrip, Set, Switch
 from core.board.document import Document
 from core.board.spec import Section, Spec
 from core.diagnose.hypothesis import ModelList, NamedModel
@@ -47,6 +47,7 @@ SHEET = ("sample_rate_khz", "device", "plant", "reference", "controller", "senso
 
 REFUSAL = "a fault is hidden on this bench"
 HINT = "answer or give up first, under Blind diagnosis"
+GAME_HINT = "hand in or end the game first, under Games"
 
 FAULTS: dict[str, tuple[str, Callable[[float], float]]] = {
     "mass": ("added_mass", lambda factor: factor - 1.0),
@@ -60,10 +61,18 @@ FAULTS: dict[str, tuple[str, Callable[[float], float]]] = {
 """The fault that makes a factor of a hypothesis true, and its severity."""
 
 
+class Played(BaseModel):
+    """The game that is played on a bench."""
+
+    game: str
+    seed: int
+
+
 class Question(BaseModel):
-    """The words people get about a hidden fault."""
+    """The words people get about a hidden fault, or about the game that is played."""
 
     id: str
+    game: Played | None = Field(None, description="Of a game, which has no answers; null for a hidden fault")
     answers: list[str] = Field(description="One of these is true, each as likely as the others")
     factors: list[dict[str, float]] = Field(description="How each differs from the nominal device")
     shows: list[str] = Field(description="Diagnosers that may be looked at; none unless the exercise is about trust")
@@ -79,6 +88,8 @@ class Blind(BaseModel):
     came_tick: int | None = Field(description="When the fault comes; null for a healthy device")
     faults: list[Document]
     sheet: Document
+    may_set: list[str] = Field([], description="In a game: further parameters that may be set")
+    may_inject: list[str] = Field([], description="In a game without hidden faults: those that may be tried")
 
     def inject(self, board: TickSource) -> None:
         """Let the fault wait for its moment."""
@@ -100,11 +111,16 @@ class Blind(BaseModel):
         ApiError
             The same line for all of them.
         """
-        is_free = isinstance(command, COMMANDS)
-        if isinstance(command, Set | Switch | ResetTrip):
+        tries = bool(self.may_inject) and isinstance(command, Inject | Heal)
+        is_free = tries or isinstance(command, COMMANDS)
+        if isinstance(command, Set | Switch | ResetTrip | Inject | Heal):
             is_free &= command.at_sample is None and command.at_ms is None and command.when is None
         if isinstance(command, Set):
-            is_free &= all(path.partition(".")[0] in MAY_SET for path in command.set)
+            is_free &= all(path.partition(".")[0] in MAY_SET or path in self.may_set for path in command.set)
+        if isinstance(command, Inject):
+            is_free &= command.fault in self.may_inject
+        if not is_free and self.question.game is not None:
+            raise ApiError(403, "blind", "this is not free to change in the game", hint=GAME_HINT)
         if not is_free:
             raise refusal("only time, the reference and the controller may be changed")
 
@@ -179,4 +195,33 @@ def hide(board: TickSource, sheet: Document, id_: str, shows: bool, which: int, 
         came_tick=came if faults else None,
         faults=faults,
         sheet={key: value for key, value in sheet.items() if key in SHEET},
+    )
+
+
+def play(played: Played, id_: str, sheet: Document, may_set: list[str], may_inject: list[str], shows: str) -> Blind:
+    """Hide what a game hides: its bench has it from the first tick, and people see no more than of a hidden fault.
+
+    Parameters
+    ----------
+    played : Played
+        The game.
+    id_ : str
+        Of this bench's turn of it.
+    sheet : dict
+        The bench as people may know it.
+    may_set, may_inject : list of str
+        Parameters that may be set and faults that may be tried.
+    shows : str
+        The diagnoser that may be looked at.
+    """
+    question = Question(id=id_, game=played, answers=[], factors=[], shows=[shows], began_tick=0, by_tick=0)
+    shown = {key: value for key, value in sheet.items() if key in SHEET}
+    return Blind(
+        question=question,
+        truth="",
+        came_tick=None,
+        faults=[],
+        sheet=shown,
+        may_set=may_set,
+        may_inject=may_inject,
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Protocol
 
-from core.board.commands import Heal, Set, Switch, Trip
+from core.board.commands import Heal, Inject, Set, Switch, Trip
 from core.board.document import Document
 from core.board.history import History
 from core.board.rows import Rows
@@ -24,8 +24,9 @@ STOPPED = "the board has stopped itself"
 """The only words about a trip: its reason and its signal would tell the fault."""
 
 RUNNING = ("opened", "start", "pause", "step", "step_period", "reset_trip", "finished", "blind")
-CHANGES = ("time_scale", Set.kind, Switch.kind)
-"""Kinds of events that people see, the latter with the values before; of a trip they see that the board has stopped."""
+CHANGES, TRIED = ("time_scale", Set.kind, Switch.kind), (Inject.kind, Heal.kind)
+"""Kinds of events that people see; of changes with the values before, of a trip that the board has stopped. What was
+tried they see in a game that lets them try faults."""
 
 STATUS = (
     *("state", "tick", "first_tick", "time_scale", "achieved_scale", "capped", "overruns", "given_up_ms"),
@@ -95,7 +96,8 @@ class Hiding:
         assert self.blind is not None
         self.blind.inject(self._bench.board)
         self._bench.done_otherwise()
-        self._bench.note(actor, "blind", "a fault was hidden, or none")
+        text = "a fault was hidden, or none" if self.blind.question.game is None else "a game began"
+        self._bench.note(actor, "blind", text)
         self._bench.refresh_status()
 
     def reveal(self, actor: str) -> None:
@@ -193,7 +195,8 @@ class BlindView:
     def document(self) -> Document:
         """The bench as it is meant to be, with the reference and the controller of now."""
         now = document_now(self._bench)
-        return {**self.blind.sheet, **{key: now[key] for key in MAY_SET if key in now}}
+        free = (*MAY_SET, "diagnosers") if self.blind.question.game is not None else MAY_SET  # as the player set it
+        return {**self.blind.sheet, **{key: now[key] for key in free if key in now}}
 
     def describe(self, around: dict[str, Any], _view3d: str | None) -> Bench:
         """Describe the bench."""
@@ -212,7 +215,7 @@ class BlindView:
         """Take an event into this log, if people may see it."""
         if event.kind == "tripped":
             self._keep(event, text=STOPPED)
-        elif event.kind in CHANGES:
+        elif event.kind in (*CHANGES, *(TRIED if self.blind.may_inject else ())):
             self._keep(event, text=event.text, command=event.command, old=event.old, new=event.new)
         elif event.kind in RUNNING:
             self._keep(event, text=event.text, command=event.command)
@@ -233,7 +236,7 @@ class BlindView:
         return BenchStatus(
             **{name: getattr(whole, name) for name in STATUS},
             fast_forward=None,
-            faults=[],
+            faults=whole.faults if self.blind.may_inject else [],
             pending=[],
             trip=stopped,
             scores={},

@@ -78,6 +78,11 @@ _DOORS = {
         POST {API}/sheets/{{sheet_id}}/steps/{{step_id}}/hint  *
         POST {API}/sheets/{{sheet_id}}/steps/{{step_id}}/close  *
         PUT {API}/sheets/{{sheet_id}}/recordings/{{recording_id}}
+        GET {API}/games  *
+        GET {API}/games/{{game_id}}  *
+        POST {API}/games/{{game_id}}/begin  *
+        POST {API}/games/{{game_id}}/attempts  *
+        POST {API}/games/{{game_id}}/reveal  *
         POST {API}/theory/positive-real  *
         POST {API}/theory/positive-definite  *
         POST {API}/theory/persistency  *
@@ -212,6 +217,7 @@ _DOORS = {
         POST {CLASS}/blind
         GET {CLASS}/blind
         DELETE {CLASS}/blind
+        GET {CLASS}/games/{{game_id}}
         GET /metrics
     """,
 }

@@ -7,6 +7,7 @@ import secrets
 from typing import Any
 
 from core.board.board import Board
+from core.device.drawn import device_of
 from core.errors import InputError
 from scenarios.schema import Scenario
 from server.bench.blind import Blind, bank_of, hide
@@ -14,7 +15,6 @@ from server.bench.making import read_scenario
 from server.errors import ApiError
 from server.people.blinds import OF_DRAW, Blinds
 from server.people.classes import Classes
-from server.people.draw import device_of
 from server.people.person import Person
 
 LEFT_OUT = frozenset(

@@ -12,7 +12,7 @@ from pydantic import BaseModel, Field
 from sqlalchemy import delete, select
 
 from core.errors import InputError, unknown
-from server.bench.blind import Blind, hide
+from server.bench.blind import GAME_HINT, Blind, hide
 from server.bench.engine import Engine
 from server.bench.session import Session
 from server.errors import ApiError
@@ -107,6 +107,8 @@ class Blinds:
         """
         async with self._turn:
             if session.hiding.blind is not None:
+                if session.hiding.blind.question.game is not None:
+                    raise ApiError(409, "blind", "a game is played on this bench", hint=GAME_HINT)
                 raise ApiError(409, "blind", "a fault is hidden here already", hint="answer or give up first")
             if session.replay_of:
                 raise ApiError(409, "conflict", "a recording that is played has no faults to hide")
@@ -232,6 +234,8 @@ def _of(session: Session) -> Blind:
     """Return what is hidden on a bench, or refuse."""
     if (blind := session.hiding.blind) is None:
         raise ApiError(409, "conflict", "no fault is hidden on this bench")
+    if blind.question.game is not None:
+        raise ApiError(409, "conflict", "a game is played on this bench", hint=GAME_HINT)
     return blind
 
 

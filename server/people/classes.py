@@ -18,6 +18,7 @@ from server.people.audit import Audit
 from server.people.blinds import Blinds
 from server.people.code import new_class_id, new_code, shown, split
 from server.people.draw import draw
+from server.people.game_table import GameTable
 from server.people.lesson import Lesson
 from server.people.name import clean
 from server.people.people import People
@@ -72,6 +73,8 @@ class Classes:
         Their hidden faults and answers.
     votes : Votes
         Their votes, which go with them.
+    games : GameTable
+        Their attempts at games, which go with them too.
     most_students : int
         Students of all classes.
     shard : str
@@ -87,11 +90,13 @@ class Classes:
         lesson: Lesson,
         blinds: Blinds,
         votes: Votes,
+        games: GameTable,
         most_students: int,
         shard: str,
     ) -> None:
         self._database, self._people, self.benches = database, people, benches
-        self._audit, self._lesson, self._blinds, self._votes = audit, lesson, blinds, votes
+        self._audit, self._lesson, self._blinds = audit, lesson, blinds
+        self._votes, self._games = votes, games
         self._most, self._shard = most_students, shard
         self._codes: dict[str, str] = {}
         self._turn = asyncio.Lock()
@@ -217,6 +222,7 @@ class Classes:
         await self.benches.remove(person)
         await self._people.remove(person)
         await self._votes.forget(person_id=person.id)
+        await self._games.forget(person_id=person.id)
         self._audit.add("teacher", "removed", f"sent {person.name} away", person.class_id)
 
     async def end(self, class_id: str) -> None:
@@ -229,6 +235,7 @@ class Classes:
         await self._audit.forget(class_id)
         await self._blinds.forget(class_id)
         await self._votes.forget(class_id)
+        await self._games.forget(class_id)
         await self._database.run(lambda session: session.execute(delete(ClassRow).where(ClassRow.id == class_id)))
 
     async def run(self) -> None:

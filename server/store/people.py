@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import JSON, BigInteger, Integer, String, Text
+from sqlalchemy import JSON, BigInteger, Float, Integer, String, Text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from server.store.base import Base, now
@@ -101,6 +101,32 @@ class BlindAnswerRow(Base):
     person_id: Mapped[str] = mapped_column(String(32))
     began: Mapped[datetime] = mapped_column(default=now)
     answer: Mapped[dict[str, Any]]
+
+
+class GameAttemptRow(Base):
+    """What somebody handed in at a game, or that what it hides was shown; it goes with the student or the class.
+
+    Attributes
+    ----------
+    seed : int
+        As it was chosen.
+    points : float
+        None where what the game hides was shown without anything handed in.
+    attempt : dict
+        What was handed in, and what came of it.
+    """
+
+    __tablename__ = "game_attempts"
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    class_id: Mapped[str | None] = mapped_column(String(32), index=True)
+    person_id: Mapped[str] = mapped_column(String(32), index=True)
+    name: Mapped[str] = mapped_column(String(100))
+    game: Mapped[str] = mapped_column(String(40))
+    seed: Mapped[int] = mapped_column(BigInteger)
+    points: Mapped[float | None] = mapped_column(Float)
+    at: Mapped[datetime] = mapped_column(default=now)
+    attempt: Mapped[dict[str, Any]]
 
 
 class SheetRow(Base):

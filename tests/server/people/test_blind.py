@@ -12,10 +12,10 @@ from websockets.sync.client import connect
 from websockets.typing import Subprotocol
 
 from core.board.commands import parse_command
+from core.device.drawn import device_of
 from scenarios.library import get
 from server.bench.hiding import STOPPED
 from server.people.access import DOORS, OPEN_WHILE_BLIND, SOCKET, Need
-from server.people.draw import device_of
 from server.stream.hub import CLOSE_TURNED
 from server.view3d.proxy import SUBPROTOCOL as SCENE
 from tests.server.people.group import Somebody, join, open_class, watcher

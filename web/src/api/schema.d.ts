@@ -2176,6 +2176,126 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/games": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Games
+         * @description List the games with their rules.
+         */
+        get: operations["list_games_api_v1_games_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/games/{game_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Game
+         * @description Show a game at a seed: own attempts, the table, and what is hidden once nothing can be handed in any more.
+         */
+        get: operations["get_game_api_v1_games__game_id__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/games/{game_id}/begin": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Begin Game
+         * @description Begin the bench of a game, in place of the one before: it hides what the game hides.
+         */
+        post: operations["begin_game_api_v1_games__game_id__begin_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/games/{game_id}/attempts": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Hand In
+         * @description Hand in: the server judges it by the rule, and the last attempt of the answer has the points.
+         */
+        post: operations["hand_in_api_v1_games__game_id__attempts_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/games/{game_id}/reveal": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Reveal Game
+         * @description Show what a seed hides; the caller cannot hand in at it any more.
+         */
+        post: operations["reveal_game_api_v1_games__game_id__reveal_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/classes/{class_id}/games/{game_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Class Game
+         * @description Show the table of a class with what everybody handed in, and what the seed hides.
+         */
+        get: operations["get_class_game_api_v1_classes__class_id__games__game_id__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/votes": {
         parameters: {
             query?: never;
@@ -2936,6 +3056,24 @@ export interface components {
             when: components["schemas"]["Span"] | null;
         };
         /**
+         * Attempt
+         * @description What somebody handed in, and what came of it.
+         */
+        Attempt: {
+            /** Id */
+            id: string;
+            /** Handed In */
+            handed_in: {
+                [key: string]: number | string;
+            };
+            outcome: components["schemas"]["Outcome"];
+            /**
+             * At
+             * Format: date-time
+             */
+            at: string;
+        };
+        /**
          * AuditEntry
          * @description One thing that somebody did.
          */
@@ -2975,6 +3113,22 @@ export interface components {
             answer: number;
             /** At Ms */
             at_ms: number | null;
+        };
+        /**
+         * Begin
+         * @description A bench of a game to begin.
+         */
+        Begin: {
+            /** Seed */
+            seed: number;
+            /**
+             * Hand In
+             * @description How the bank is set; empty: as by default
+             * @default {}
+             */
+            hand_in?: {
+                [key: string]: number | string;
+            };
         };
         /**
          * Bench
@@ -3698,6 +3852,21 @@ export interface components {
             addresses?: string[];
         };
         /**
+         * ClassGame
+         * @description A game of a class, as its teacher sees it.
+         */
+        ClassGame: {
+            /**
+             * Draw
+             * @description The seed that gives the same game headless; it is secret
+             */
+            draw: number;
+            /** Table */
+            table: components["schemas"]["Standing"][];
+            /** Hidden */
+            hidden: components["schemas"]["Fact"][];
+        };
+        /**
          * ClassList
          * @description The classes, oldest first.
          */
@@ -4383,6 +4552,16 @@ export interface components {
             max: (number | null)[];
         };
         /**
+         * Fact
+         * @description Something that was hidden, in words.
+         */
+        Fact: {
+            /** Name */
+            name: string;
+            /** Said */
+            said: string;
+        };
+        /**
          * FastForward
          * @description Run as fast as possible for a while, then go on at the time scale.
          *
@@ -4609,6 +4788,50 @@ export interface components {
             expectations: components["schemas"]["Expected"][];
         };
         /**
+         * GameCard
+         * @description A game in a list.
+         */
+        GameCard: {
+            /** Id */
+            id: string;
+            /** Title */
+            title: string;
+            /** Summary */
+            summary: string;
+            /** Task */
+            task: string;
+            /**
+             * Rule
+             * @description How points are counted
+             */
+            rule: string;
+            /** Equations */
+            equations: components["schemas"]["EquationCard"][];
+            /**
+             * Attempts
+             * @description How often one person may hand in at one seed
+             */
+            attempts: number;
+            /**
+             * Hand In
+             * @description What is handed in
+             */
+            hand_in: components["schemas"]["ParameterCard"][];
+            /**
+             * Live
+             * @description What of it can be set on the bench while it runs
+             */
+            live: string[];
+        };
+        /**
+         * GameList
+         * @description The games.
+         */
+        GameList: {
+            /** Games */
+            games: components["schemas"]["GameCard"][];
+        };
+        /**
          * GivenLayout
          * @description A layout that the teacher has given to a class.
          */
@@ -4647,6 +4870,21 @@ export interface components {
         Hand: {
             /** Raised */
             raised: boolean;
+        };
+        /**
+         * HandIn
+         * @description What somebody hands in.
+         */
+        HandIn: {
+            /** Seed */
+            seed: number;
+            /**
+             * Hand In
+             * @description What is left out has its default
+             */
+            hand_in: {
+                [key: string]: number | string;
+            };
         };
         /**
          * Hands
@@ -4944,6 +5182,22 @@ export interface components {
             bench: string;
         };
         /**
+         * Kind
+         * @description A fault that can be named, and between which ends.
+         */
+        Kind: {
+            /** Name */
+            name: string;
+            /** Title */
+            title: string;
+            /** Unit */
+            unit: string;
+            /** Minimum */
+            minimum: number;
+            /** Maximum */
+            maximum: number;
+        };
+        /**
          * Knob
          * @description A number of a scenario, and the range over which it may be looked for.
          */
@@ -5150,6 +5404,14 @@ export interface components {
             overrun: boolean;
             /** Models That Fit */
             models_that_fit: number;
+        };
+        /**
+         * Look
+         * @description A seed whose game is to be over.
+         */
+        Look: {
+            /** Seed */
+            seed: number;
         };
         /**
          * Loop
@@ -5946,6 +6208,31 @@ export interface components {
             is_past?: boolean;
         };
         /**
+         * Outcome
+         * @description What a hand-in earned.
+         */
+        Outcome: {
+            /** Points */
+            points: number;
+            /**
+             * Figures
+             * @description The numbers of the rule, by name
+             */
+            figures: {
+                [key: string]: number;
+            };
+            /**
+             * Said
+             * @description What came of it, in words
+             */
+            said: string;
+            /**
+             * Worked
+             * @description The rule with its numbers put in, as LaTeX
+             */
+            worked: string;
+        };
+        /**
          * Outcomes
          * @description The outcome of a command to many benches.
          */
@@ -6078,6 +6365,61 @@ export interface components {
             command: {
                 [key: string]: unknown;
             };
+        };
+        /**
+         * Play
+         * @description A game at a seed, as somebody may see it.
+         */
+        Play: {
+            /** Game */
+            game: string;
+            /** Seed */
+            seed: number;
+            /**
+             * Kinds
+             * @description The faults that can be named, if one is to be named
+             */
+            kinds: components["schemas"]["Kind"][];
+            /**
+             * Left
+             * @description How often the caller may still hand in
+             */
+            left: number;
+            /**
+             * Attempts
+             * @description The caller's own, oldest first
+             */
+            attempts: components["schemas"]["Attempt"][];
+            /**
+             * Best
+             * @description The most points of all in the table
+             */
+            best: number | null;
+            /**
+             * Table
+             * @description Most points first, of the same the earlier first
+             */
+            table: components["schemas"]["Standing"][];
+            /**
+             * Hidden
+             * @description What the seed hides; null while the caller may still hand in
+             */
+            hidden: components["schemas"]["Fact"][] | null;
+            /**
+             * Bench
+             * @description The bench on which the caller plays it
+             */
+            bench: string | null;
+        };
+        /**
+         * Played
+         * @description The game that is played on a bench.
+         */
+        Played: {
+            /** Game */
+            game: string;
+            /** Seed */
+            seed: number;
         };
         /**
          * PointTally
@@ -7192,6 +7534,32 @@ export interface components {
             digest: string;
         };
         /**
+         * Standing
+         * @description An attempt in the table.
+         */
+        Standing: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string;
+            /** Mine */
+            mine: boolean;
+            /** Points */
+            points: number;
+            /**
+             * At
+             * Format: date-time
+             */
+            at: string;
+            /**
+             * Handed In
+             * @description Null while the caller may still hand in: it is secret
+             */
+            handed_in: {
+                [key: string]: number | string;
+            } | null;
+        };
+        /**
          * Start
          * @description Let time run.
          */
@@ -8084,11 +8452,13 @@ export interface components {
         };
         /**
          * Question
-         * @description The words people get about a hidden fault.
+         * @description The words people get about a hidden fault, or about the game that is played.
          */
         server__bench__blind__Question: {
             /** Id */
             id: string;
+            /** @description Of a game, which has no answers; null for a hidden fault */
+            game?: components["schemas"]["Played"] | null;
             /**
              * Answers
              * @description One of these is true, each as likely as the others
@@ -8464,11 +8834,16 @@ export interface components {
         };
         /**
          * Question
-         * @description The words people get about a hidden fault.
+         * @description The words people get about a hidden fault, or about the game that is played.
          */
         Question: {
             /** Id */
             id: string;
+            /**
+             * @description Of a game, which has no answers; null for a hidden fault
+             * @default null
+             */
+            game?: components["schemas"]["Played"] | null;
             /**
              * Answers
              * @description One of these is true, each as likely as the others
@@ -13005,6 +13380,209 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["BenchCaptures"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_games_api_v1_games_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["GameList"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_game_api_v1_games__game_id__get: {
+        parameters: {
+            query?: {
+                /** @description The same one is the same game for all of a class */
+                seed?: number;
+            };
+            header?: never;
+            path: {
+                game_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Play"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    begin_game_api_v1_games__game_id__begin_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                game_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Begin"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Play"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    hand_in_api_v1_games__game_id__attempts_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                game_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["HandIn"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Play"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    reveal_game_api_v1_games__game_id__reveal_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                game_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Look"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Play"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_class_game_api_v1_classes__class_id__games__game_id__get: {
+        parameters: {
+            query?: {
+                /** @description The same one is the same game for all of a class */
+                seed?: number;
+            };
+            header?: never;
+            path: {
+                class_id: string;
+                game_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ClassGame"];
                 };
             };
             /** @description Refused or failed */

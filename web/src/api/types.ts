@@ -37,6 +37,14 @@ export type ForkFrom = Partial<Schemas["ForkFrom"]>;
 export type FaultProfile = Schemas["Profile"];
 export type Gallery = Schemas["Gallery"];
 export type GalleryCard = Schemas["GalleryCard"];
+export type GameCard = Schemas["GameCard"];
+export type GameKind = Schemas["Kind"];
+/** A line of the table of a game. */
+export type GameLine = Schemas["Standing"];
+/** A game at a seed, as the caller may see it. */
+export type GamePlay = Schemas["Play"];
+/** What is handed in at a game, by the names of its parameters. */
+export type HandedIn = Record<string, number | string>;
 export type ExcitationSource = Schemas["ExcitationSource"];
 export type ExcitationReport = Schemas["ExcitationReport"];
 /** A hidden fault, and what somebody said of it. */

@@ -24,6 +24,7 @@ export function Banner({ hints = true }: { hints?: boolean }) {
   const trip = useBench((s) => (s.bench?.state === "tripped" ? s.bench.trip : undefined));
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   const blind = useBench((s) => s.blind);
+  const playing = useBench((s) => s.bench?.blind?.game);
   const tips = useHints();
   const drives = useMay("drive");
   const teaches = useMay("teach");
@@ -79,6 +80,20 @@ export function Banner({ hints = true }: { hints?: boolean }) {
         {drives && (
           <Button size="compact-sm" variant="default" onClick={actions.reset}>
             Start over
+          </Button>
+        )}
+      </Line>
+    );
+  if (blind && playing)
+    return (
+      <Line
+        tone="warn"
+        title={`A game is played here, seed ${playing.seed}`}
+        text="Until it is over, the server hides the device, its noise and what happens to it."
+      >
+        {drives && (
+          <Button size="compact-sm" variant="default" onClick={() => showPanel("games", "faults")}>
+            Games
           </Button>
         )}
       </Line>

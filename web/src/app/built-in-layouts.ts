@@ -92,6 +92,7 @@ export const BUILT_IN: Layouts = {
     addTo(api, "why", "why", { within: "faults", inactive: true });
     addTo(api, "labs", "labs", { within: "faults", inactive: true });
     addTo(api, "blind", "blind", { within: "faults", inactive: true });
+    addTo(api, "games", "games", { within: "faults", inactive: true });
     addTo(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
     addTo(api, "lanes", "lanes", { below: "voltage" });
     addTo(api, "sheet", "sheet", { within: "lanes", inactive: true });
@@ -127,6 +128,7 @@ export const BUILT_IN: Layouts = {
     addTo(api, "environment", "environment", { within: "faults", inactive: true });
     addTo(api, "labs", "labs", { within: "faults", inactive: true });
     addTo(api, "blind", "blind", { within: "faults", inactive: true });
+    addTo(api, "games", "games", { within: "faults", inactive: true });
     addTo(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
     addTo(api, "lanes", "lanes", { below: "voltage" });
     addTo(api, "claims", "claims", { within: "lanes", inactive: true });

@@ -9,6 +9,7 @@ export function PanelBody({ kind, params, setParams }: PanelProps & { kind: Pane
   const fitting = useBench((s) => suits(kind, s.bench));
   const replay = useBench((s) => s.bench?.replay_of);
   const blind = useBench((s) => s.blind);
+  const playing = useBench((s) => s.bench?.blind?.game);
   const drives = useMay("drive");
   return (
     <ErrorFence name={kind.title}>
@@ -17,6 +18,10 @@ export function PanelBody({ kind, params, setParams }: PanelProps & { kind: Pane
           {kind.only === "axes"
             ? `${kind.title} is for a gyroscope. Choose one in the designer and use it on the bench.`
             : `${kind.title} is for a device with one displacement; this one moves along several axes.`}
+        </EmptyState>
+      ) : playing && !kind.whileBlind ? (
+        <EmptyState title="Hidden while the game is played">
+          The server hides what this panel shows until you have handed in for the last time under Games.
         </EmptyState>
       ) : blind && !kind.whileBlind ? (
         <EmptyState title="Hidden while you look for the fault">

@@ -12,6 +12,7 @@ import { EditorPanel } from "../panels/editor/editor-panel";
 import { EnvironmentPanel } from "../panels/environment/environment-panel";
 import { EventsPanel } from "../panels/events/events-panel";
 import { FaultsPanel } from "../panels/faults/faults-panel";
+import { GamesPanel } from "../panels/games/games-panel";
 import { HypothesesPanel } from "../panels/hypotheses/hypotheses-panel";
 import { IdentifyPanel } from "../panels/identify/identify-panel";
 import { LabsPanel } from "../panels/labs/labs-panel";
@@ -57,6 +58,7 @@ export const PANELS: Record<string, PanelKind> = {
   hypotheses: { title: "Hypotheses", only: "displacement", changes: true, component: HypothesesPanel },
   labs: { title: "Noise and memory", only: "displacement", changes: true, component: LabsPanel },
   blind: { title: "Blind diagnosis", whileBlind: true, changes: true, component: BlindPanel },
+  games: { title: "Games", whileBlind: true, changes: true, component: GamesPanel },
   sheet: { title: "Lab sheet", whileBlind: true, changes: true, component: SheetPanel },
   twins: { title: "Twins", changes: true, component: TwinsPanel },
   why: { title: "Why", component: WhyPanel },

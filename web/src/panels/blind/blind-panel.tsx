@@ -28,6 +28,12 @@ export function BlindPanel() {
         The answers are the hypotheses of its bank; open a scenario of chapter 5 from New bench.
       </EmptyState>
     );
+  if (question?.game)
+    return (
+      <EmptyState title="A game is played on this bench">
+        Hand in or end it under Games; then a fault can be hidden here.
+      </EmptyState>
+    );
   const rule = value && <p className={styles.advice}>{value.rule}</p>;
   if (question)
     return (

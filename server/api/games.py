@@ -1,0 +1,133 @@
+"""Games with the bank: list them, play one at a seed, hand in, see the table; the teacher sees that of a class."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Query
+from pydantic import BaseModel, Field
+
+from core.cards import EquationCard, ParameterCard, equation_card, parameter_cards
+from scenarios.games import GAMES
+from scenarios.games.game import MOST
+from server.api.bodies import Body, StrictRoute
+from server.api.deps import PersonDep, RateLimited, ServiceDep
+from server.errors import ApiError
+from server.people.games import ClassGame, Play
+from server.people.person import Person
+
+router = APIRouter(tags=["games"], route_class=StrictRoute)
+
+GameId = Annotated[str, Path(max_length=40)]
+Seed = Annotated[int, Query(ge=0, le=MOST, description="The same one is the same game for all of a class")]
+
+
+class GameCard(BaseModel):
+    """A game in a list."""
+
+    id: str
+    title: str
+    summary: str
+    task: str
+    rule: str = Field(description="How points are counted")
+    equations: list[EquationCard]
+    attempts: int = Field(description="How often one person may hand in at one seed")
+    hand_in: list[ParameterCard] = Field(description="What is handed in")
+    live: list[str] = Field(description="What of it can be set on the bench while it runs")
+
+
+class GameList(BaseModel):
+    """The games."""
+
+    games: list[GameCard]
+
+
+class Begin(Body):
+    """A bench of a game to begin."""
+
+    seed: int = Field(ge=0, le=MOST)
+    hand_in: dict[str, float | str] = Field({}, max_length=20, description="How the bank is set; empty: as by default")
+
+
+class HandIn(Body):
+    """What somebody hands in."""
+
+    seed: int = Field(ge=0, le=MOST)
+    hand_in: dict[str, float | str] = Field(max_length=20, description="What is left out has its default")
+
+
+class Look(Body):
+    """A seed whose game is to be over."""
+
+    seed: int = Field(ge=0, le=MOST)
+
+
+@router.get("/games")
+async def list_games() -> GameList:
+    """List the games with their rules."""
+    return GameList(
+        games=[
+            GameCard(
+                id=game.id,
+                title=game.title,
+                summary=game.summary,
+                task=game.task,
+                rule=game.rule,
+                equations=[equation_card(equation) for equation in game.equations],
+                attempts=game.attempts,
+                hand_in=parameter_cards(game.form),
+                live=list(game.turned),
+            )
+            for game in GAMES.values()
+        ]
+    )
+
+
+@router.get("/games/{game_id}")
+async def get_game(game_id: GameId, service: ServiceDep, person: PersonDep, seed: Seed = 1) -> Play:
+    """Show a game at a seed: own attempts, the table, and what is hidden once nothing can be handed in any more."""
+    _must_play(person)
+    return await service.games.view(person, game_id, seed)
+
+
+@router.post("/games/{game_id}/begin", status_code=201, dependencies=[RateLimited])
+async def begin_game(game_id: GameId, body: Begin, service: ServiceDep, person: PersonDep) -> Play:
+    """Begin the bench of a game, in place of the one before: it hides what the game hides."""
+    _must_play(person)
+    if person.role == "student":
+        service.driving.check(service.people.bench_of(person), person)  # the one before is gone with it
+    await service.games.begin(person, game_id, body.seed, body.hand_in)
+    await service.checkpoints.write()  # that of a student hides it after a crash too
+    return await service.games.view(person, game_id, body.seed)
+
+
+@router.post("/games/{game_id}/attempts", status_code=201, dependencies=[RateLimited])
+async def hand_in(game_id: GameId, body: HandIn, service: ServiceDep, person: PersonDep) -> Play:
+    """Hand in: the server judges it by the rule, and the last attempt of the answer has the points."""
+    _must_play(person)
+    outcome = await service.games.hand_in(person, game_id, body.seed, body.hand_in)
+    service.audit.add(person.name, "game", f"{game_id}, seed {body.seed}: {outcome.points:.1f} points", person.class_id)
+    return await service.games.view(person, game_id, body.seed)
+
+
+@router.post("/games/{game_id}/reveal", dependencies=[RateLimited])
+async def reveal_game(game_id: GameId, body: Look, service: ServiceDep, person: PersonDep) -> Play:
+    """Show what a seed hides; the caller cannot hand in at it any more."""
+    _must_play(person)
+    await service.games.look(person, game_id, body.seed)
+    return await service.games.view(person, game_id, body.seed)
+
+
+@router.get("/classes/{class_id}/games/{game_id}")
+async def get_class_game(
+    class_id: str, game_id: GameId, service: ServiceDep, person: PersonDep, seed: Seed = 1
+) -> ClassGame:
+    """Show the table of a class with what everybody handed in, and what the seed hides."""
+    await service.classes.row(class_id)
+    return await service.games.of_class(person, class_id, game_id, seed)
+
+
+def _must_play(person: Person) -> None:
+    """Refuse a watcher, who has no bench of a game."""
+    if person.role == "watcher":
+        raise ApiError(409, "conflict", "who watches a bench plays no game")

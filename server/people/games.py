@@ -1,0 +1,233 @@
+"""Games for one person or for a class: their benches, what is handed in, and when what is hidden is told."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+from collections.abc import Awaitable, Callable, Mapping
+from typing import Any
+
+from pydantic import BaseModel, Field
+
+from scenarios.campaign.executor import LOST, Processes
+from scenarios.games import game_of, judged
+from scenarios.games.draw import BENCH
+from scenarios.games.game import DIAGNOSER, Fact, Game, Kind, Outcome
+from server.bench.benches import Benches
+from server.bench.blind import HINT, Blind, Played, play
+from server.bench.engine import Engine
+from server.bench.session import Session
+from server.errors import ApiError
+from server.people.classes import Classes
+from server.people.draw import draw
+from server.people.game_table import Attempt, GameTable, Standing, Turns
+from server.people.person import Person
+
+
+class Play(BaseModel):
+    """A game at a seed, as somebody may see it."""
+
+    game: str
+    seed: int
+    kinds: list[Kind] = Field(description="The faults that can be named, if one is to be named")
+    left: int = Field(description="How often the caller may still hand in")
+    attempts: list[Attempt] = Field(description="The caller's own, oldest first")
+    best: float | None = Field(description="The most points of all in the table")
+    table: list[Standing] = Field(description="Most points first, of the same the earlier first")
+    hidden: list[Fact] | None = Field(description="What the seed hides; null while the caller may still hand in")
+    bench: str | None = Field(description="The bench on which the caller plays it")
+
+
+class ClassGame(BaseModel):
+    """A game of a class, as its teacher sees it."""
+
+    draw: int = Field(description="The seed that gives the same game headless; it is secret")
+    table: list[Standing]
+    hidden: list[Fact]
+
+
+class Games:
+    """The games that are played on this server.
+
+    Parameters
+    ----------
+    table : GameTable
+        Where the attempts are kept.
+    classes : Classes
+        From whose secrets games are drawn, with the benches of their students.
+    benches : Benches
+        Where benches are made.
+    engine : Engine
+        Whose thread changes a bench.
+    processes : Processes
+        What judges.
+    workers : int
+        How many hand-ins are judged at once; 0 for none.
+    turn : callable
+        Closes the pages of a bench, so that they come back to what may be seen of it now.
+    close_bench : callable
+        Closes a bench and its streams.
+    """
+
+    def __init__(
+        self,
+        table: GameTable,
+        classes: Classes,
+        benches: Benches,
+        engine: Engine,
+        processes: Processes,
+        workers: int,
+        turn: Callable[[Session], Awaitable[None]],
+        close_bench: Callable[[Session], Awaitable[None]],
+    ) -> None:
+        self._table, self._classes, self._benches, self._engine = table, classes, benches, engine
+        self._processes, self._turn_pages, self._close_bench = processes, turn, close_bench
+        self._is_open, self._room = workers > 0, asyncio.Semaphore(max(1, workers))
+        self._judging: set[str] = set()
+
+    async def view(self, person: Person, name: str, seed: int) -> Play:
+        """Show a game at a seed to somebody."""
+        game, number = game_of(name), await self._drawn(person.class_id, name, seed)
+        turns = await self._table.turns(person, name, seed)
+        left = _left(game, turns)
+        table = await self._table.lines(person.class_id, name, seed, person, tells=left == 0)
+        bench = self._bench_of(person, Played(game=name, seed=seed))
+        return Play(
+            game=name,
+            seed=seed,
+            kinds=game.kinds(number),
+            left=left,
+            attempts=turns.attempts,
+            best=table[0].points if table else None,
+            table=table,
+            hidden=await asyncio.to_thread(game.hidden, number) if left == 0 else None,
+            bench=bench.id if bench is not None else None,
+        )
+
+    async def of_class(self, teacher: Person, class_id: str, name: str, seed: int) -> ClassGame:
+        """Show a game of a class to its teacher."""
+        game, number = game_of(name), await self._drawn(class_id, name, seed)
+        table = await self._table.lines(class_id, name, seed, teacher, tells=True)
+        return ClassGame(draw=number, table=table, hidden=await asyncio.to_thread(game.hidden, number))
+
+    async def begin(self, person: Person, name: str, seed: int, values: Mapping[str, Any]) -> Session:
+        """Give somebody the bench of a game; what was handed in stays, and what is over hides nothing any more.
+
+        Raises
+        ------
+        InputError
+            If the bank cannot be set so.
+        ApiError
+            If a fault is hidden on the bench of a student.
+        """
+        game, number = game_of(name), await self._drawn(person.class_id, name, seed)
+        played = Played(game=name, seed=seed)
+        handed = game.read(number, values) if values else None
+        document = await asyncio.to_thread(game.bench, number, handed)
+        over = _left(game, await self._table.turns(person, name, seed)) == 0
+
+        def hide(_: object) -> Blind:
+            may_set = [f"diagnosers.{DIAGNOSER}.{field}" for field in game.turned]
+            faults = [kind.name for kind in game.kinds(number)]
+            return play(played, secrets.token_hex(8), BENCH, may_set, faults, DIAGNOSER)
+
+        wanted: dict[str, Any] = {
+            "source": document,
+            "values": {},
+            "seed": None,
+            "paused": False,
+            "time_scale": None,
+            "own_scale": True,
+        }
+        if person.role == "student":
+            blind = (await self._classes.benches.get(person)).hiding.blind
+            if blind is not None and blind.question.game is None:
+                raise ApiError(409, "blind", "a fault is hidden on your bench", hint=HINT)
+            return await self._classes.benches.replace(person, wanted, None if over else hide)
+        before = self._benches_of(person)
+        made = await self._benches.create(**wanted, hide=None if over else hide)
+        for session in before:
+            await self._close_bench(session)
+        return made
+
+    async def hand_in(self, person: Person, name: str, seed: int, values: Mapping[str, Any]) -> Outcome:
+        """Judge what somebody hands in, and keep it.
+
+        Raises
+        ------
+        InputError
+            If it is none.
+        ApiError
+            If somebody has no attempt left, or hands in twice at once.
+        """
+        if not self._is_open:
+            raise ApiError(409, "runs_disabled", "this server takes no headless runs (run_workers = 0)")
+        game, number = game_of(name), await self._drawn(person.class_id, name, seed)
+        handed = game.read(number, values)
+        if person.id in self._judging:
+            raise ApiError(409, "conflict", "what you handed in before is still judged", hint="wait for its points")
+        self._judging.add(person.id)
+        try:
+            if not _left(game, await self._table.turns(person, name, seed)):
+                text = f"you have no attempt left at seed {seed}"
+                raise ApiError(409, "limit", text, hint="take another seed")
+            outcome = await self._judged(name, number, handed.model_dump())
+            await self._table.add(person, name, seed, handed.model_dump(), outcome)
+        finally:
+            self._judging.discard(person.id)
+        await self._tell(person, game, seed)
+        return outcome
+
+    async def look(self, person: Person, name: str, seed: int) -> None:
+        """Show somebody what a game hides; nothing can be handed in after that."""
+        game = game_of(name)
+        if person.id in self._judging:
+            raise ApiError(409, "conflict", "what you handed in is still judged", hint="wait for its points")
+        if _left(game, await self._table.turns(person, name, seed)):
+            await self._table.looked(person, name, seed)
+        await self._tell(person, game, seed)
+
+    async def _drawn(self, class_id: str, name: str, seed: int) -> int:
+        """Return the seed of a game; that of a class nobody can work out who has no more than the seed of the class."""
+        if not class_id:
+            return seed
+        return draw((await self._classes.row(class_id)).secret, "game", name, str(seed))
+
+    async def _judged(self, name: str, number: int, handed: dict[str, Any]) -> Outcome:
+        """Judge in a process of its own: it takes a second of computing."""
+        async with self._room:
+            try:
+                work = await asyncio.to_thread(self._processes.submit, judged, name, number, handed)
+                return await asyncio.wrap_future(work)
+            except LOST as error:
+                text = "the process that judges was lost; nothing is counted"
+                raise ApiError(503, "unavailable", text, hint="hand in again") from error
+
+    async def _tell(self, person: Person, game: Game[Any], seed: int) -> None:
+        """Let the bench of a game that is over show everything."""
+        session = self._bench_of(person, Played(game=game.id, seed=seed))
+        if session is None or _left(game, await self._table.turns(person, game.id, seed)):
+            return
+        await self._engine.call(session.hiding.reveal, person.name)
+        await self._turn_pages(session)
+
+    def _benches_of(self, person: Person) -> list[Session]:
+        """Return the benches on which somebody plays."""
+        if person.role == "student":
+            found = self._classes.benches.find(person)
+            there = [found] if found is not None else []
+        else:
+            there = [session for session in self._benches.all() if not session.class_id]
+        return [one for one in there if one.hiding.blind is not None and one.hiding.blind.question.game is not None]
+
+    def _bench_of(self, person: Person, played: Played) -> Session | None:
+        """Return the bench on which somebody plays a game at a seed."""
+        for session in self._benches_of(person):
+            if session.hiding.blind is not None and session.hiding.blind.question.game == played:
+                return session
+        return None
+
+
+def _left(game: Game[Any], turns: Turns) -> int:
+    """Return how often somebody may still hand in."""
+    return 0 if turns.looked else max(0, game.attempts - len(turns.attempts))

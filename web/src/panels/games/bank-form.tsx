@@ -1,0 +1,31 @@
+import type { GameCard } from "../../api/types";
+import { setValue, useGame } from "../../bench/game";
+import { send } from "../../bench/send";
+import { ParameterRow } from "../card/parameter-row";
+import styles from "./games.module.css";
+
+/** The bank of every game. */
+const BANK = "diagnosers.kalman";
+
+/** What the bank assumes, and its sixth hypothesis; what may turn live is turned on the bench too. */
+export function BankForm({ card, on }: { card: GameCard; on: boolean }) {
+  const values = useGame((s) => s.values);
+  const change = (name: string, value: unknown) => {
+    if (typeof value !== "number") return;
+    setValue(name, value);
+    if (on && card.live.includes(name)) void send({ set: { [`${BANK}.${name}`]: value } });
+  };
+  return (
+    <div className={styles.form}>
+      {card.hand_in.map((parameter) => (
+        <ParameterRow
+          key={parameter.name}
+          parameter={{ ...parameter, live: true }}
+          value={values[parameter.name] ?? parameter.default}
+          staged={false}
+          onChange={(value) => change(parameter.name, value)}
+        />
+      ))}
+    </div>
+  );
+}

@@ -1,0 +1,71 @@
+import { Button, NativeSelect } from "@mantine/core";
+import type { GameKind } from "../../api/types";
+import { setValue, useGame } from "../../bench/game";
+import { send } from "../../bench/send";
+import { useBench } from "../../stream/bench-store";
+import { formatShort } from "../../ui/format";
+import { NumberField } from "../../ui/number-field";
+import { unitText } from "../../ui/unit-scale";
+import styles from "./games.module.css";
+
+/** A severity that something is said with before anybody has chosen one. */
+export const FIRST = 0.01;
+
+/** A fault and its severity, to be tried on the bench and then named. */
+export function FaultForm({ kinds, on }: { kinds: readonly GameKind[]; on: boolean }) {
+  const values = useGame((s) => s.values);
+  const acting = useBench((s) => s.bench?.faults ?? []);
+  const kind = kinds.find(({ name }) => name === values.fault) ?? kinds[0];
+  const { factor, unit } = shownIn(kind);
+  const severity = typeof values.severity === "number" ? values.severity : FIRST;
+  const limit = (end: number) => formatShort(end * factor, unit);
+  return (
+    <div className={styles.form}>
+      <div className={styles.bar}>
+        <NativeSelect
+          size="xs"
+          aria-label="Fault"
+          value={kind.name}
+          data={kinds.map(({ name, title }) => ({ value: name, label: title }))}
+          onChange={(e) => useGame.setState({ values: { fault: e.currentTarget.value, severity } })}
+        />
+        <span className={styles.field}>
+          severity
+          <NumberField
+            label="Severity"
+            unit={unitText(unit)}
+            value={severity * factor}
+            minimum={kind.minimum * factor}
+            maximum={kind.maximum * factor}
+            onCommit={(value) => setValue("severity", value / factor)}
+          />
+        </span>
+        <small className={styles.note}>
+          {limit(kind.minimum)} to {limit(kind.maximum)}
+        </small>
+      </div>
+      {on && (
+        <div className={styles.bar}>
+          <Button
+            size="xs"
+            variant="default"
+            onClick={() => void send({ fault: kind.name, severity }, `Injected ${kind.title}`)}
+          >
+            Try it on the bench
+          </Button>
+          <Button
+            size="xs"
+            variant="default"
+            disabled={acting.length === 0}
+            onClick={() => void send({ heal: "all" }, "Healed")}
+          >
+            Heal
+          </Button>
+        </div>
+      )}
+    </div>
+  );
+}
+
+/** Shares are entered in percent. */
+export const shownIn = ({ unit }: GameKind) => (unit === "1" ? { factor: 100, unit: "%" } : { factor: 1, unit });

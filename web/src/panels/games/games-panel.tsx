@@ -1,0 +1,159 @@
+import { Button, NativeSelect } from "@mantine/core";
+import { useEffect, useState } from "react";
+import { games } from "../../api/games";
+import { queryClient, useAnswer } from "../../api/queries";
+import type { GameCard, GamePlay } from "../../api/types";
+import { chooseGame, useGame } from "../../bench/game";
+import { openOwn } from "../../bench/open-bench";
+import { showError } from "../../bench/send";
+import { useBench } from "../../stream/bench-store";
+import { formatCount } from "../../ui/format";
+import { Formula } from "../../ui/formula";
+import { jump } from "../../ui/hover";
+import { NumberField } from "../../ui/number-field";
+import { Stale } from "../../ui/stale";
+import { BankForm } from "./bank-form";
+import { FaultForm } from "./fault-form";
+import { GameTable } from "./game-table";
+import styles from "./games.module.css";
+
+/** The table of a class grows while others play. */
+const EVERY_MS = 5000;
+
+/** Games with the bank: play on a bench that hides something, hand in numbers, see points and the table. */
+export function GamesPanel() {
+  const { game, seed } = useGame();
+  const cards = useAnswer(["games"], games.all);
+  const { value, error, since, again } = useAnswer(
+    ["game", game, seed],
+    () => games.of(game, seed),
+    () => EVERY_MS,
+  );
+  const playing = useBench((s) => s.bench?.blind?.game) ?? undefined;
+  useEffect(() => {
+    if (playing) chooseGame(playing.game, playing.seed);
+  }, [playing]);
+  const card = cards.value?.find(({ id }) => id === game);
+  const on = playing !== undefined && playing.game === game && playing.seed === seed;
+  return (
+    <section className={styles.panel} aria-label="Games">
+      <Stale error={error ?? cards.error} since={since} onRetry={again} />
+      <div className={styles.bar}>
+        <NativeSelect
+          size="xs"
+          aria-label="Game"
+          value={game}
+          data={(cards.value ?? []).map(({ id, title }) => ({ value: id, label: title }))}
+          onChange={(e) => chooseGame(e.currentTarget.value, seed)}
+        />
+        <span className={styles.field}>
+          seed
+          <NumberField
+            label="Seed"
+            unit=""
+            integer
+            value={seed}
+            minimum={0}
+            maximum={2 ** 53}
+            onCommit={(chosen) => chooseGame(game, chosen)}
+          />
+        </span>
+      </div>
+      {card && value && <Play key={`${game} ${seed}`} card={card} play={value} on={on} />}
+    </section>
+  );
+}
+
+/** One game at one seed: its task, the bench, what is handed in, what came of it, the table. */
+function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean }) {
+  const { seed, values } = useGame();
+  const [busy, setBusy] = useState<"begin" | "judge" | undefined>(undefined);
+  const over = play.left === 0;
+  const run = (what: "begin" | "judge", asked: Promise<GamePlay>, then?: (now: GamePlay) => void) => {
+    setBusy(what);
+    void asked
+      .then((now) => {
+        queryClient.setQueryData(["game", card.id, seed], now);
+        then?.(now);
+      }, showError)
+      .finally(() => setBusy(undefined));
+  };
+  const begin = () => {
+    jump.to("live");
+    run("begin", games.begin(card.id, seed, values), (now) => now.bench && openOwn(now.bench));
+  };
+  const reveal = () => {
+    if (window.confirm("Show what is hidden? You cannot hand in at this seed any more."))
+      run("judge", games.reveal(card.id, seed));
+  };
+  const last = play.attempts.at(-1);
+  const isBank = (play.kinds ?? []).length === 0;
+  return (
+    <>
+      <p className={styles.text}>{card.task}</p>
+      <div className={styles.bar}>
+        <Button
+          size="sm"
+          variant={on || over ? "default" : "filled"}
+          loading={busy === "begin"}
+          disabled={busy === "judge" || over}
+          onClick={begin}
+        >
+          {on ? "Begin again" : "Play on a new bench"}
+        </Button>
+        {on && isBank && (
+          <small className={styles.note}>
+            R, Q and the floor act on the bench at once; a new sixth hypothesis when you begin again.
+          </small>
+        )}
+      </div>
+      {isBank ? <BankForm card={card} on={on} /> : <FaultForm kinds={play.kinds ?? []} on={on} />}
+      <div className={styles.bar}>
+        <Button
+          size="sm"
+          loading={busy === "judge"}
+          disabled={busy === "begin" || over}
+          onClick={() => run("judge", games.handIn(card.id, seed, handedIn(play, values)))}
+        >
+          Hand in
+        </Button>
+        <small className={styles.note}>
+          {over ? "No attempt left at this seed; take another." : `${formatCount(play.left, "attempt")} left`}
+        </small>
+        {!over && play.attempts.length > 0 && (
+          <Button size="compact-sm" variant="subtle" disabled={busy !== undefined} onClick={reveal}>
+            Show what is hidden
+          </Button>
+        )}
+      </div>
+      {last && (
+        <div className={styles.outcome} role="status">
+          <p>{last.outcome.said}</p>
+          <Formula latex={last.outcome.worked} />
+        </div>
+      )}
+      {play.hidden && (
+        <dl className={styles.facts} aria-label="What was hidden">
+          {play.hidden.map(({ name, said }) => (
+            <div key={name}>
+              <dt>{name}</dt>
+              <dd>{said}</dd>
+            </div>
+          ))}
+        </dl>
+      )}
+      <GameTable card={card} play={play} />
+      <details className={styles.rule} open={play.attempts.length === 0}>
+        <summary>How points are counted</summary>
+        <p className={styles.text}>{card.rule}</p>
+        {card.equations.map(({ label, latex }) => (
+          <Formula key={label} latex={latex} />
+        ))}
+      </details>
+    </>
+  );
+}
+
+/** What is handed in; where a fault is to be named, the one shown first if none was chosen. */
+const handedIn = ({ kinds = [] }: GamePlay, values: Record<string, number | string>) =>
+  kinds.length > 0 ? { fault: kinds[0].name, ...values } : values;
