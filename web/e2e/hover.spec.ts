@@ -31,9 +31,15 @@ test("under the pointer the device in 3D is that of the moment, and it comes bac
   await expect(caption).toContainText("motion ×", { timeout: 60_000 });
   await page.mouse.move(4, 4);
   const shown = async () => (await frame.screenshot()).toString("base64");
+  /** The picture once two in a row are the same. */
   const steady = async () => {
-    const before = await shown();
-    await expect.poll(async () => (await shown()) === before, { timeout: 20_000, intervals: [500] }).toBe(true);
+    let before = "";
+    const stands = async () => {
+      const last = before;
+      before = await shown();
+      return before === last;
+    };
+    await expect.poll(stands, { timeout: 40_000, intervals: [500] }).toBe(true);
     return before;
   };
   const now = await steady();
