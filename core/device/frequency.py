@@ -12,7 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.block import FloatArray
+from core.elementary import atan2, log
 
+DECIBELS = 20.0 / 2.302585092994046
+"""Over the natural logarithm of a ratio."""
 ComplexArray = NDArray[np.complex128]
 
 
@@ -20,6 +23,23 @@ def response(mass_kg: float, damping_ns_m: float, stiffness_n_m: float, frequenc
     r"""Return the compliance, m/N (the same number as nm/nN), :math:`H=1/(k-m\omega^2+j\beta\omega)` (1.3.1)."""
     omega = 2.0 * np.pi * np.asarray(frequency_hz, dtype=np.float64)
     return np.asarray(1.0 / (stiffness_n_m - mass_kg * omega**2 + 1j * damping_ns_m * omega), dtype=np.complex128)
+
+
+def magnitude(values: ComplexArray) -> FloatArray:
+    """Return absolute values, by operations that are exact by the standard."""
+    return np.asarray(np.sqrt(values.real * values.real + values.imag * values.imag))
+
+
+def decibels(ratio: FloatArray) -> FloatArray:
+    r"""Return :math:`20\lg r`; libraries pick their logarithm by the processor, this one is the same everywhere."""
+    logs = np.reshape([log(float(one)) for one in np.ravel(ratio)], np.shape(ratio))
+    return np.asarray(DECIBELS * logs)
+
+
+def degrees(y: FloatArray, x: FloatArray) -> FloatArray:
+    """Return the angles of points, the same bits everywhere."""
+    angles = [atan2(float(up), float(across)) for up, across in zip(np.ravel(y), np.ravel(x), strict=True)]
+    return np.asarray(np.degrees(np.reshape(angles, np.shape(y))))
 
 
 def figures(mass_kg: float, damping_ns_m: float, stiffness_n_m: float) -> dict[str, float]:
@@ -91,14 +111,14 @@ def tolerance_band(
     farthest = np.maximum(np.abs(least), np.abs(most))
     inner, outer = damping_ns_m[0] * omega, damping_ns_m[2] * omega
     at_rest = stiffness_n_m[1]
-    corners = np.array([-np.arctan2(b, d) for b in (inner, outer) for d in (least, most)])
-    nominal = response(mass_kg[1], damping_ns_m[1], stiffness_n_m[1], frequency_hz) * at_rest
+    corners = np.array([-degrees(b, d) for b in (inner, outer) for d in (least, most)])
+    nominal, side = stiffness_n_m[1] - mass_kg[1] * omega**2, damping_ns_m[1] * omega
     return Band(
         frequency_hz=np.asarray(frequency_hz, dtype=np.float64),
-        low_db=20.0 * np.log10(at_rest / np.hypot(farthest, outer)),
-        nominal_db=20.0 * np.log10(np.abs(nominal)),
-        high_db=20.0 * np.log10(at_rest / np.hypot(nearest, inner)),
-        low_deg=np.degrees(corners.min(axis=0)),
-        nominal_deg=np.degrees(np.angle(nominal)),
-        high_deg=np.degrees(corners.max(axis=0)),
+        low_db=decibels(at_rest / magnitude(farthest + 1j * outer)),
+        nominal_db=decibels(at_rest / magnitude(nominal + 1j * side)),
+        high_db=decibels(at_rest / magnitude(nearest + 1j * inner)),
+        low_deg=corners.min(axis=0),
+        nominal_deg=-degrees(side, nominal),
+        high_deg=corners.max(axis=0),
     )

@@ -8,7 +8,7 @@ import numpy as np
 
 from core.block import BlockParams, parameter
 from core.device.catalogue import device as catalogued
-from core.device.frequency import figures, response, tolerance_band
+from core.device.frequency import decibels, degrees, figures, magnitude, response, tolerance_band
 from scenarios.studies.study import Picture, Study
 
 if TYPE_CHECKING:
@@ -42,8 +42,8 @@ class FrequencyResponse(Study):
         bode = {f"bode.{name}": value for name, value in base.items()}
         far = response(**nominal, frequency_hz=np.array([1000.0, 2000.0, FAR_HZ])) * nominal["stiffness_n_m"]
         bode["bode.static_nm_per_nn"] = 1.0 / nominal["stiffness_n_m"]
-        bode["bode.phase_1_khz_deg"], bode["bode.phase_2_khz_deg"] = np.degrees(np.angle(far[:2])).tolist()
-        bode["bode.far_db"] = float(20.0 * np.log10(abs(far[2])))
+        bode["bode.phase_1_khz_deg"], bode["bode.phase_2_khz_deg"] = degrees(far[:2].imag, far[:2].real).tolist()
+        bode["bode.far_db"] = float(decibels(magnitude(far[2:]))[0])
         for name in NAMES:
             word = name.partition("_")[0]
             moved = figures(**{**nominal, name: nominal[name] * (1.0 + params.change_pct / 100.0)})
