@@ -6,7 +6,8 @@ import os
 
 from core.errors import InputError
 from scenarios.campaign.executor import Processes
-from scenarios.campaign.threshold import Memory, Search, Threshold, Wanted
+from scenarios.campaign.halving import Threshold, Wanted
+from scenarios.campaign.threshold import Memory, Search
 from scenarios.schema import Scenario
 
 

@@ -8,7 +8,7 @@ from typing import Any, Self
 from fastapi import APIRouter, Response
 from pydantic import Field, model_validator
 
-from scenarios.campaign.threshold import Wanted
+from scenarios.campaign.halving import Wanted
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import PersonDep, RateLimited, ServiceDep
 from server.bench.making import prepare

@@ -11,7 +11,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from core.own.admission import kept
 from scenarios.campaign.campaign import Campaign
-from scenarios.campaign.threshold import Search, Threshold, Wanted
+from scenarios.campaign.halving import Threshold, Wanted
+from scenarios.campaign.threshold import Search
 from scenarios.key import content_hash, run_key
 from scenarios.schema import Scenario
 from server.errors import ApiError

@@ -11,7 +11,8 @@ import pytest
 from typer.testing import CliRunner
 
 from core.errors import InputError
-from scenarios.campaign.threshold import MOST_TURNS, ROUNDS, Halving, Memory, Search, Threshold, Wanted
+from scenarios.campaign.halving import MOST_TURNS, ROUNDS, Halving, Threshold, Wanted
+from scenarios.campaign.threshold import Memory, Search
 from scenarios.schema import Scenario
 from server.cli import app
 from tests.lab import QUIET

@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from scenarios.campaign.threshold import Memory, Search, Wanted
+from scenarios.campaign.halving import Wanted
+from scenarios.campaign.threshold import Memory, Search
 from scenarios.library import get
 
 NAME = "ch3-case1-aged-mass"
