@@ -29,10 +29,13 @@ class Settings(HandIn):
     """The assumptions of the bank, and a sixth hypothesis; factors of 1 mean none."""
 
     assumed_noise_scale: float = parameter(
-        1.0, "factor on both variances that the bank assumes, R = scale x (0.4 um)^2", ge=0.01, le=100
+        1.0,
+        "factor on both variances that the bank assumes; R is scale times the square of 0.4 \N{MICRO SIGN}m",
+        ge=0.01,
+        le=100,
     )
     process_noise_v: float = parameter(
-        0.3, "noise on the voltage that the bank assumes, Q = scale x this^2", "V", ge=0.001, le=10
+        0.3, "noise on the voltage that the bank assumes; Q is scale times its square", "V", ge=0.001, le=10
     )
     probability_floor: float = parameter(1e-3, "smallest probability of a hypothesis", ge=0, le=0.05)
     mass: float = parameter(1.0, "mass of a sixth hypothesis over that of the healthy device", ge=0.5, le=2, live=False)
@@ -103,9 +106,9 @@ class BeTheFilter(Game[Settings]):
     )
     task = (
         "The bank knows the healthy device and five hypotheses. Nobody tells it the noise: at scale 1 it assumes "
-        "0.4 um at the sensor, and the truth is at least a quarter off. The device starts healthy. After 30 ms of "
-        "device time it changes every 20 ms, six times; twice to a fault that none of the five says. Watch the "
-        "measurement and the bank, set R, Q and the floor, and give the bank a sixth hypothesis for the unknown "
+        "0.4 \N{MICRO SIGN}m at the sensor, and the truth is at least a quarter off. The device starts healthy. After "
+        "30 ms of device time it changes every 20 ms, six times; twice to a fault that none of the five says. Watch "
+        "the measurement and the bank, set R, Q and the floor, and give the bank a sixth hypothesis for the unknown "
         "fault."
     )
     rule = (

@@ -1,4 +1,4 @@
-import type { GameCard } from "../../api/types";
+import type { GameCard, Parameter } from "../../api/types";
 import { setValue, useGame } from "../../bench/game";
 import { send } from "../../bench/send";
 import { ParameterRow } from "../card/parameter-row";
@@ -15,17 +15,22 @@ export function BankForm({ card, on }: { card: GameCard; on: boolean }) {
     setValue(name, value);
     if (on && card.live.includes(name)) void send({ set: { [`${BANK}.${name}`]: value } });
   };
+  const rows = (shown: readonly Parameter[]) =>
+    shown.map((parameter) => (
+      <ParameterRow
+        key={parameter.name}
+        parameter={{ ...parameter, live: true }}
+        value={values[parameter.name] ?? parameter.default}
+        staged={false}
+        onChange={(value) => change(parameter.name, value)}
+      />
+    ));
   return (
     <div className={styles.form}>
-      {card.hand_in.map((parameter) => (
-        <ParameterRow
-          key={parameter.name}
-          parameter={{ ...parameter, live: true }}
-          value={values[parameter.name] ?? parameter.default}
-          staged={false}
-          onChange={(value) => change(parameter.name, value)}
-        />
-      ))}
+      <h3>What the bank assumes</h3>
+      {rows(card.hand_in.filter(({ name }) => card.live.includes(name)))}
+      <h3>A sixth hypothesis</h3>
+      {rows(card.hand_in.filter(({ name }) => !card.live.includes(name)))}
     </div>
   );
 }

@@ -8,13 +8,13 @@ import { NumberField } from "../../ui/number-field";
 import { unitText } from "../../ui/unit-scale";
 import styles from "./games.module.css";
 
-/** A severity that something is said with before anybody has chosen one. */
-export const FIRST = 0.01;
+/** What the field says before anybody has chosen, as the server's own default. */
+const FIRST = 0.01;
 
 /** A fault and its severity, to be tried on the bench and then named. */
 export function FaultForm({ kinds, on }: { kinds: readonly GameKind[]; on: boolean }) {
   const values = useGame((s) => s.values);
-  const acting = useBench((s) => s.bench?.faults ?? []);
+  const acts = useBench((s) => (s.bench?.faults.length ?? 0) > 0);
   const kind = kinds.find(({ name }) => name === values.fault) ?? kinds[0];
   const { factor, unit } = shownIn(kind);
   const severity = typeof values.severity === "number" ? values.severity : FIRST;
@@ -53,12 +53,7 @@ export function FaultForm({ kinds, on }: { kinds: readonly GameKind[]; on: boole
           >
             Try it on the bench
           </Button>
-          <Button
-            size="xs"
-            variant="default"
-            disabled={acting.length === 0}
-            onClick={() => void send({ heal: "all" }, "Healed")}
-          >
+          <Button size="xs" variant="default" disabled={!acts} onClick={() => void send({ heal: "all" }, "Healed")}>
             Heal
           </Button>
         </div>

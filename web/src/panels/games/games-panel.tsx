@@ -118,8 +118,13 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
           Hand in
         </Button>
         <small className={styles.note}>
-          {over ? "No attempt left at this seed; take another." : `${formatCount(play.left, "attempt")} left`}
+          {over ? "No attempt left at this seed." : `${formatCount(play.left, "attempt")} left`}
         </small>
+        {over && (
+          <Button size="sm" onClick={() => chooseGame(card.id, seed + 1)}>
+            Next seed
+          </Button>
+        )}
         {!over && play.attempts.length > 0 && (
           <Button size="compact-sm" variant="subtle" disabled={busy !== undefined} onClick={reveal}>
             Show what is hidden

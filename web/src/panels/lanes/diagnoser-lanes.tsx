@@ -23,12 +23,14 @@ const WORDS_SHARE = 0.32;
 interface DiagnoserLanesProps {
   id: string;
   names: string[];
+  /** Whether it is told what is true. */
+  withTruth: boolean;
   time: LaneTime;
   onWindow(ms: number): void;
 }
 
 /** The lanes of one diagnoser: one for each hypothesis. */
-export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProps) {
+export function DiagnoserLanes({ id, names, withTruth, time, onWindow }: DiagnoserLanesProps) {
   const picked = useView((s) => (s.sample?.diagnoser === id ? s.sample.tick : undefined));
   const events = useBench((s) => s.events);
   const fontSize = useView((s) => s.fontPx);
@@ -42,10 +44,10 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
     () => [
       ...names.map((name) => `${id}.probability.${name}`),
       `${id}.winner`,
-      `${id}.truth`,
+      ...(withTruth ? [`${id}.truth`] : []),
       ...(withUnexplained ? [unexplained] : []),
     ],
-    [id, names, withUnexplained, unexplained],
+    [id, names, withTruth, withUnexplained, unexplained],
   );
   const { labels, left } = useMemo(() => {
     const words = names.map((name) => hypothesisWords(name, diagnosers));
@@ -57,11 +59,11 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
   const shown = useRef<LanesShown | undefined>(undefined);
   const paint = useMemo<Parameters<typeof LaneCanvas>[0]["paint"]>(
     () => (pen, box, now, look) => {
-      shown.current = { ...now, names, labels, gutter: left / fontSize, switches, withUnexplained, picked };
+      shown.current = { ...now, names, labels, gutter: left / fontSize, switches, withTruth, withUnexplained, picked };
       paintLanes(pen, box, shown.current, look);
       if (votes) paintVotes(pen, box, shown.current, look, votes);
     },
-    [names, labels, left, fontSize, switches, withUnexplained, picked, votes],
+    [names, labels, left, fontSize, switches, withTruth, withUnexplained, picked, votes],
   );
   const edges = lanesLayout(1000, 400, names.length, fontSize, left);
 
@@ -73,7 +75,7 @@ export function DiagnoserLanes({ id, names, time, onWindow }: DiagnoserLanesProp
       aria-label={`Diagnosis by ${id}`}
     >
       <div className={styles.toolbar}>
-        <LanesHeadline id={id} names={names} switches={switches} />
+        {withTruth && <LanesHeadline id={id} names={names} switches={switches} />}
         <LaneTools time={time} onWindow={onWindow} take={() => shown.current && lanesPicture(shown.current, id)} />
       </div>
       <LaneCanvas

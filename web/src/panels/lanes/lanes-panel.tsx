@@ -55,7 +55,8 @@ export function LanesPanel() {
         A diagnoser that weighs hypotheses about the device fills these lanes, one for each hypothesis.
       </EmptyState>
     );
-  const one = all.length === 1 && all[0].truth ? all[0] : all.find((c) => c.id === wanted && c.truth);
+  // a bank whose truth is hidden has lanes too, but for that
+  const one = all.length === 1 && (all[0].truth || blind) ? all[0] : all.find((c) => c.id === wanted && c.truth);
   return (
     <div className={styles.panel}>
       {all.length > 1 && (
@@ -77,7 +78,7 @@ export function LanesPanel() {
         </div>
       )}
       {one ? (
-        <DiagnoserLanes id={one.id} names={one.names} time={time} onWindow={setWindowMs} />
+        <DiagnoserLanes id={one.id} names={one.names} withTruth={one.truth} time={time} onWindow={setWindowMs} />
       ) : (
         <Race contestants={all} time={time} picture={picture} />
       )}

@@ -19,6 +19,8 @@ export interface LanesShown extends LaneShown {
   labels: string[];
   /** Room for them, in sizes of the letters. */
   gutter: number;
+  /** Whether what is true is among the signals, behind the verdict; not while it is to be found. */
+  withTruth: boolean;
   /** Whether the signals end with what says that no hypothesis fits. */
   withUnexplained: boolean;
   /** The sample that is being explained. */
@@ -43,7 +45,7 @@ export function paintLanes(ctx: Pen, box: Box, shown: LanesShown, look: Look): v
   const { x, columnX } = placesOf(picture);
   const reading = (signal: number) => (hover === undefined ? frame.latest[signal] : columnAt(frame, signal, hover));
   const winnerNow = reading(names.length);
-  const truthNow = reading(names.length + 1);
+  const truthNow = shown.withTruth ? reading(names.length + 1) : undefined;
   const field = { left: layout.left, right: layout.right, top: 0, bottom: layout.axis };
 
   paintColumns(ctx, field, timeAxis(span, frame.dtMs), look);
@@ -76,10 +78,13 @@ export function paintLanes(ctx: Pen, box: Box, shown: LanesShown, look: Look): v
       fontSize,
       false,
     );
-    if (shown.withUnexplained) paintUnexplained(ctx, runs(largest(frame, names.length + 2)), columnX, picture);
-    const truth = runs(largest(frame, names.length + 1));
-    paintBand(ctx, truth, columnX, layout.truth, layout.band, colour, names, colours, fontSize, true);
-    paintDelays(ctx, picture, x, lowest(frame, names.length));
+    const last = names.length + (shown.withTruth ? 2 : 1);
+    if (shown.withUnexplained) paintUnexplained(ctx, runs(largest(frame, last)), columnX, picture);
+    if (shown.withTruth) {
+      const truth = runs(largest(frame, names.length + 1));
+      paintBand(ctx, truth, columnX, layout.truth, layout.band, colour, names, colours, fontSize, true);
+      paintDelays(ctx, picture, x, lowest(frame, names.length));
+    }
     paintPicked(ctx, shown.picked, x, layout.axis, colours);
     if (hover !== undefined) {
       ctx.fillStyle = colours.accent;
@@ -101,6 +106,7 @@ export function paintLanes(ctx: Pen, box: Box, shown: LanesShown, look: Look): v
   ctx.font = fontFor(fontSize, 1, 450);
   ctx.fillStyle = colours.muted;
   ctx.fillText("verdict", layout.left - 10, layout.winner + layout.band / 2);
+  if (!shown.withTruth) return;
   ctx.fillText("truth", layout.left - 10, layout.truth + layout.band / 2);
   ctx.fillText("delay", layout.left - 10, layout.delay + layout.band / 2);
 }
