@@ -5,6 +5,7 @@ import type { Question } from "../../api/types";
 import { hypothesisWords } from "../../bench/hypothesis-words";
 import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
+import exercise from "../../ui/exercise.module.css";
 import { formatPercent, formatSi } from "../../ui/format";
 import styles from "./blind.module.css";
 
@@ -31,7 +32,7 @@ export function Answer({ question, rule, onEnded }: AnswerProps) {
   };
   return (
     <>
-      <p className={styles.advice}>
+      <p className={exercise.text}>
         {hasCome
           ? "If there is a fault, it has come."
           : `If there is a fault, it comes before ${formatSi(by_tick * dtMs, "ms", 3)}.`}{" "}
@@ -56,7 +57,7 @@ export function Answer({ question, rule, onEnded }: AnswerProps) {
         value={confidence}
         onChange={setConfidence}
       />
-      <div className={styles.bar}>
+      <div className={exercise.bar}>
         <Button
           size="sm"
           loading={busy}

@@ -3,6 +3,7 @@ import { answersOf } from "../../api/blind";
 import type { HiddenAnswer } from "../../api/types";
 import { hypothesisWords } from "../../bench/hypothesis-words";
 import { useBench } from "../../stream/bench-store";
+import exercise from "../../ui/exercise.module.css";
 import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { jump } from "../../ui/hover";
 import styles from "./blind.module.css";
@@ -30,7 +31,7 @@ export function Outcome({ answer }: { answer: HiddenAnswer }) {
           ? `No answer: it is ${words(truth)}.`
           : `${right ? "Right" : "Wrong"}: it is ${words(truth)}. ${points(won)}`}
       </p>
-      <p className={styles.advice}>
+      <p className={exercise.text}>
         {said && confidence !== null && confidence !== undefined
           ? `You said ${words(said)} with ${formatPercent(confidence, 0)}. `
           : ""}
@@ -49,7 +50,7 @@ export function Outcome({ answer }: { answer: HiddenAnswer }) {
 export function Attempts({ answers }: { answers: readonly HiddenAnswer[] }) {
   const mean = answers.reduce((sum, one) => sum + (one.points ?? 0), 0) / answers.length;
   return (
-    <table className={styles.table}>
+    <table className={exercise.table}>
       <caption>
         {formatCount(answers.length, "answer")}, {points(mean)} on average
       </caption>
@@ -65,7 +66,7 @@ export function Attempts({ answers }: { answers: readonly HiddenAnswer[] }) {
         {answers.map((one) => {
           const known = answersOf(one);
           return (
-            <tr key={one.id} data-right={one.said === one.truth}>
+            <tr key={one.id} className={styles.answer} data-right={one.said === one.truth}>
               <td>{one.said ? hypothesisWords(one.said, known) : "nothing"}</td>
               <td>{hypothesisWords(one.truth, known)}</td>
               <td>

@@ -6,12 +6,12 @@ import { showError } from "../../bench/send";
 import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
+import exercise from "../../ui/exercise.module.css";
 import { jump } from "../../ui/hover";
 import { NumberField } from "../../ui/number-field";
 import { Stale } from "../../ui/stale";
 import { Answer } from "./answer";
 import { Attempts, Outcome } from "./attempts";
-import styles from "./blind.module.css";
 
 /** Blind diagnosis: the server hides a fault; answer with a confidence, then see the truth and the points. */
 export function BlindPanel() {
@@ -34,10 +34,10 @@ export function BlindPanel() {
         Hand in or end it under Games; then a fault can be hidden here.
       </EmptyState>
     );
-  const rule = value && <p className={styles.advice}>{value.rule}</p>;
+  const rule = value && <p className={exercise.text}>{value.rule}</p>;
   if (question)
     return (
-      <section className={styles.panel} aria-label="Blind diagnosis">
+      <section className={exercise.panel} aria-label="Blind diagnosis">
         <Stale error={error} since={since} onRetry={again} />
         <Answer key={question.id} question={question} rule={rule} onEnded={again} />
       </section>
@@ -51,16 +51,16 @@ export function BlindPanel() {
     setSeed(seed + 1);
   };
   return (
-    <section className={styles.panel} aria-label="Blind diagnosis">
+    <section className={exercise.panel} aria-label="Blind diagnosis">
       <Stale error={error} since={since} onRetry={again} />
       {last && <Outcome answer={last} />}
-      <p className={styles.advice}>
+      <p className={exercise.text}>
         The server hides a fault, or none. Until you answer you see the reference, the measurement and the voltage: no
         log, no diagnosers, no 3D. The same seed hides the same fault.
       </p>
       {rule}
-      <div className={styles.bar}>
-        <span className={styles.field}>
+      <div className={exercise.bar}>
+        <span className={exercise.field}>
           seed
           <NumberField label="Seed" unit="" integer value={seed} minimum={0} maximum={2 ** 31} onCommit={setSeed} />
         </span>

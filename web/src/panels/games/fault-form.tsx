@@ -3,6 +3,7 @@ import type { GameKind } from "../../api/types";
 import { setValue, useGame } from "../../bench/game";
 import { send } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
+import exercise from "../../ui/exercise.module.css";
 import { formatShort } from "../../ui/format";
 import { NumberField } from "../../ui/number-field";
 import { unitText } from "../../ui/unit-scale";
@@ -21,7 +22,7 @@ export function FaultForm({ kinds, on }: { kinds: readonly GameKind[]; on: boole
   const limit = (end: number) => formatShort(end * factor, unit);
   return (
     <div className={styles.form}>
-      <div className={styles.bar}>
+      <div className={exercise.bar}>
         <NativeSelect
           size="xs"
           aria-label="Fault"
@@ -29,7 +30,7 @@ export function FaultForm({ kinds, on }: { kinds: readonly GameKind[]; on: boole
           data={kinds.map(({ name, title }) => ({ value: name, label: title }))}
           onChange={(e) => useGame.setState({ values: { fault: e.currentTarget.value, severity } })}
         />
-        <span className={styles.field}>
+        <span className={exercise.field}>
           severity
           <NumberField
             label="Severity"
@@ -45,7 +46,7 @@ export function FaultForm({ kinds, on }: { kinds: readonly GameKind[]; on: boole
         </small>
       </div>
       {on && (
-        <div className={styles.bar}>
+        <div className={exercise.bar}>
           <Button
             size="xs"
             variant="default"

@@ -4,6 +4,7 @@ import { games } from "../../api/games";
 import { useAnswer } from "../../api/queries";
 import type { GameCard, GameLine, GamePlay, HandedIn } from "../../api/types";
 import { useClasses } from "../../api/use-classes";
+import exercise from "../../ui/exercise.module.css";
 import { formatCount, formatNumber, formatShort } from "../../ui/format";
 import { parameterTitle } from "../card/parameter-title";
 import { shownIn } from "./fault-form";
@@ -28,7 +29,7 @@ export function GameTable({ card, play }: { card: GameCard; play: GamePlay }) {
   return (
     <>
       {all.length > 0 && (
-        <div className={styles.bar}>
+        <div className={exercise.bar}>
           <NativeSelect
             size="xs"
             aria-label="Table of"
@@ -50,7 +51,7 @@ export function GameTable({ card, play }: { card: GameCard; play: GamePlay }) {
         </div>
       )}
       {lines.length > 0 && (
-        <table className={styles.table}>
+        <table className={exercise.table}>
           <caption>
             {card.title}, seed {play.seed}: {formatCount(lines.length, "attempt")}
             {!group && !isAlone(lines) && play.left > 0 && "; what others set is shown when your game is over"}
@@ -66,7 +67,7 @@ export function GameTable({ card, play }: { card: GameCard; play: GamePlay }) {
           </thead>
           <tbody>
             {lines.map((line, place) => (
-              <tr key={line.id} data-mine={line.mine}>
+              <tr key={line.id} className={line.mine ? styles.mine : undefined}>
                 <td>{place + 1}</td>
                 <td>{line.name}</td>
                 <td>{formatNumber(line.points, 1)}</td>

@@ -7,6 +7,7 @@ import { chooseGame, useGame } from "../../bench/game";
 import { openOwn } from "../../bench/open-bench";
 import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
+import exercise from "../../ui/exercise.module.css";
 import { formatCount } from "../../ui/format";
 import { Formula } from "../../ui/formula";
 import { jump } from "../../ui/hover";
@@ -36,9 +37,9 @@ export function GamesPanel() {
   const card = cards.value?.find(({ id }) => id === game);
   const on = playing !== undefined && playing.game === game && playing.seed === seed;
   return (
-    <section className={styles.panel} aria-label="Games">
+    <section className={exercise.panel} aria-label="Games">
       <Stale error={error ?? cards.error} since={since} onRetry={again} />
-      <div className={styles.bar}>
+      <div className={exercise.bar}>
         <NativeSelect
           size="xs"
           aria-label="Game"
@@ -46,7 +47,7 @@ export function GamesPanel() {
           data={(cards.value ?? []).map(({ id, title }) => ({ value: id, label: title }))}
           onChange={(e) => chooseGame(e.currentTarget.value, seed)}
         />
-        <span className={styles.field}>
+        <span className={exercise.field}>
           seed
           <NumberField
             label="Seed"
@@ -90,8 +91,8 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
   const isBank = (play.kinds ?? []).length === 0;
   return (
     <>
-      <p className={styles.text}>{card.task}</p>
-      <div className={styles.bar}>
+      <p className={exercise.text}>{card.task}</p>
+      <div className={exercise.bar}>
         <Button
           size="sm"
           variant={on || over ? "default" : "filled"}
@@ -108,7 +109,7 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
         )}
       </div>
       {isBank ? <BankForm card={card} on={on} /> : <FaultForm kinds={play.kinds ?? []} on={on} />}
-      <div className={styles.bar}>
+      <div className={exercise.bar}>
         <Button
           size="sm"
           loading={busy === "judge"}
@@ -150,7 +151,7 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
       <GameTable card={card} play={play} />
       <details className={styles.rule} open={play.attempts.length === 0}>
         <summary>How points are counted</summary>
-        <p className={styles.text}>{card.rule}</p>
+        <p className={exercise.text}>{card.rule}</p>
         {card.equations.map(({ label, latex }) => (
           <Formula key={label} latex={latex} />
         ))}
