@@ -21,7 +21,8 @@ interface Answers {
 const readable = (page: Page) =>
   page.locator("body").evaluate((body) => {
     const panels = Array.from(body.querySelectorAll(".dv-content-container, header, [role=status], [role=alert]"));
-    const own = "section[aria-label='Blind diagnosis']"; // the question itself names the answers
+    // the question itself names the answers; games say the same of every bench
+    const own = "section[aria-label='Blind diagnosis'], section[aria-label='Games']";
     return panels
       .filter((panel) => panel.querySelector(own) === null)
       .flatMap((panel) => [panel, ...Array.from(panel.querySelectorAll("*"))])
