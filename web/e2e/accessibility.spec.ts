@@ -5,6 +5,7 @@ test("every menu of a bench opens with its first item in focus, and axe finds no
   page,
   openBench,
 }) => {
+  test.slow(); // each of ten menus is looked through by axe
   await openBench("lab");
   const menus = page.locator("[aria-haspopup=menu]:visible");
   const many = await menus.count();

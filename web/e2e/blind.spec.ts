@@ -3,7 +3,7 @@ import { expect, HYPOTHESES, inWords, test } from "./lab";
 import { expectFits, SCREENS, showOn } from "./screens";
 import { seriousViolations } from "./serious-violations";
 
-test.describe.configure({ timeout: 120_000 });
+test.describe.configure({ timeout: 240_000 });
 
 interface Shown {
   faults: unknown[];
