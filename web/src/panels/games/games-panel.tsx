@@ -7,8 +7,9 @@ import { chooseGame, useGame } from "../../bench/game";
 import { openOwn } from "../../bench/open-bench";
 import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
 import exercise from "../../ui/exercise.module.css";
-import { formatCount } from "../../ui/format";
+import { formatCount, formatNumber } from "../../ui/format";
 import { Formula } from "../../ui/formula";
 import { jump } from "../../ui/hover";
 import { NumberField } from "../../ui/number-field";
@@ -34,6 +35,13 @@ export function GamesPanel() {
   useEffect(() => {
     if (playing) chooseGame(playing.game, playing.seed);
   }, [playing]);
+  const isBlind = useBench((s) => s.blind && !s.bench?.blind?.game);
+  if (isBlind)
+    return (
+      <EmptyState title="A fault is hidden on this bench">
+        Answer or give up under Blind diagnosis; then you can play here.
+      </EmptyState>
+    );
   const card = cards.value?.find(({ id }) => id === game);
   const on = playing !== undefined && playing.game === game && playing.seed === seed;
   return (
@@ -134,7 +142,10 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
       </div>
       {last && (
         <div className={styles.outcome} role="status">
-          <p>{last.outcome.said}</p>
+          <p>
+            {last.outcome.said}
+            {play.best !== null && ` The best so far has ${formatNumber(play.best, 1)} points.`}
+          </p>
           <Formula latex={last.outcome.worked} />
         </div>
       )}
