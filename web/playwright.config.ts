@@ -3,8 +3,8 @@ import { defineConfig } from "@playwright/test";
 /** Two browsers, each with a server of its own: they mostly wait, and each board shares the machine with a WebGL drawn in software. */
 export default defineConfig({
   testDir: "e2e",
-  timeout: 90_000,
-  expect: { timeout: 20_000 },
+  timeout: 400_000,
+  expect: { timeout: 60_000 },
   workers: 2,
   fullyParallel: false,
   retries: 0,

@@ -179,7 +179,7 @@ class Track:
     def onward(self, board: Board, tick: int) -> Passage:
         """Return the way of a board on to a later tick; at its own tick of this past nothing has been done to it yet.
 
-        What is done at the tick where the way ends is left out, so that it can go on from there.
+        It leaves out what was done at the tick where it ends, so that the board can go on from there.
         """
         first, last = (bisect_left(self._deeds, end, key=_tick) for end in (board.tick, tick))
         return Passage(board.checkpoint(), tuple(self._deeds[first:last]), tick)

@@ -1,7 +1,7 @@
-"""Halving: over the range of a number, the places where something begins to hold and where it ceases to.
+"""Halving: over the range of a number, the places where a claim begins to hold and where it ceases to.
 
-It is looked at on a grid; between neighbours of which one bears it out and the other does not, the range is halved. So
-what turns twice between two points of the grid is not seen to turn there.
+The claim is tried at the points of a grid. Where it holds at one point and not at the next, the range between them is
+halved. A claim that turns twice between two points of the grid is not seen to turn there.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ class Halving:
     wanted : Wanted
         The range.
     bears_out : callable
-        Whether a figure bears the claim out.
+        Whether the claim holds for a figure.
     """
 
     def __init__(self, wanted: Wanted, bears_out: Callable[[float | None], bool]) -> None:

@@ -141,16 +141,16 @@ class BeTheFilter(Game[Settings]):
     def judge(self, seed: int, handed: Settings) -> Outcome:
         """Return the points of what was handed in, beside those of the default settings."""
         hidden = Hidden(seed)
-        credit, brier = sixth_of(hidden, handed).credit, _brier(hidden, handed)
-        usual = _brier(hidden, Settings())
-        mean, ordinary = brier["all"], points(usual["all"])
+        sixth = sixth_of(hidden, handed)
+        brier, credit = _brier(hidden, handed, sixth), sixth.credit
+        mean, ordinary = brier["all"], points(_brier(hidden, usual := Settings(), sixth_of(hidden, usual))["all"])
         worth = points(mean)
         said = (
             f"{format_number(worth, 1)} points; the default settings earn {format_number(ordinary, 1)}. While one of "
             f"the five was true you earned {format_number(points(brier['given']), 1)}, during the unknown fault "
             f"{format_number(points(brier['unknown']), 1)}"
         )
-        sixth = (
+        own = (
             f"; your sixth hypothesis counts by {format_percent(credit, 0)}." if handed.sixth else ", without a sixth."
         )
         return Outcome(
@@ -162,7 +162,7 @@ class BeTheFilter(Game[Settings]):
                 "credit": credit,
                 "default_points": ordinary,
             },
-            said=said + sixth,
+            said=said + own,
             worked=rf"P=100\left(1-\frac{{{mean:.4f}}}{{{GUESS:.4f}}}\right)={worth:.1f},\quad w={credit:.2f}",
         )
 
@@ -189,9 +189,9 @@ def points(brier: float) -> float:
     return 100.0 * (1.0 - brier / GUESS)
 
 
-def _brier(hidden: Hidden, settings: Settings) -> dict[str, float]:
+def _brier(hidden: Hidden, settings: Settings, sixth: Sixth) -> dict[str, float]:
     """Return mean Brier scores over the noise seeds: of all samples, of those of the five, of the unknown fault's."""
-    truth, sixth = hidden.truth, sixth_of(hidden, settings)
+    truth = hidden.truth
     scenario = Scenario.load({**document(hidden, settings), "samples": len(truth)})
     parts = {"all": truth >= 0, "given": truth != UNKNOWN, "unknown": truth == UNKNOWN}
     sums = dict.fromkeys(parts, 0.0)

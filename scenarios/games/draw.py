@@ -1,4 +1,4 @@
-"""What a seed draws for a game: numbers by their names, the same for everybody, and a device from the process."""
+"""Draws of a game from its seed: numbers by their names, the same for everybody, and a device from the process."""
 
 from __future__ import annotations
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import Any, ClassVar, Generic, TypeVar
@@ -11,6 +10,7 @@ from pydantic import BaseModel, Field, ValidationError
 
 from core.block import BlockParams, Equation
 from core.board.document import Document
+from core.device.frequency import figures
 from core.errors import InputError, from_validation
 from core.format import format_short
 from scenarios.schema import Scenario
@@ -18,18 +18,18 @@ from scenarios.schema import Scenario
 DIAGNOSER = "kalman"
 """Id of the bank on the bench of every game."""
 MOST = 2**53
-"""Seeds are below this."""
+"""The largest seed."""
 
 
 class HandIn(BlockParams):
-    """What a person hands in."""
+    """The numbers that a person hands in."""
 
 
 H = TypeVar("H", bound=HandIn)
 
 
 class Outcome(BaseModel):
-    """What a hand-in earned."""
+    """The points of a hand-in, and why."""
 
     points: float
     figures: dict[str, float] = Field(description="The numbers of the rule, by name")
@@ -57,10 +57,9 @@ class Kind(BaseModel):
 def device_fact(bench: Scenario) -> Fact:
     """Tell the device of a bench."""
     device = bench.spec.device.resolved
-    f0 = math.sqrt(device["stiffness_n_m"] / device["mass_kg"]) / (2.0 * math.pi)
     parts = (device["mass_kg"], "kg"), (device["stiffness_n_m"], "N/m")
     said = ", ".join(format_short(value, unit, 3) for value, unit in parts)
-    return Fact(name="Device", said=f"{said}, resonance at {format_short(f0, 'Hz')}")
+    return Fact(name="Device", said=f"{said}, resonance at {format_short(figures(**device)['f0_hz'], 'Hz')}")
 
 
 class Game(ABC, Generic[H]):
@@ -69,17 +68,17 @@ class Game(ABC, Generic[H]):
     Attributes
     ----------
     id, title, summary : str
-        What people read in a list.
+        How a list names it.
     task, rule : str
-        What is to be done, and how points are counted.
+        They say what people are to do, and how points are counted.
     equations : tuple of Equation
         The rule.
     attempts : int
         How often one person may hand in at one seed.
     form : type of HandIn
-        What is handed in.
+        The numbers that people hand in.
     turned : tuple of str
-        What of it is turned on the live bench while it runs, by its parameter there.
+        Those of them that people turn on the live bench while it runs, by their parameters there.
     """
 
     id: ClassVar[str]

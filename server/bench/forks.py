@@ -69,8 +69,8 @@ class Forks:
         InputError
             For a tick that is not kept.
         """
-        past = await self._engine.call(partial(Past.of, session, tick, window_ticks, is_before=is_before))
-        return await self._benches.admit(self._computed(past, session, session), session.is_started and not paused)
+        past = await self._engine.call(partial(Past.take, session, tick, window_ticks, is_before=is_before))
+        return await self._benches.admit(self._computed(past, session), session.is_started and not paused)
 
     async def seek(self, session: Session, tick: int, actor: str) -> Event:
         """Show another tick of the past on a bench that shows one; what it computes for another is given up.
@@ -82,15 +82,13 @@ class Forks:
         """
         assert session.origin is not None
         of = self._benches.find(session.origin.bench) or session
-        past = await self._engine.call(Past.of, of, tick, session.origin.window_ticks)
+        past = await self._engine.call(Past.take, of, tick, session.origin.window_ticks)
         past = replace(past, origin=session.origin.model_copy(update={"tick": tick}))
         session.sought = past
-        other = await self._computed(past, of, session, lambda: session.sought is past)
+        other = await self._computed(past, session, lambda: session.sought is past)
         return await self._engine.call(session.show, other, actor)
 
-    async def _computed(
-        self, past: Past, of: Session, asked: Session, is_wanted: Callable[[], bool] = lambda: True
-    ) -> Session:
+    async def _computed(self, past: Past, asked: Session, is_wanted: Callable[[], bool] = lambda: True) -> Session:
         """Compute a moment of the past while it is wanted; the bench that was asked for it tells how far it is."""
         travel = asked.travel = Travel(tick=past.origin.tick, share=0.0)
 
@@ -104,7 +102,7 @@ class Forks:
             while not (await asyncio.wait([computing], timeout=STATUS_S))[0]:
                 await self._engine.call(asked.refresh_status)
             made = await computing
-            if not await self._engine.call(past.is_of, of):
+            if not await self._engine.call(past.is_true):
                 raise InputError("the bench itself has gone to another moment meanwhile", "tick", code="conflict")
             return made
         finally:
@@ -153,12 +151,10 @@ def forked(session: Session, snapshot_id: str | None, maker: Maker) -> Session:
     board = Board.restore(moment.checkpoint)
     twin = maker.around(moment.scenario, board, session.pacer.scale)
     twin.running.ends_at = session.running.ends_at
-    past = session.past_of(moment)
-    if past is not None:
-        track, rows = past
+    if (track := session.track_to(moment)) is not None:
         twin.track = track.until(board)
-        if rows is not None:
-            twin.history.append(rows)
+        if board.tick <= session.history.end_tick:
+            twin.history.adopt(session.history, board.tick - session.past_ticks, board.tick)
     if moment.told is not None:
         twin.narration.go_to(moment.told)
     twin.note("api", "forked", f"forked from bench {session.id}")

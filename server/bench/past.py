@@ -24,6 +24,8 @@ class Past:
 
     Parameters
     ----------
+    of : Session
+        The bench, which goes on.
     scenario : Scenario
         The scenario of the bench.
     passage : Passage
@@ -39,13 +41,14 @@ class Past:
     origin : Origin
         The bench and the tick.
     seen : History or None
-        The samples of the bench, if they go back as far as the panels look; it goes on.
+        The samples of the bench, if they go back as far as the panels look.
     jumps : int
         How often the bench had jumped in time; samples that are read after one more may be of another past.
     is_before : bool
         What was done at that very tick is left out.
     """
 
+    of: Session
     scenario: Scenario
     passage: Passage
     track: Track
@@ -58,7 +61,7 @@ class Past:
     is_before: bool = False
 
     @classmethod
-    def of(cls, session: Session, tick: int, window_ticks: int, *, is_before: bool = False) -> Past:
+    def take(cls, session: Session, tick: int, window_ticks: int, *, is_before: bool = False) -> Past:
         """Take what is needed of a bench (a job of the engine).
 
         Parameters
@@ -87,6 +90,7 @@ class Past:
         seen = history if history.first_tick <= begin and tick <= history.end_tick else None
         passage = track.to(tick, 0 if seen else window_ticks, is_before=is_before)
         return cls(
+            of=session,
             scenario=session.scenario,
             passage=passage,
             track=track.copy(),
@@ -99,9 +103,9 @@ class Past:
             is_before=is_before,
         )
 
-    def is_of(self, session: Session) -> bool:
-        """Whether the samples that were taken are still of the past of the bench (a job of the engine)."""
-        return self.seen is None or (session.history is self.seen and session.narration.mark.jumps == self.jumps)
+    def is_true(self) -> bool:
+        """Whether the bench has not jumped since, so that the samples are of this past (a job of the engine)."""
+        return self.seen is None or (self.of.history is self.seen and self.of.narration.mark.jumps == self.jumps)
 
     def session(self, maker: Maker, on_share: Callable[[float], None]) -> Session:
         """Compute the moment again, and return a bench that is there and can go on.

@@ -165,12 +165,9 @@ class Timeline:
         past = self._past(self.board.tick) if with_past else None
         return Moment(self.scenario, self.board.checkpoint(), self._branches.current, past)
 
-    def past_of(self, moment: Moment) -> tuple[Track, Rows | None] | None:
-        """Return the track that leads to a moment and the rows before it, if what is kept is the past of the moment."""
-        tick = moment.checkpoint.tick
-        if self.track is None or not self._branches.share(moment.branch, tick):
-            return None
-        return self.track, self._past(tick)
+    def track_to(self, moment: Moment) -> Track | None:
+        """Return the track if it leads to a moment, so that what is kept is the past of the moment."""
+        return self.track if self._branches.share(moment.branch, moment.checkpoint.tick) else None
 
     def _past(self, tick: int) -> Rows | None:
         """Return the last ticks before a tick, as far as the history has them."""

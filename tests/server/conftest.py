@@ -40,7 +40,7 @@ class Stream:
         """Every event that has come, in the order it came."""
         return [event for m in self.messages if m["type"] == "events" for event in m["events"]]
 
-    def until_event(self, timeout: float = 10.0, **fields: Any) -> dict[str, Any]:
+    def until_event(self, timeout: float = 60.0, **fields: Any) -> dict[str, Any]:
         """Return the first event with these fields: one that has come already, or else one that comes."""
 
         def found() -> list[dict[str, Any]]:
@@ -50,7 +50,7 @@ class Stream:
             self.until(lambda _: bool(found()), timeout)
         return found()[0]
 
-    def step(self, timeout: float = 5.0) -> dict[str, Any] | Frame:
+    def step(self, timeout: float = 30.0) -> dict[str, Any] | Frame:
         """Take one message; acknowledge frames unless told not to."""
         data = self.connection.recv(timeout=timeout)
         if isinstance(data, bytes):
@@ -63,7 +63,7 @@ class Stream:
         self.messages.append(message)
         return message
 
-    def until(self, what: Callable[[Any], bool], timeout: float = 10.0) -> Any:
+    def until(self, what: Callable[[Any], bool], timeout: float = 60.0) -> Any:
         """Take messages until one is as asked."""
         end = time.monotonic() + timeout
         while time.monotonic() < end:
@@ -72,7 +72,7 @@ class Stream:
                 return message
         raise TimeoutError("it never came")
 
-    def until_type(self, kind: str, timeout: float = 10.0, **fields: Any) -> dict[str, Any]:
+    def until_type(self, kind: str, timeout: float = 60.0, **fields: Any) -> dict[str, Any]:
         found: dict[str, Any] = self.until(
             lambda m: (
                 isinstance(m, dict)
@@ -83,7 +83,7 @@ class Stream:
         )
         return found
 
-    def until_frame(self, panel: int | None = None, timeout: float = 10.0) -> Frame:
+    def until_frame(self, panel: int | None = None, timeout: float = 60.0) -> Frame:
         found: Frame = self.until(
             lambda m: isinstance(m, Frame) and (panel is None or any(p.panel == panel for p in m.panels)),
             timeout,
@@ -112,11 +112,11 @@ class Live:
         self.app, self.server, self.address = app, server, address
         self.service = app.state.service
         self.http = httpx.Client(
-            base_url=address, headers={"Authorization": f"Bearer {TOKEN}"}, timeout=30, trust_env=False
+            base_url=address, headers={"Authorization": f"Bearer {TOKEN}"}, timeout=120, trust_env=False
         )
 
     def anonymous(self, **options: Any) -> httpx.Client:
-        return httpx.Client(base_url=self.address, timeout=30, trust_env=False, **options)
+        return httpx.Client(base_url=self.address, timeout=120, trust_env=False, **options)
 
     def bench(self, scenario: Any = "ch5-seven-step", **fields: Any) -> dict[str, Any]:
         answer = self.http.post("/api/v1/benches", json={"scenario": scenario, **fields})

@@ -52,7 +52,7 @@ class Served:
     def __init__(self, pid: int, address: str) -> None:
         self.pid, self.address = pid, address
         headers = {"Authorization": f"Bearer {TOKEN}"}
-        self.http = httpx.Client(base_url=address, headers=headers, timeout=30, trust_env=False)
+        self.http = httpx.Client(base_url=address, headers=headers, timeout=120, trust_env=False)
 
     def kill(self) -> None:
         """Kill it as a power cut would."""

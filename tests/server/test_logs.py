@@ -81,13 +81,16 @@ RUDE = {
     "end of nothing": frame(0, b"x"),
 }
 
+MACHINE = ("server.bench.engine", "server.bench.watchdog")
+"""Who says that this machine is slow, which no client brought about."""
+
 
 @contextmanager
 def opened(address: str, path: str, protocol: str) -> Iterator[socket.socket]:
     """A WebSocket by hand, cut at the end."""
     port = int(address.rpartition(":")[2])
     key = base64.b64encode(b"0" * 16).decode()
-    with socket.create_connection(("127.0.0.1", port), 5) as line:
+    with socket.create_connection(("127.0.0.1", port), 60) as line:
         line.sendall(
             f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nAuthorization: Bearer {TOKEN}\r\nConnection: Upgrade\r\n"
             f"Upgrade: websocket\r\nSec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n"
@@ -115,14 +118,14 @@ def test_a_client_that_breaks_the_rules_costs_a_line_and_no_traceback(tmp_path: 
             for protocol in ("other", "viser-v0"):
                 with opened(address, path, protocol) as line:
                     assert line.recv(12) == b"HTTP/1.1 101"
-            with socket.create_connection(("127.0.0.1", int(address.rpartition(":")[2])), 5) as line:
+            with socket.create_connection(("127.0.0.1", int(address.rpartition(":")[2])), 60) as line:
                 line.sendall(b"\x16\x03\x01\x02\x00\x01")  # as one who speaks TLS begins
                 assert line.recv(12) == b"HTTP/1.1 400"
             time.sleep(0.5)
             assert http.get("/health/ready").status_code == 200
         running.terminate()
-        assert running.wait(20) == 0 and running.stdout.read() == ""
-    said = lines((tmp_path / "stderr").read_text())
+        assert running.wait(90) == 0 and running.stdout.read() == ""
+    said = [entry for entry in lines((tmp_path / "stderr").read_text()) if entry["logger"] not in MACHINE]
     assert {"INFO", "WARNING"} >= {entry["level"] for entry in said}, said
     assert not [entry for entry in said if "exception" in entry or "Traceback" in entry["message"]]
     assert any("Invalid HTTP request" in entry["message"] for entry in said)

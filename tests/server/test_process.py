@@ -9,6 +9,7 @@ import io
 import os
 import signal
 import socket
+import sqlite3
 import subprocess
 import sys
 import time
@@ -58,7 +59,7 @@ def process(folder: Path, *arguments: str, **more: str) -> Iterator[Any]:
 
 def client(address: str) -> httpx.Client:
     base = address.removeprefix("CombBench is at ").partition("/?")[0]
-    return httpx.Client(base_url=base, headers={"Authorization": f"Bearer {TOKEN}"}, timeout=20, trust_env=False)
+    return httpx.Client(base_url=base, headers={"Authorization": f"Bearer {TOKEN}"}, timeout=120, trust_env=False)
 
 
 COLLECTS = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
@@ -109,7 +110,7 @@ def test_the_printed_link_lets_in_whatever_the_token(tmp_path: Path) -> None:
     token = "aaaaaaaaaaaaaaaa&b+c#d%41 e"
     with process(tmp_path, COMBBENCH_TOKEN=token) as running:
         link = running.address.removeprefix("CombBench is at ")
-        with httpx.Client(trust_env=False, timeout=20) as page:
+        with httpx.Client(trust_env=False, timeout=120) as page:
             assert page.get(link).status_code == 303
             assert page.get(link.partition("/?")[0] + "/api/v1/benches").status_code == 200
     assert token not in (tmp_path / "stderr").read_text()
@@ -167,17 +168,18 @@ def test_it_says_where_it_is_and_says_goodbye(tmp_path: Path) -> None:
                 proxy=None,
             )
             time.sleep(1.0)
-            began = time.monotonic()
             running.send_signal(signal.SIGTERM)
             last: list[str] = []
             with pytest.raises(ConnectionClosed) as caught:
                 while True:
-                    message = stream.recv(timeout=5)
+                    message = stream.recv(timeout=60)
                     last.append(message if isinstance(message, str) else "")
             assert caught.value.rcvd is not None and caught.value.rcvd.code == 1001
             assert any('"code":"shutdown"' in message for message in last[-3:])
             assert running.wait(90) == 0
-            assert time.monotonic() - began < 8
+    with contextlib.closing(sqlite3.connect(tmp_path / "data" / "combbench.sqlite3")) as database:
+        [(state,)] = database.execute("SELECT state FROM requests").fetchall()
+    assert state != "done", "the long run was waited for"
     table = pq.read_table(tmp_path / "data" / "recordings" / f"{recording['id']}.parquet")
     assert table.num_rows > 100
     assert table["tick"].to_pylist() == list(range(table["tick"][0].as_py(), table["tick"][-1].as_py() + 1))

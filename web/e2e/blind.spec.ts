@@ -3,7 +3,7 @@ import { expect, HYPOTHESES, inWords, test } from "./lab";
 import { expectFits, SCREENS, showOn } from "./screens";
 import { seriousViolations } from "./serious-violations";
 
-test.describe.configure({ timeout: 240_000 });
+test.describe.configure({ timeout: 480_000 });
 
 interface Shown {
   faults: unknown[];
@@ -59,7 +59,7 @@ test("no panel tells the fault until an answer is committed, and the server tell
   await expect(page.locator(".mantine-Notification-root")).toHaveCount(0);
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
   await expect
-    .poll(async () => (await bench()).tick, { timeout: 60_000 })
+    .poll(async () => (await bench()).tick, { timeout: 120_000 })
     .toBeGreaterThan((await bench()).blind?.by_tick ?? 0);
   expect(await bench()).toMatchObject({ faults: [], pending: [], scores: {} });
   await expect(panelOf(page).getByText("If there is a fault, it has come.")).toBeVisible();
@@ -137,7 +137,7 @@ test("a class: wrong and sure loses points, right and sure gains, the rest is re
   const all = page.getByRole("region", { name: "For all benches" });
   await all.getByRole("button", { name: "Blind faults" }).click();
   await expect(all.getByText("Blind faults: 2 done.")).toBeVisible();
-  for (const one of [ada, ben]) await expect(one.getByText(HIDDEN)).toBeVisible({ timeout: 60_000 });
+  for (const one of [ada, ben]) await expect(one.getByText(HIDDEN)).toBeVisible({ timeout: 120_000 });
   const { answers } = await server.ask<Answers>("GET", `/classes/${group.id}/blind`);
   const truth = Object.fromEntries(answers.map(({ name, truth }) => [name, truth]));
   await expect(tile("Ada").getByText(/^hidden: /)).toBeVisible();
@@ -153,7 +153,7 @@ test("a class: wrong and sure loses points, right and sure gains, the rest is re
   await page.getByRole("checkbox", { name: "Choose Ben" }).check();
   await all.getByRole("button", { name: "Blind faults" }).click();
   await expect(all.getByText("Blind faults: 1 done.")).toBeVisible();
-  await expect(ben.getByText(HIDDEN)).toBeVisible({ timeout: 60_000 });
+  await expect(ben.getByText(HIDDEN)).toBeVisible({ timeout: 120_000 });
   await showOn(ben, SCREENS[3]);
   await expectFits(ben, "the page of a student with a hidden fault, on a phone");
   await all.getByRole("button", { name: "Reveal all" }).click();

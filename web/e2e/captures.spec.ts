@@ -26,7 +26,7 @@ test("the captures of a trigger outlive the history: previous, next, newest, by 
   await scope.getByRole("button", { name: "Trigger", exact: true }).click();
   const words = wordsOf(scope);
   await server.ask("POST", `/benches/${bench}/commands`, { kind: "time_scale", value: 0.05 });
-  await expect(words).toHaveText(/^50\scaptures kept$/, { timeout: 60_000 });
+  await expect(words).toHaveText(/^50\scaptures kept$/, { timeout: 120_000 });
   await page.getByRole("button", { name: "Pause", exact: true }).click();
   await expect(page.getByTestId("bench-state")).toHaveText("paused");
   await expect(words).toHaveText(/^50\scaptures kept$/);
@@ -82,7 +82,7 @@ test("the captures of a trigger outlive the history: previous, next, newest, by 
   await server.ask("POST", `/benches/${bench}/commands`, { kind: "start" });
   await expect
     .poll(async () => (await server.ask<{ first_tick: number }>("GET", `/benches/${bench}`)).first_tick, {
-      timeout: 60_000,
+      timeout: 120_000,
     })
     .toBeGreaterThan(captures[49].end_tick);
   await server.ask("POST", `/benches/${bench}/commands`, { kind: "pause" });
@@ -101,7 +101,7 @@ test("another level has captures of its own, and one of the old level is left", 
   const scope = motionOf(page);
   await scope.getByRole("button", { name: "Trigger", exact: true }).click();
   const words = wordsOf(scope);
-  await expect(words).toHaveText(/^\d+\scaptures kept$/, { timeout: 30_000 });
+  await expect(words).toHaveText(/^\d+\scaptures kept$/, { timeout: 120_000 });
   await scope.getByRole("button", { name: "Previous capture" }).click();
   await expect(words).toHaveText(/^capture \d+ of \d+ at/);
   await scope.getByRole("button", { name: /↗/ }).click();

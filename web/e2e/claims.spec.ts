@@ -8,7 +8,6 @@ test("what is printed lies under the live traces, is ticked at the end, turned b
   page,
   server,
 }) => {
-  test.setTimeout(240_000);
   const { id } = await server.ask<{ id: string }>("POST", "/benches", { scenario: NAME, paused: true });
   await page.request.get(server.url);
   await page.goto(`${server.origin}/?bench=${id}&layout=lab`);
@@ -19,7 +18,7 @@ test("what is printed lies under the live traces, is ticked at the end, turned b
 
   await server.ask("POST", `/benches/${id}/commands`, { kind: "step", ticks: 10_000 });
   const effort = claims.getByRole("listitem", { name: "effort ratio: holds as printed" });
-  await expect(effort).toBeVisible({ timeout: 30_000 });
+  await expect(effort).toBeVisible({ timeout: 120_000 });
   await expect(effort).toContainText("1.772");
   await expect(effort).toContainText("the controller generated almost 80% stronger signals than the input-reference");
   await expect(effort).toContainText("figure 3.1.3.2.2");
@@ -41,7 +40,7 @@ test("what is printed lies under the live traces, is ticked at the end, turned b
   await effort.getByLabel("Turn").selectOption("events.1.severity");
   await effort.getByRole("button", { name: "Find where it holds" }).click();
   // 1.71 to 1.89 times the reference: less than four weeks and more
-  await expect(effort.getByText("It holds from 3.469 to 5.475", { exact: false })).toBeVisible({ timeout: 60_000 });
+  await expect(effort.getByText("It holds from 3.469 to 5.475", { exact: false })).toBeVisible({ timeout: 120_000 });
   await expect(effort.getByRole("img", { name: /holds from 3\.469 to 5\.475/ })).toBeVisible();
   await effort.getByRole("textbox", { name: /Ageing/ }).fill("2");
   await effort.getByRole("textbox", { name: /Ageing/ }).press("Enter");
@@ -56,7 +55,7 @@ test("what is printed lies under the live traces, is ticked at the end, turned b
   await expect(claims).toHaveAttribute("data-over", "false");
   await server.ask("POST", `/benches/${id}/commands`, { kind: "step", ticks: 10_000 });
   const failed = claims.getByRole("listitem", { name: "effort ratio: does not hold as printed" });
-  await expect(failed).toBeVisible({ timeout: 30_000 });
+  await expect(failed).toBeVisible({ timeout: 120_000 });
   await expect(failed).toContainText("not reproduced");
 
   const kept = async (name: string) => {

@@ -4,7 +4,7 @@ import type { LabServer } from "./lab-server";
 import { expectClean, expectFits, SCREENS, type Screen, showOn } from "./screens";
 import { seriousViolations } from "./serious-violations";
 
-test.describe.configure({ timeout: 120_000 });
+test.describe.configure({ timeout: 480_000 });
 
 const PHONE = SCREENS[3];
 

@@ -52,7 +52,7 @@ test("no panel of the designer lies over another or is cut, at any width", async
           const down = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
           expect(Math.min(across, down), `${at}: ${a.name} over ${b.name}`).toBeLessThanOrEqual(0.5);
         }
-    }).toPass({ timeout: 30_000 });
+    }).toPass({ timeout: 120_000 });
     for (const name of PANELS) {
       const last = page.getByRole("region", { name }).locator(":scope > :last-child");
       await last.scrollIntoViewIfNeeded();

@@ -4,7 +4,6 @@ import { expectFits } from "./screens";
 import { seriousViolations } from "./serious-violations";
 
 test("a full server says what to do; a bench it let go is there again when its page comes back", async ({ page }) => {
-  test.setTimeout(150_000);
   const server = await LabServer.create({ COMBBENCH_MAX_BENCHES: "1", COMBBENCH_IDLE_MINUTES: "0.001" });
   try {
     const { id: first } = await server.ask<{ id: string }>("POST", "/benches", { scenario: "first-look", keep: true });

@@ -180,7 +180,7 @@ test("of two gyroscopes one is made to swing as the other", async ({ page, openD
     controller: { kind: "open_loop_rate" },
   });
   const tilt = page.getByTestId("tilt");
-  await expect(tilt.first()).toHaveText(/^(4\.00|3\.99)/, { timeout: 60_000 });
+  await expect(tilt.first()).toHaveText(/^(4\.00|3\.99)/, { timeout: 120_000 });
   await expect(tilt.last()).toHaveText(/^(2\.00|1\.99)/);
   await page.getByRole("tab", { name: "Controllers" }).click();
   await page.getByRole("radio", { name: "Sense-axis synchronisation" }).click();

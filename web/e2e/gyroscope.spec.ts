@@ -20,7 +20,7 @@ test("a gyroscope has its loops, its locus, its rate and the noise of it", async
   const before = await pictureOf(page, locus);
   await expect.poll(() => pictureOf(page, locus)).not.toBe(before);
   // with y free the swing is tilted as the device's figures say
-  await expect(page.getByTestId("tilt")).toHaveText(/^−0\.\d+°$/, { timeout: 60_000 });
+  await expect(page.getByTestId("tilt")).toHaveText(/^−0\.\d+°$/, { timeout: 120_000 });
 
   const panel = page.getByRole("region", { name: "Controllers" });
   await panel.getByRole("radio", { name: "Force to rebalance" }).click();
@@ -48,7 +48,7 @@ test("a gyroscope has its loops, its locus, its rate and the noise of it", async
   const allan = page.getByRole("region", { name: "Allan deviation" });
   await allan.getByRole("button", { name: "Gather as fast as possible" }).click();
   const plot = allan.getByRole("img", { name: /over (9|\d\d) averaging times$/ });
-  await expect(plot).toBeVisible({ timeout: 60_000 });
+  await expect(plot).toBeVisible({ timeout: 120_000 });
   await expect(allan.getByRole("row", { name: /Angle random walk N/ })).toBeVisible();
 
   await page.getByRole("tab", { name: "Faults" }).click();

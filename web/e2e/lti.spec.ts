@@ -63,7 +63,6 @@ function refusals(page: Page): string[] {
 }
 
 test("a launch in a frame: bench, stream and 3D view work without a cookie", async ({ page }) => {
-  test.setTimeout(180_000);
   const refused = refusals(page);
   await page.goto(`${course}/course`);
   const frame = page.frameLocator("iframe[title='Exercise']");
@@ -86,8 +85,8 @@ test("a launch in a frame: bench, stream and 3D view work without a cookie", asy
   await frame.getByTestId("bench-state").click();
   await page.keyboard.press("1"); // the lecture layout has the device in view
   const canvas = frame.frameLocator("iframe[title='The device in 3D']").locator("canvas").first();
-  await expect(canvas).toBeVisible({ timeout: 60_000 });
-  await expect(frame.getByText("The 3D view is loading")).toBeHidden({ timeout: 60_000 });
+  await expect(canvas).toBeVisible({ timeout: 120_000 });
+  await expect(frame.getByText("The 3D view is loading")).toBeHidden({ timeout: 120_000 });
   await expect(frame.getByText("The 3D view waits")).toBeHidden();
 
   await frame.getByRole("button", { name: "Pause" }).click();

@@ -10,7 +10,7 @@ const DIALOGS = [
 ];
 const MENUS = [/: change bench$/, /: change it$/, "Add or close panels", "Choose signals", /^Export/];
 
-test.describe.configure({ timeout: 240_000 });
+test.describe.configure({ timeout: 480_000 });
 
 test("no page overlaps or is cut, on any screen", async ({ page, server }) => {
   const { id: run } = await server.ask<{ id: string }>("POST", "/runs", { scenario: "ch5-seven-step", seed: 1 });
@@ -25,7 +25,7 @@ test("no page overlaps or is cut, on any screen", async ({ page, server }) => {
   });
   for (const job of [`/runs/${run}`, `/runs/${other}`, `/sweeps/${sweep}`])
     await expect
-      .poll(() => server.ask<{ state: string }>("GET", job).then(({ state }) => state), { timeout: 60_000 })
+      .poll(() => server.ask<{ state: string }>("GET", job).then(({ state }) => state), { timeout: 120_000 })
       .toBe("done");
   await page.request.get(server.url);
   const show = async (address: string, whole: Locator) => {

@@ -121,7 +121,7 @@ test("Bode diagrams, charts of a campaign and plots of theory are kept, in light
     },
   });
   const state = () => server.ask<{ state: string }>("GET", `/sweeps/${id}`).then((found) => found.state);
-  await expect.poll(state, { timeout: 60_000 }).toBe("done");
+  await expect.poll(state, { timeout: 120_000 }).toBe("done");
   await page.goto(`${server.origin}/?page=runs&sweep=${id}`);
   const chart = page.getByRole("figure").filter({ hasText: "Detection delay" });
   expect(await svgOf(page, chart)).toEqual(expect.arrayContaining(["delay, samples", "share found by then"]));

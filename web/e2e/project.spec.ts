@@ -3,7 +3,7 @@ import { expect, test } from "./lab";
 import { expectClean, SCREENS } from "./screens";
 import { seriousViolations } from "./serious-violations";
 
-test.describe.configure({ timeout: 120_000 });
+test.describe.configure({ timeout: 480_000 });
 
 test("one bench on all screens, a layout for all, all started together, a hand lowered", async ({
   page,

@@ -18,7 +18,6 @@ test.use({
 
 for (const prefix of ["", "/bench"]) {
   test(`behind a proxy with TLS, at ${prefix || "/"}, everything on the page works`, async ({ page }) => {
-    test.setTimeout(240_000);
     const proxy = await ProxyServer.create(prefix);
     const refused: string[] = [];
     page.on("response", (answer) => answer.status() >= 400 && refused.push(`${answer.status()} ${answer.url()}`));
@@ -36,11 +35,11 @@ for (const prefix of ["", "/bench"]) {
 
       const frame = page.frameLocator("iframe[title='The device in 3D']");
       const canvas = frame.locator("canvas").first();
-      await expect(canvas).toBeVisible({ timeout: 60_000 });
-      await expect(page.getByText("The 3D view is loading")).toBeHidden({ timeout: 60_000 });
+      await expect(canvas).toBeVisible({ timeout: 120_000 });
+      await expect(page.getByText("The 3D view is loading")).toBeHidden({ timeout: 120_000 });
       const drawn = async () => (await canvas.screenshot()).toString("base64");
       const first = await drawn();
-      await expect.poll(drawn, { timeout: 60_000 }).not.toBe(first);
+      await expect.poll(drawn, { timeout: 120_000 }).not.toBe(first);
 
       await page.locator("body").press("Shift+S");
       await expect(page.getByRole("textbox", { name: "Link", exact: true })).toHaveValue(

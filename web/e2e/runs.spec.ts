@@ -18,7 +18,7 @@ test("a run is started from the page, and its files are offered", async ({ page,
   await expect(page).toHaveURL(/[?&]run=/);
   const id = new URL(page.url()).searchParams.get("run");
   const state = () => server.ask<{ state: string }>("GET", `/runs/${id}`).then((found) => found.state);
-  await expect.poll(state, { timeout: 60_000 }).toBe("done");
+  await expect.poll(state, { timeout: 120_000 }).toBe("done");
   await expect(result.getByText("Expectations")).toBeVisible();
   const run = await server.ask<{ all: boolean; summary: { digest: string } }>("GET", `/runs/${id}`);
   expect(run.all).toBe(true);
@@ -43,14 +43,14 @@ test("a campaign is started, watched, cancelled, gone on with, and read", async 
   await page.getByRole("textbox", { name: "sensor.noise_um: value" }).fill("0.05, 0.2");
   await page.getByRole("textbox", { name: "Seeds", exact: true }).fill("2000");
   await page.getByRole("button", { name: "Start 4000 runs" }).click();
-  await page.getByRole("button", { name: "Cancel Campaign ch5-seven-step" }).click({ timeout: 30_000 });
+  await page.getByRole("button", { name: "Cancel Campaign ch5-seven-step" }).click({ timeout: 120_000 });
   const jobs = page.getByRole("region", { name: "Runs and campaigns" });
-  await expect(jobs.getByRole("listitem").getByText("cancelled")).toBeVisible({ timeout: 30_000 });
+  await expect(jobs.getByRole("listitem").getByText("cancelled")).toBeVisible({ timeout: 120_000 });
 
   await page.getByRole("textbox", { name: "Seeds", exact: true }).fill("3");
   await page.getByRole("button", { name: "Start 6 runs" }).click();
   const result = page.getByRole("region", { name: "Result" });
-  await expect(result.getByText("6 of 6 runs · done")).toBeVisible({ timeout: 60_000 });
+  await expect(result.getByText("6 of 6 runs · done")).toBeVisible({ timeout: 120_000 });
   const rows = result.getByRole("table").first().locator("tbody tr");
   await expect(rows).toHaveCount(2);
   await expect(rows.first()).toContainText("0.05");
@@ -75,7 +75,7 @@ test("a campaign tells what its runs warn of, in the words of a run", async ({ p
   for (const place of [`sweep=${campaign.id}`, `run=${run.id}`]) {
     await page.goto(`${server.origin}/?page=runs&${place}`);
     const warning = page.getByRole("region", { name: "Result" }).getByText(/^Warning: stvsc: the boundary layer/);
-    await expect(warning).toBeVisible({ timeout: 60_000 });
+    await expect(warning).toBeVisible({ timeout: 120_000 });
   }
   await seriousViolations(page).then((found) => expect(found).toEqual([]));
 });
@@ -98,7 +98,7 @@ test("a value that is not allowed is refused, two that do not go together are a 
   const { id } = await server.ask<{ id: string }>("POST", "/sweeps", { sweep });
   await page.goto(`${server.origin}/?page=runs&sweep=${id}`);
   const result = page.getByRole("region", { name: "Result" });
-  await expect(result.getByText("4 of 4 runs · done")).toBeVisible({ timeout: 60_000 });
+  await expect(result.getByText("4 of 4 runs · done")).toBeVisible({ timeout: 120_000 });
   await expect(result.getByText(/^drive\.kind: analogue is for open_loop only/)).toBeVisible();
   await expect(result.getByRole("table").first().locator("tbody tr")).toHaveCount(4);
 });
@@ -108,7 +108,7 @@ test("runs are named, found, compared and removed", async ({ page, server }) => 
     const body = { scenario: "ch5-seven-step", set: { samples: 800 }, seed, label };
     const { id } = await server.ask<{ id: string }>("POST", "/runs", body);
     const state = () => server.ask<{ state: string }>("GET", `/runs/${id}`).then((found) => found.state);
-    await expect.poll(state, { timeout: 60_000 }).toBe("done");
+    await expect.poll(state, { timeout: 120_000 }).toBe("done");
     return id;
   };
   const first = await wait(71, "quiet bench");

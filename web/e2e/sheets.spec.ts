@@ -3,7 +3,7 @@ import { expect, test } from "./lab";
 import { expectClean, SCREENS, showOn } from "./screens";
 import { seriousViolations } from "./serious-violations";
 
-test.describe.configure({ timeout: 120_000 });
+test.describe.configure({ timeout: 480_000 });
 
 const PHONE = SCREENS[3];
 

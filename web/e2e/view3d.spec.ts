@@ -5,12 +5,12 @@ test.use({ drawn: true });
 test("the device is alive in 3D: it is drawn, and it moves", async ({ page, openBench }) => {
   await openBench("research");
   const canvas = page.frameLocator("iframe[title='The device in 3D']").locator("canvas").first();
-  await expect(canvas).toBeVisible({ timeout: 60_000 });
+  await expect(canvas).toBeVisible({ timeout: 120_000 });
   await expect(page.getByText("The 3D view waits for the server")).toBeHidden();
   const picture = async () => (await canvas.screenshot()).toString("base64");
   const before = await picture();
-  await expect.poll(picture, { timeout: 60_000, intervals: [500] }).not.toBe(before);
-  await expect(page.getByTestId("bench-state")).toHaveText("running", { timeout: 30_000 });
+  await expect.poll(picture, { timeout: 120_000, intervals: [500] }).not.toBe(before);
+  await expect(page.getByTestId("bench-state")).toHaveText("running", { timeout: 120_000 });
 });
 
 test("scene and camera outlive layouts, a maximised panel, a closed panel, other pages", async ({
@@ -23,12 +23,12 @@ test("scene and camera outlive layouts, a maximised panel, a closed panel, other
   await page.getByRole("button", { name: "Pause" }).click();
   const frame = page.locator("iframe[title='The device in 3D']");
   const inside = frame.contentFrame();
-  await expect(inside.locator("#caption")).toContainText("motion ×", { timeout: 60_000 });
+  await expect(inside.locator("#caption")).toContainText("motion ×", { timeout: 120_000 });
   await inside.locator("body").evaluate((body) => body.setAttribute("data-kept", "yes"));
   const shown = async () => (await frame.screenshot()).toString("base64");
   const steady = async () => {
     const before = await shown();
-    await expect.poll(async () => (await shown()) === before, { timeout: 20_000, intervals: [500] }).toBe(true);
+    await expect.poll(async () => (await shown()) === before, { timeout: 120_000, intervals: [500] }).toBe(true);
     return before;
   };
   await page.evaluate(() =>
@@ -41,7 +41,7 @@ test("scene and camera outlive layouts, a maximised panel, a closed panel, other
   await page.mouse.down();
   await page.mouse.move(box.x + box.width / 2 + 90, box.y + box.height / 2 + 30, { steps: 5 });
   await page.mouse.up();
-  await expect.poll(shown, { timeout: 20_000 }).not.toBe(whole);
+  await expect.poll(shown, { timeout: 120_000 }).not.toBe(whole);
   await steady();
   const camera = () => page.evaluate(() => (window as { looked?: { position: number[] } }).looked?.position);
   const turned = await camera();
@@ -77,7 +77,7 @@ test("scene and camera outlive layouts, a maximised panel, a closed panel, other
   await inside.locator("body").evaluate(() => parent.postMessage({ viser: "closed" }, location.origin));
   await expect(inside.locator("body")).not.toHaveAttribute("data-kept");
   await expect
-    .poll(async () => (await camera())?.map((value) => value.toFixed(2)), { timeout: 30_000 })
+    .poll(async () => (await camera())?.map((value) => value.toFixed(2)), { timeout: 120_000 })
     .toEqual(turned?.map((value) => value.toFixed(2)));
   expect(warnings.filter((text) => text.includes("THREE."))).toEqual([]);
 });
@@ -92,19 +92,19 @@ test.describe("in the hand", () => {
     await cameras.evaluate((group) => group.parentElement?.scrollIntoView());
     const frame = page.locator("iframe[title='The device in 3D']");
     const inside = frame.contentFrame();
-    await expect(inside.locator("#caption")).toContainText("motion ×", { timeout: 60_000 });
+    await expect(inside.locator("#caption")).toContainText("motion ×", { timeout: 120_000 });
     const picture = async () => (await frame.screenshot()).toString("base64");
     const seen = new Set<string>();
     for (const name of ["Top", "Side", "Whole"]) {
       await cameras.getByRole("button", { name, exact: true }).click();
-      await expect.poll(async () => seen.has(await picture()), { timeout: 20_000 }).toBe(false);
+      await expect.poll(async () => seen.has(await picture()), { timeout: 120_000 }).toBe(false);
       let shown = "";
       const steady = async () => {
         const before = shown;
         shown = await picture();
         return shown === before;
       };
-      await expect.poll(steady, { timeout: 20_000, intervals: [700] }).toBe(true);
+      await expect.poll(steady, { timeout: 120_000, intervals: [700] }).toBe(true);
       seen.add(shown);
       expect(await page.evaluate(edges, shown), `${name} is cut off`).toEqual({ left: true, right: true, drawn: true });
     }

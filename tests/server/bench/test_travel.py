@@ -32,6 +32,9 @@ class Slow:
         on_share(1.0)
         return f"{maker}: {self.origin.tick}"
 
+    def is_true(self) -> bool:
+        return True
+
 
 class Asked:
     """A bench that shows the past; it keeps each status it is told to have."""
@@ -54,7 +57,7 @@ async def at_once(job: Callable[..., Any], *args: Any) -> Any:
 @pytest.fixture
 def forks(monkeypatch: pytest.MonkeyPatch) -> Any:
     monkeypatch.setattr(module, "STATUS_S", 0.01)
-    return Forks(SimpleNamespace(maker="made"), SimpleNamespace(call=at_once))  # type: ignore[arg-type]
+    return Forks(SimpleNamespace(maker="made"), SimpleNamespace(call=at_once), 1000)  # type: ignore[arg-type]
 
 
 def test_a_bench_says_how_far_the_moment_is_that_is_asked_for(forks: Any) -> None:
@@ -114,7 +117,7 @@ def test_the_share_grows_to_the_whole_way() -> None:
         other.scenario, other.board = scenario, board
         return other
 
-    way = Past.of(bench, 8000, 500)
+    way = Past.take(bench, 8000, 500)
     made = way.session(SimpleNamespace(around=around), shares.append)  # type: ignore[arg-type]
     assert made.board.tick == 8000 and way.passage.checkpoint.tick == 0
     assert shares == sorted(shares) and 0.0 < shares[0] < shares[-1] == 1.0

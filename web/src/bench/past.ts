@@ -37,9 +37,7 @@ async function follow(): Promise<void> {
       if (bench.origin?.is_past) await seek(bench.id, tick);
       else {
         const first = bench.tick - tick > FAR_TICKS ? bench.tick : tick;
-        const past = await api.fork(bench.id, { tick: first, paused: true, window_ticks: WINDOW_TICKS });
-        openBench(past.id, false, true);
-        await helloOf(past.id);
+        await standAt(bench.id, first);
         if (first !== tick) wanted ??= tick;
       }
     }
@@ -97,7 +95,12 @@ export async function backToNow(): Promise<void> {
 async function standHere(): Promise<string | undefined> {
   const bench = useBench.getState().bench;
   if (!bench || bench.origin?.is_past) return bench?.id;
-  const made = await api.fork(bench.id, { tick: bench.tick, paused: true, window_ticks: WINDOW_TICKS });
+  return standAt(bench.id, bench.tick);
+}
+
+/** Show a bench made of another that stands at a tick of it. */
+async function standAt(of: string, tick: number): Promise<string> {
+  const made = await api.fork(of, { tick, paused: true, window_ticks: WINDOW_TICKS });
   openBench(made.id, false, true);
   await helloOf(made.id);
   return made.id;
