@@ -6209,7 +6209,7 @@ export interface components {
         };
         /**
          * Outcome
-         * @description What a hand-in earned.
+         * @description The points of a hand-in, and why.
          */
         Outcome: {
             /** Points */
