@@ -14,6 +14,8 @@ test("a bench is recorded with its past, replayed with a loop, compared and dele
   server,
   openBench,
 }) => {
+  const kept = () => server.ask<{ recordings: Recording[] }>("GET", "/recordings");
+  for (const { id } of (await kept()).recordings) await server.ask("DELETE", `/recordings/${id}`); // of tests before
   await openBench("lab");
   const live = page.url();
   await page.getByRole("tab", { name: "Recordings" }).click();
@@ -30,7 +32,7 @@ test("a bench is recorded with its past, replayed with a loop, compared and dele
   };
   await record("first", "");
   await record("second", "plant.displacement");
-  const { recordings } = await server.ask<{ recordings: Recording[] }>("GET", "/recordings");
+  const { recordings } = await kept();
   // 2 ms from the moment on and 1 ms before it, at 100 kHz
   for (const one of recordings) expect(one.ticks).toBe(300);
   const [second] = recordings;
