@@ -134,6 +134,17 @@ def _append(
 
 
 @kernel
+def _copy_run(to: Any, places: int, of: Any, others: int, first: int, end: int) -> None:
+    """Copy places of a ring to another of another length, from ``first`` to ``end`` as both count."""
+    at = first
+    while at < end:
+        count = min(end - at, places - at % places, others - at % others)
+        start, begin = at % places * LANES, at % others * LANES
+        to[start : start + count * LANES] = of[begin : begin + count * LANES]
+        at += count
+
+
+@kernel
 def _adopt(
     ring: Any,
     low: Any,
@@ -141,22 +152,41 @@ def _adopt(
     offsets: IntArray,
     sizes: IntArray,
     steady: IntArray,
-    other: Any,
-    other_steady: IntArray,
+    of: Any,
+    of_low: Any,
+    of_high: Any,
+    of_offsets: IntArray,
+    of_sizes: IntArray,
+    of_steady: IntArray,
     first: int,
     end: int,
 ) -> None:
-    """Copy ticks of other rings, and fold them into the pyramid; what rests in both is zeros already."""
-    places, others = ring.shape[1] // LANES, other.shape[1] // LANES
+    """Copy ticks of other rings and the buckets over them; what rests in both is zeros already.
+
+    The buckets at the ends hold other ticks too. Nobody reads a bucket beyond the ticks kept, and the last one is
+    folded anew when ticks follow.
+    """
+    places, others = ring.shape[1] // LANES, of.shape[1] // LANES
     for group in range(ring.shape[0]):
-        if steady[group] >= places and other_steady[group] >= others:
+        if steady[group] >= places and of_steady[group] >= others:
             continue
         steady[group] = 0
-        for tick in range(first, end):
-            to, of = tick % places * LANES, tick % others * LANES
-            ring[group, to : to + LANES] = other[group, of : of + LANES]
-        _fold_ticks(ring[group], low[group], high[group], sizes[0], first, end)
-        _fold_buckets(low[group], high[group], offsets, sizes, first, end)
+        _copy_run(ring[group], places, of[group], others, first, end)
+        span = FACTOR
+        for level in range(LEVELS):
+            size, of_size = sizes[level], of_sizes[level]
+            at, of_at = offsets[level] * LANES, of_offsets[level] * LANES
+            for pyramid, other in ((low, of_low), (high, of_high)):
+                to = pyramid[group, at : at + size * LANES]
+                _copy_run(
+                    to,
+                    size,
+                    other[group, of_at : of_at + of_size * LANES],
+                    of_size,
+                    first // span,
+                    (end - 1) // span + 1,
+                )
+            span *= FACTOR
 
 
 @kernel
@@ -298,8 +328,8 @@ class History:
         start = max(start, other.first_tick)
         if start >= stop:
             return
-        args = (self._ring, self._low, self._high, self._offsets, self._sizes, self._steady)
-        _adopt(*args, other._ring, other._steady, start, stop)
+        to, of = [(one._ring, one._low, one._high, one._offsets, one._sizes, one._steady) for one in (self, other)]
+        _adopt(*to, *of, start, stop)
         self._begin, self.end_tick, self._written = max(start, other.first_tick), stop, stop
 
     def columns(self, signals: list[int], start: int, stop: int, columns: int) -> Float32Array:

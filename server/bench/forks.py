@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Callable, Coroutine
 from dataclasses import replace
 from functools import partial
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from core.board.board import Board
 from core.errors import InputError
@@ -19,6 +19,8 @@ from server.bench.portrait import design_of
 from server.bench.running import STATUS_S
 from server.bench.session import Session
 from server.bench.status import Travel
+
+T = TypeVar("T")
 
 
 class Registry(Protocol):
@@ -70,7 +72,8 @@ class Forks:
             For a tick that is not kept.
         """
         past = await self._engine.call(partial(Past.take, session, tick, window_ticks, is_before=is_before))
-        return await self._benches.admit(self._computed(past, session), session.is_started and not paused)
+        coming = self._computed(past, session, lambda made: made)
+        return await self._benches.admit(coming, session.is_started and not paused)
 
     async def seek(self, session: Session, tick: int, actor: str) -> Event:
         """Show another tick of the past on a bench that shows one; what it computes for another is given up.
@@ -85,11 +88,22 @@ class Forks:
         past = await self._engine.call(Past.take, of, tick, session.origin.window_ticks)
         past = replace(past, origin=session.origin.model_copy(update={"tick": tick}))
         session.sought = past
-        other = await self._computed(past, session, lambda: session.sought is past)
-        return await self._engine.call(session.show, other, actor)
+        return await self._computed(
+            past, session, lambda other: session.show(other, actor), lambda: session.sought is past
+        )
 
-    async def _computed(self, past: Past, asked: Session, is_wanted: Callable[[], bool] = lambda: True) -> Session:
-        """Compute a moment of the past while it is wanted; the bench that was asked for it tells how far it is."""
+    async def _computed(
+        self,
+        past: Past,
+        asked: Session,
+        then: Callable[[Session], T],
+        is_wanted: Callable[[], bool] = lambda: True,
+    ) -> T:
+        """Compute a moment of the past while it is wanted, and do something with it (a job of the engine).
+
+        The bench that was asked for it tells how far it is. What is done with it is one job with all that goes before:
+        the pages get a picture after each job, and the next one only after its time.
+        """
         travel = asked.travel = Travel(tick=past.origin.tick, share=0.0)
 
         def go(share: float) -> None:
@@ -97,18 +111,25 @@ class Forks:
                 raise InputError("another moment is sought by now", "tick", code="conflict")
             travel.share = share
 
+        def end() -> None:
+            if asked.travel is travel:
+                asked.travel = None
+                asked.refresh_status()
+
+        def settle(made: Session) -> T:
+            end()
+            if not past.is_true():
+                raise InputError("the bench itself has gone to another moment meanwhile", "tick", code="conflict")
+            return then(made)
+
         computing = asyncio.create_task(asyncio.to_thread(past.session, self._benches.maker, go))
         try:
             while not (await asyncio.wait([computing], timeout=STATUS_S))[0]:
                 await self._engine.call(asked.refresh_status)
-            made = await computing
-            if not await self._engine.call(past.is_true):
-                raise InputError("the bench itself has gone to another moment meanwhile", "tick", code="conflict")
-            return made
-        finally:
-            if asked.travel is travel:
-                asked.travel = None
-                await self._engine.call(asked.refresh_status)
+            return await self._engine.call(settle, await computing)
+        except BaseException:
+            await self._engine.call(end)
+            raise
 
     async def variant(self, session: Session, values: dict[str, Any]) -> Session:
         """Make a bench that begins as another is set now, with values written over it.

@@ -93,10 +93,12 @@ class Hub:
 
     def publish(self) -> None:
         """Send news if a picture is due; called on the event loop after every round of the engine."""
-        if self._showing is not None or not self._pace.is_due(time.monotonic()):
+        now = time.monotonic()
+        if self._showing is not None or not self._pace.is_due(now):
             # A paused bench has no later round, so its last picture is sent by a timer.
             if self._later is None:
-                self._later = asyncio.get_running_loop().call_later(self._pace.period_s, self._show)
+                wait_s = self._pace.period_s if self._showing is not None else self._pace.wait_s(now)
+                self._later = asyncio.get_running_loop().call_later(wait_s, self._show)
             return
         self._show()
 

@@ -40,6 +40,10 @@ class Pace:
         """Return whether it is time for a picture."""
         return now >= self._next
 
+    def wait_s(self, now: float) -> float:
+        """Return how long it is until a picture is late: rounds that come before that are in time to send it."""
+        return max(self._next + SLACK * self.period_s - now, 0.0)
+
     def begin(self, now: float) -> None:
         """Note that pictures are sent now."""
         worked = self._clock()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from core.board.history import History
@@ -73,6 +73,8 @@ def test_columns_against_plain_arrays(n, chunks, spans):
     more=st.integers(0, 700),
     columns=st.integers(1, 900),
 )
+@example(n=8192, capacity=8192, back=(0.0, 1.0), more=0, columns=7)  # ends of buckets of every level
+@example(n=5120, capacity=4096, back=(0.0, 0.5), more=64, columns=40)
 def test_ticks_of_another_history_are_as_if_they_had_been_appended(n, capacity, back, more, columns):
     source, history = History(2, SIGNALS - 2, 8192), History(2, SIGNALS - 2, capacity)
     data = signal(n + more)

@@ -62,7 +62,7 @@ def forks(monkeypatch: pytest.MonkeyPatch) -> Any:
 
 def test_a_bench_says_how_far_the_moment_is_that_is_asked_for(forks: Any) -> None:
     async def ask() -> str:
-        computing = asyncio.create_task(forks._computed(past, bench))
+        computing = asyncio.create_task(forks._computed(past, bench, str))
         await asyncio.to_thread(past.half.wait)
         await asyncio.to_thread(bench.half_is_told.wait)
         past.goes_on.set()
@@ -80,10 +80,10 @@ def test_a_moment_is_given_up_when_another_is_sought(forks: Any, last_is_first: 
     async def ask() -> list[Any]:
         one, other, bench = Slow(1), Slow(2), Asked()
         wanted = one
-        first = asyncio.create_task(forks._computed(one, bench, lambda: wanted is one))
+        first = asyncio.create_task(forks._computed(one, bench, str, lambda: wanted is one))
         await asyncio.to_thread(one.half.wait)
         wanted = other
-        second = asyncio.create_task(forks._computed(other, bench, lambda: wanted is other))
+        second = asyncio.create_task(forks._computed(other, bench, str, lambda: wanted is other))
         await asyncio.to_thread(other.half.wait)
         for past, task in ((other, second), (one, first)) if last_is_first else ((one, first), (other, second)):
             past.goes_on.set()
@@ -99,7 +99,7 @@ def test_a_moment_is_given_up_when_another_is_sought(forks: Any, last_is_first: 
 def test_two_who_fork_a_bench_both_have_their_moment(forks: Any) -> None:
     async def ask() -> list[str]:
         bench, pasts = Asked(), [Slow(1), Slow(2)]
-        tasks = [asyncio.create_task(forks._computed(past, bench)) for past in pasts]
+        tasks = [asyncio.create_task(forks._computed(past, bench, str)) for past in pasts]
         for past in pasts:
             past.goes_on.set()
         return await asyncio.gather(*tasks)

@@ -1,6 +1,7 @@
 import { keepPreviousData, QueryClient, useQuery } from "@tanstack/react-query";
 import { useCallback, useEffect, useState } from "react";
 import { ApiError } from "./client";
+import { usePanelVisible } from "./panel-visible";
 
 /** What the page has asked the server, and when; one answer for all who ask the same. */
 export const queryClient = new QueryClient({
@@ -27,7 +28,8 @@ export interface Answer<T> {
 }
 
 /**
- * What the server answers to a question, asked again every so often while the page is in sight.
+ * What the server answers to a question, asked again every so often while the page is in sight; a panel that is hidden
+ * asks when it is shown.
  *
  * @param every Milliseconds until it is asked again, given the answer; undefined: not again.
  */
@@ -36,10 +38,11 @@ export function useAnswer<T>(
   ask: () => Promise<T>,
   every: (value: T | undefined) => number | undefined = () => undefined,
 ): Answer<T> {
+  const isSeen = usePanelVisible();
   const { data, error, dataUpdatedAt, refetch } = useQuery({
     queryKey: question ?? [],
     queryFn: ask,
-    enabled: question !== undefined,
+    enabled: question !== undefined && isSeen,
     refetchInterval: ({ state }) => every(state.data) ?? false,
   });
   return {

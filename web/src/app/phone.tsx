@@ -3,6 +3,7 @@ import { IconPlayerPauseFilled, IconPlayerPlayFilled, IconShare2, IconX } from "
 import { useEffect, useRef, useState } from "react";
 import { hasAxes } from "../api/fits";
 import { useMay } from "../api/me";
+import { PanelVisible } from "../api/panel-visible";
 import type { Bench } from "../api/types";
 import { actions } from "../bench/actions";
 import { useView } from "../bench/view-store";
@@ -10,7 +11,7 @@ import { ScopePanel } from "../panels/scope/scope-panel";
 import { useBench } from "../stream/bench-store";
 import { type ScopeConfig, scopeConfig } from "../stream/scope-config";
 import { ErrorFence } from "../ui/error-fence";
-import { PanelVisible, usePageVisible } from "../ui/panel-visible";
+import { usePageVisible } from "../ui/on-screen";
 import { CompanyMenu } from "./header/company";
 import { DeviceClock } from "./header/device-clock";
 import { StateBadge } from "./header/state-badge";

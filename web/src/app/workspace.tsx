@@ -11,9 +11,10 @@ import {
 } from "dockview-react";
 import { type FunctionComponent, type KeyboardEvent, useEffect, useState } from "react";
 import { hasAxes } from "../api/fits";
+import { PanelVisible } from "../api/panel-visible";
 import { addPanel, addScope, closePanel, DOCK_GAP, dockNow } from "../bench/dock";
 import { useBench } from "../stream/bench-store";
-import { PanelVisible, usePageVisible } from "../ui/panel-visible";
+import { usePageVisible } from "../ui/on-screen";
 import { attachDock, keepLayout, layOutFor } from "./layouts";
 import { PanelBody } from "./panel-body";
 import { PANELS, type PanelKind, suits } from "./panels";

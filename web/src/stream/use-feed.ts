@@ -1,5 +1,5 @@
 import { useEffect, useRef } from "react";
-import { usePanelVisible } from "../ui/panel-visible";
+import { usePanelVisible } from "../api/panel-visible";
 import type { Feed } from "./feed";
 import type { PanelFrame } from "./panel-frame";
 import { stream } from "./stream";

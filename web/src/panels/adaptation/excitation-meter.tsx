@@ -1,6 +1,7 @@
 import { Button } from "@mantine/core";
 import { useMemo, useRef, useState } from "react";
 import { useMay } from "../../api/me";
+import { usePanelVisible } from "../../api/panel-visible";
 import { openVariant } from "../../bench/open-bench";
 import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
@@ -8,7 +9,6 @@ import { middles } from "../../stream/panel-frame";
 import { useFeed } from "../../stream/use-feed";
 import { formatShort, formatSi } from "../../ui/format";
 import { useRestingTick } from "../../ui/hover";
-import { usePanelVisible } from "../../ui/panel-visible";
 import styles from "./adaptation.module.css";
 
 const EVERY_MS = 150;

@@ -1,4 +1,5 @@
 import { type ReactNode, type Ref, useEffect, useImperativeHandle, useMemo, useRef } from "react";
+import { usePanelVisible } from "../../api/panel-visible";
 import { useView } from "../../bench/view-store";
 import type { LegendEntry } from "../../picture/legend";
 import type { Box, Look, Pen } from "../../picture/pen";
@@ -8,7 +9,6 @@ import type { PanelFrame } from "../../stream/panel-frame";
 import { stream } from "../../stream/stream";
 import { useFeed } from "../../stream/use-feed";
 import type { Subscription } from "../../stream/wire";
-import { usePanelVisible } from "../../ui/panel-visible";
 import { useCanvas, useScheme } from "../../ui/use-canvas";
 import styles from "./behaviour.module.css";
 

@@ -1,12 +1,12 @@
 import { Radio } from "@mantine/core";
 import { useEffect, useState } from "react";
 import { api } from "../../api/api";
+import { usePanelVisible } from "../../api/panel-visible";
 import type { MeasuredPlant } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { send } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { formatSi } from "../../ui/format";
-import { usePanelVisible } from "../../ui/panel-visible";
 import { Weaknesses } from "../../ui/weaknesses";
 import styles from "./environment.module.css";
 

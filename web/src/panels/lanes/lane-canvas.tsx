@@ -1,4 +1,5 @@
 import { useEffect, useMemo, useRef } from "react";
+import { usePanelVisible } from "../../api/panel-visible";
 import { useView } from "../../bench/view-store";
 import type { Box, Look, Pen } from "../../picture/pen";
 import { useBench } from "../../stream/bench-store";
@@ -7,7 +8,6 @@ import { scopeConfig } from "../../stream/scope-config";
 import { stream } from "../../stream/stream";
 import { useFeed } from "../../stream/use-feed";
 import { hover } from "../../ui/hover";
-import { usePanelVisible } from "../../ui/panel-visible";
 import { useCanvas, useScheme } from "../../ui/use-canvas";
 import { listenForGestures } from "../scope/scope-gestures";
 import { scopeSubscription } from "../scope/use-time-view";

@@ -1,4 +1,5 @@
 import { type Ref, useEffect, useImperativeHandle, useMemo, useRef } from "react";
+import { usePanelVisible } from "../../api/panel-visible";
 import { useView } from "../../bench/view-store";
 import type { TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
@@ -6,7 +7,6 @@ import { middles } from "../../stream/panel-frame";
 import { stream } from "../../stream/stream";
 import { useFeed } from "../../stream/use-feed";
 import type { Subscription } from "../../stream/wire";
-import { usePanelVisible } from "../../ui/panel-visible";
 import { unitScale } from "../../ui/unit-scale";
 import { useCanvas, useScheme } from "../../ui/use-canvas";
 import styles from "../phase/phase.module.css";

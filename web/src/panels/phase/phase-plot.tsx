@@ -1,4 +1,5 @@
 import { type Ref, useEffect, useImperativeHandle, useMemo, useRef } from "react";
+import { usePanelVisible } from "../../api/panel-visible";
 import type { UnstableRegion } from "../../api/types";
 import { useView } from "../../bench/view-store";
 import type { TakePicture } from "../../picture/picture-menu";
@@ -8,7 +9,6 @@ import { stream } from "../../stream/stream";
 import { useFeed } from "../../stream/use-feed";
 import type { Subscription } from "../../stream/wire";
 import { hover } from "../../ui/hover";
-import { usePanelVisible } from "../../ui/panel-visible";
 import { unitScale } from "../../ui/unit-scale";
 import { useCanvas, useScheme } from "../../ui/use-canvas";
 import { useTraces } from "../scope/use-traces";

@@ -1,8 +1,8 @@
 import { useEffect, useState } from "react";
 import { api } from "../../api/api";
+import { usePanelVisible } from "../../api/panel-visible";
 import type { UnstableRegion } from "../../api/types";
 import { useBench } from "../../stream/bench-store";
-import { usePanelVisible } from "../../ui/panel-visible";
 
 /** Faults take effect a tick later, and sliders move in steps. */
 const SETTLE_MS = 400;

@@ -1,10 +1,10 @@
 import { useState } from "react";
 import { api } from "../../api/api";
 import { useMay } from "../../api/me";
+import { usePanelVisible } from "../../api/panel-visible";
 import { useAnswer } from "../../api/queries";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { usePanelVisible } from "../../ui/panel-visible";
 import rows from "../../ui/row-list.module.css";
 import { Stale } from "../../ui/stale";
 import { CompareView } from "./compare-view";

@@ -1,10 +1,10 @@
 import { type RefObject, useEffect, useState } from "react";
 import { api } from "../../api/api";
 import { ApiError } from "../../api/client";
+import { usePanelVisible } from "../../api/panel-visible";
 import { useBench } from "../../stream/bench-store";
 import { columnAt } from "../../stream/panel-frame";
 import { formatCount, formatIn, formatNumber, formatPercent, formatSi } from "../../ui/format";
-import { usePanelVisible } from "../../ui/panel-visible";
 import { SignalName, TraceSwatch } from "../../ui/trace-swatch";
 import { type Columns, type Measurement, measure, referenceFor } from "./measure";
 import type { PlotTrace } from "./paint-scope";

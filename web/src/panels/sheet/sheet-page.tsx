@@ -1,6 +1,7 @@
 import { Button } from "@mantine/core";
 import { useEffect, useRef } from "react";
 import { useMay } from "../../api/me";
+import { usePanelVisible } from "../../api/panel-visible";
 import { queryClient, useAnswer } from "../../api/queries";
 import { sheets } from "../../api/sheets";
 import type { SheetSection, SheetView } from "../../api/types";
@@ -8,7 +9,6 @@ import { announce } from "../../bench/announce";
 import { showError } from "../../bench/send";
 import { EmptyState } from "../../ui/empty-state";
 import { formatShort } from "../../ui/format";
-import { usePanelVisible } from "../../ui/panel-visible";
 import { Stale } from "../../ui/stale";
 import { beginSheet } from "./begin";
 import { HandedIn } from "./handed-in";

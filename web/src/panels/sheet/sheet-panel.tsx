@@ -1,8 +1,8 @@
 import { useState } from "react";
+import { usePanelVisible } from "../../api/panel-visible";
 import { useAnswer } from "../../api/queries";
 import { sheets } from "../../api/sheets";
 import { EmptyState } from "../../ui/empty-state";
-import { usePanelVisible } from "../../ui/panel-visible";
 import { SheetList } from "./sheet-list";
 import { SheetPage } from "./sheet-page";
 

@@ -4,7 +4,7 @@ import { isInFrame, sessionHeaders } from "../../api/session";
 import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { hover } from "../../ui/hover";
-import { usePageVisible } from "../../ui/panel-visible";
+import { usePageVisible } from "../../ui/on-screen";
 import { useScheme } from "../../ui/use-canvas";
 import styles from "./view3d.module.css";
 

@@ -1,7 +1,8 @@
 import { useEffect, useRef } from "react";
+import { usePanelVisible } from "../../api/panel-visible";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { useOnScreen, usePanelVisible } from "../../ui/panel-visible";
+import { useOnScreen } from "../../ui/on-screen";
 import styles from "./view3d.module.css";
 import { View3dFrame } from "./view3d-frame";
 import { offerPlace, usePlaces } from "./view3d-host";

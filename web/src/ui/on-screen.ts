@@ -1,9 +1,4 @@
-import { createContext, type RefObject, useContext, useEffect, useState, useSyncExternalStore } from "react";
-
-/** Whether the panel around is on screen; hidden panels neither stream nor draw. */
-export const PanelVisible = createContext(true);
-
-export const usePanelVisible = (): boolean => useContext(PanelVisible);
+import { type RefObject, useEffect, useState, useSyncExternalStore } from "react";
 
 const subscribe = (changed: () => void) => {
   document.addEventListener("visibilitychange", changed);
