@@ -163,8 +163,8 @@ def _adopt(
 ) -> None:
     """Copy ticks of other rings and the buckets over them; what rests in both is zeros already.
 
-    The buckets at the ends hold other ticks too. Nobody reads a bucket beyond the ticks kept, and the last one is
-    folded anew when ticks follow.
+    The first and last bucket of a level may cover ticks that are not copied. Readers use only buckets whose ticks are
+    all kept, and the next append folds the last bucket anew.
     """
     places, others = ring.shape[1] // LANES, of.shape[1] // LANES
     for group in range(ring.shape[0]):
@@ -330,7 +330,7 @@ class History:
             return
         to, of = [(one._ring, one._low, one._high, one._offsets, one._sizes, one._steady) for one in (self, other)]
         _adopt(*to, *of, start, stop)
-        self._begin, self.end_tick, self._written = max(start, other.first_tick), stop, stop
+        self._begin, self.end_tick, self._written = start, stop, stop
 
     def columns(self, signals: list[int], start: int, stop: int, columns: int) -> Float32Array:
         """Return minima and maxima, shape (signals, 2, columns); NaN where there is no data."""

@@ -141,9 +141,9 @@ class BeTheFilter(Game[Settings]):
     def judge(self, seed: int, handed: Settings) -> Outcome:
         """Return the points of what was handed in, beside those of the default settings."""
         hidden = Hidden(seed)
-        sixth = sixth_of(hidden, handed)
+        usual, sixth = Settings(), sixth_of(hidden, handed)
         brier, credit = _brier(hidden, handed, sixth), sixth.credit
-        mean, ordinary = brier["all"], points(_brier(hidden, usual := Settings(), sixth_of(hidden, usual))["all"])
+        mean, ordinary = brier["all"], points(_brier(hidden, usual, sixth_of(hidden, usual))["all"])
         worth = points(mean)
         said = (
             f"{format_number(worth, 1)} points; the default settings earn {format_number(ordinary, 1)}. While one of "

@@ -1,4 +1,4 @@
-"""Draws of a game from its seed: numbers by their names, the same for everybody, and a device from the process."""
+"""The seed of a game draws its numbers, each by its name, and its device; everybody who has the seed gets the same."""
 
 from __future__ import annotations
 

@@ -99,10 +99,10 @@ class Forks:
         then: Callable[[Session], T],
         is_wanted: Callable[[], bool] = lambda: True,
     ) -> T:
-        """Compute a moment of the past while it is wanted, and do something with it (a job of the engine).
+        """Compute a moment of the past while it is wanted, and give it to ``then`` (in a job of the engine).
 
-        The bench that was asked for it tells how far it is. What is done with it is one job with all that goes before:
-        the pages get a picture after each job, and the next one only after its time.
+        The bench that was asked for it tells how far it is. All that follows the computing is one job: pages get a
+        picture after a job, and after several they would wait for the next one.
         """
         travel = asked.travel = Travel(tick=past.origin.tick, share=0.0)
 

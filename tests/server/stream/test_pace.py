@@ -15,9 +15,8 @@ def settled(picture_s: float, other: float, rate_hz: float = 60.0) -> float:
         assert pace.is_due(now)
         pace.begin(now)
         assert not pace.is_due(now) and pace.is_due(now + pace.wait_s(now))
-        assert 0.0 < pace.wait_s(now) < 1.001 * pace.period_s and pace.wait_s(now + pace.period_s) == pytest.approx(
-            0.0, abs=1e-9
-        )
+        assert pace.wait_s(now) == pytest.approx(pace.period_s)
+        assert pace.wait_s(now + pace.period_s) == pytest.approx(0.0, abs=1e-9)
         worked += picture_s + other * pace.period_s
         now += pace.period_s
     return pace.period_s

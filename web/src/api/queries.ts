@@ -28,8 +28,8 @@ export interface Answer<T> {
 }
 
 /**
- * What the server answers to a question, asked again every so often while the page is in sight; a panel that is hidden
- * asks when it is shown.
+ * Asks the server a question, and again every so often, while the panel around is in sight. A hidden panel keeps its last
+ * answer and asks once it is shown.
  *
  * @param every Milliseconds until it is asked again, given the answer; undefined: not again.
  */

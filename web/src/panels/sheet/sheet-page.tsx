@@ -1,7 +1,6 @@
 import { Button } from "@mantine/core";
 import { useEffect, useRef } from "react";
 import { useMay } from "../../api/me";
-import { usePanelVisible } from "../../api/panel-visible";
 import { queryClient, useAnswer } from "../../api/queries";
 import { sheets } from "../../api/sheets";
 import type { SheetSection, SheetView } from "../../api/types";
@@ -21,12 +20,11 @@ const CALM_MS = 3000;
 
 /** A sheet with its steps. */
 export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
-  const seen = usePanelVisible();
   const teaches = useMay("teach");
   const { value, error, since, again } = useAnswer(
     ["sheet", id],
     () => sheets.get(id),
-    (view) => (seen ? (isMeasuring(view) ? LIVE_MS : CALM_MS) : undefined),
+    (view) => (isMeasuring(view) ? LIVE_MS : CALM_MS),
   );
   useSaid(value);
   if (!value) return <EmptyState title="Lab sheet">Loading the sheet…</EmptyState>;

@@ -1,5 +1,4 @@
 import { useState } from "react";
-import { usePanelVisible } from "../../api/panel-visible";
 import { useAnswer } from "../../api/queries";
 import { sheets } from "../../api/sheets";
 import { EmptyState } from "../../ui/empty-state";
@@ -10,8 +9,7 @@ const EVERY_MS = 3000;
 
 /** The lab sheet: the one begun last, or the list of all. */
 export function SheetPanel() {
-  const seen = usePanelVisible();
-  const { value, again } = useAnswer(["sheets"], sheets.all, () => (seen ? EVERY_MS : undefined));
+  const { value, again } = useAnswer(["sheets"], sheets.all, () => EVERY_MS);
   const [leftFor, setLeftFor] = useState<string | undefined>(undefined);
   if (!value) return <EmptyState title="Lab sheets">Loading the sheets…</EmptyState>;
   const current = value.current ?? undefined;
