@@ -129,11 +129,16 @@ class Playing(Running):
         if not tape.first <= start < end <= tape.end or end - start < LEAST_LOOP:
             text = f"must lie in {tape.first} to {tape.end} and have at least {LEAST_LOOP} ticks"
             raise InputError(text, "end_tick")
+        had_ended = tape.tick >= tape.end
         self._loop_start, self.ends_at = start, end
         if not start <= tape.tick < end:
             tape.seek(start)
             self._jump()
-        return self._bench.note(actor, "loop", f"plays ticks {start} to {end} again and again", command.model_dump())
+        text = f"plays ticks {start} to {end} again and again"
+        done = self._bench.note(actor, "loop", text, command.model_dump())
+        if had_ended:  # what has stopped by itself goes on; what somebody has paused stays
+            self.carry_out(Start(), actor)
+        return done
 
     def _jump(self) -> None:
         """Let history and clock follow the tape."""

@@ -236,6 +236,12 @@ def test_a_replay_seeks_and_loops(live: Any) -> None:
     assert live.get(replay)["state"] == "running" and all(2000 <= tick <= 2200 for tick in seen[1:])
     live.command(replay, "loop")
     until(lambda: live.get(replay)["tick"] == 3000 and live.get(replay)["state"] == "paused")
+    # a loop asked for at the end plays on; one asked for where somebody has paused waits
+    live.command(replay, "loop", start_tick=2000, end_tick=2200)
+    until(lambda: live.get(replay)["state"] == "running" and 2000 <= live.get(replay)["tick"] <= 2200)
+    live.command(replay, "pause")
+    live.command(replay, "loop", start_tick=1500, end_tick=1700)
+    assert live.get(replay)["state"] == "paused" and live.get(replay)["tick"] == 1500
     assert live.command(bench["id"], "seek", tick=0).status_code in (409, 422)
 
 
