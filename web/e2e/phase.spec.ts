@@ -80,7 +80,7 @@ test("the spectrum finds the tone of the drive", async ({ page, openBench }) => 
   await expect(panel.getByText(/^Strongest: (10\.0|9\.9\d|10\.1)\sV at (2\.00\d|1\.99\d)\skHz$/)).toBeVisible();
 });
 
-/** How much longer one axis of the field is than the other, px, by the grid that is drawn between its edges. */
+/** How much longer one axis of the field is than the other, px, by the lines they stand on. */
 function outOfSquare(canvas: HTMLCanvasElement): number {
   const context = canvas.getContext("2d") as CanvasRenderingContext2D;
   const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
@@ -88,8 +88,8 @@ function outOfSquare(canvas: HTMLCanvasElement): number {
   for (let y = 0; y < canvas.height; y += 1)
     for (let x = 0; x < canvas.width; x += 1) {
       const at = 4 * (y * canvas.width + x);
-      const isGrid = [230, 234, 238].every((value, k) => Math.abs(data[at + k] - value) < 3) && data[at + 3] > 250;
-      if (!isGrid) continue;
+      const isAxis = [185, 194, 204].every((value, k) => Math.abs(data[at + k] - value) < 3) && data[at + 3] > 250;
+      if (!isAxis) continue;
       across.push(x);
       up.push(y);
     }

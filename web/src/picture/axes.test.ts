@@ -20,6 +20,14 @@ it("places values evenly, or by their ratio on a logarithmic axis", () => {
   expect(place(0)).toBeLessThan(-1000);
 });
 
+it.each([
+  [[-3, 3], 2.97],
+  [[-2.9, 2.9], 1],
+  [[0, 19], 2],
+] as const)("has more than one number from end to end of %s where %s have room", (range, count) => {
+  expect(linearAxis(range).ticks(count).length).toBeGreaterThan(1);
+});
+
 it("counts device time from its origin and says it in the unit of the span", () => {
   const axis = timeAxis({ start: 900, end: 1300 }, 0.01, 1000);
   expect(axis.ticks(4)).toEqual([900, 1000, 1100, 1200, 1300]);

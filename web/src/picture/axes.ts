@@ -36,8 +36,10 @@ export function linearAxis(range: Range, title?: string, scale?: Pick<UnitScale,
     range,
     title,
     ticks(count) {
-      const [low, high] = this.range;
-      return linearTicks(low * factor, high * factor, Math.max(2, count)).map((t) => t / factor);
+      const [low, high] = this.range.map((end) => end * factor);
+      const ticks = linearTicks(low, high, Math.max(2, count));
+      // one number alone is no scale
+      return (ticks.length > 1 ? ticks : linearTicks(low, high, 2 * Math.max(2, count))).map((t) => t / factor);
     },
     say: scale ? (ticks) => labelsOn(scale, ticks) : tickLabels,
   };
