@@ -21,7 +21,7 @@ test("behaviours and regions are drawn, say what holds, and are kept as pictures
   await expect(words).toHaveText(
     /^Input and output belong to the behaviour: damping \+30\s%\. The verdict: a fault is isolated\.$/,
   );
-  expect(await pictureOf(page, CANVAS)).not.toBe(healthy);
+  await expect.poll(() => pictureOf(page, CANVAS)).not.toBe(healthy);
 
   const saved = page.waitForEvent("download");
   await panel.getByRole("button", { name: "Export" }).click();

@@ -20,5 +20,5 @@ test("panels keep their sizes, and the open tab is in view, when the page is ope
     await expect(notice).toBeVisible();
     await page.getByRole("tab", { name: i ? "Diagnosis" : "Events", exact: true }).click(); // stores the layout again
   }
-  expect(await sizesOf(page)).toEqual(before);
+  await expect.poll(() => sizesOf(page)).toEqual(before);
 });

@@ -67,9 +67,9 @@ test("a lecture is run by keys, forwards and back with the same bits, and leaves
   await expect(strip(page)).toContainText("5 of 10");
   await strip(page).getByRole("button", { name: "Leave" }).click();
   await expect(strip(page)).toHaveCount(0);
+  await expect.poll(() => benchOf(page)).toBe(before);
   await expect(page.getByTestId("bench-state")).toHaveText("running");
-  expect(benchOf(page)).toBe(before);
-  expect(await tabs()).toEqual(panels);
+  await expect.poll(tabs).toEqual(panels);
   await expect(page.locator("html")).toHaveAttribute("data-size", "normal");
   await page.keyboard.press("Space");
   await expect(page.getByTestId("bench-state")).toHaveText("paused");

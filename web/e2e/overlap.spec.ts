@@ -16,7 +16,7 @@ const GYROSCOPE = { scenario: "gyro-diagnosis", set: { "readouts.allan": { kind:
 /** What has a place in no laboratory, or in the research layout alone. */
 const ADDED = ["Controllers", "Parameter sets", "Scoreboard", "3D"];
 
-test.describe.configure({ timeout: 480_000 });
+test.describe.configure({ timeout: 900_000 });
 
 /** Open a bench, and let it go on running, so slowly that its scenario does not end meanwhile. */
 async function open(page: Page, server: LabServer, bench: object): Promise<string> {

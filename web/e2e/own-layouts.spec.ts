@@ -13,7 +13,7 @@ test("a panel is closed at its tab and comes back in its place", async ({ page, 
   await expect(page.getByText("Voltage closed.")).toBeVisible();
   await page.getByRole("alert").getByRole("button", { name: "Undo" }).click();
   await expect.poll(() => tabs.allTextContents()).toEqual(before);
-  expect((await named("Voltage").boundingBox())?.y).toBeCloseTo(place?.y ?? 0, -1);
+  await expect.poll(async () => (await named("Voltage").boundingBox())?.y).toBeCloseTo(place?.y ?? 0, -1);
 
   await named("Events").click();
   const cross = await named("Events").locator(".dock-close").boundingBox();

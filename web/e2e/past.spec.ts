@@ -36,6 +36,7 @@ test("the timeline goes back: all panels show that moment, a change there makes 
   await page.mouse.down();
   for (const share of [0.8, 0.6, 0.3]) await page.mouse.move(x + width * share, y + height / 2, { steps: 4 });
   await page.mouse.up();
+  await page.evaluate(() => new Promise(requestAnimationFrame)); // a slider moves with the next picture
 
   await expect(timeline.getByText(/^As it was at/)).toBeVisible();
   await expect.poll(shown).not.toBe(bench);

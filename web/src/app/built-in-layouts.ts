@@ -81,7 +81,7 @@ export const BUILT_IN: Layouts = {
     addTo(api, "why", "why", { within: "view3d", inactive: true });
     addTo(api, "lanes", "lanes", { below: "motion" });
     addTo(api, "claims", "claims", { within: "lanes", inactive: true });
-    size(api, width, height, { faults: { w: Math.max(0.3, LIST_PX / width), h: 0.42 }, lanes: { h: 0.52 } });
+    size(api, width, height, { faults: { w: Math.max(0.3, LIST_PX / width), h: 0.42 }, lanes: { h: 0.55 } });
   },
   lab(api, width, height) {
     addMotion(api);

@@ -1,4 +1,4 @@
-import { Button, NativeSelect, Slider } from "@mantine/core";
+import { Button, NativeSelect } from "@mantine/core";
 import { IconArrowLeft, IconRepeat } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../api/api";
@@ -10,6 +10,7 @@ import { send, showError } from "../bench/send";
 import { REPLAY_SPEEDS, speedItems } from "../bench/time-scale";
 import { useBench } from "../stream/bench-store";
 import { formatMoment } from "../ui/format";
+import { Slider } from "../ui/slider";
 import { openOwnBench } from "./first-bench";
 import styles from "./replay-bar.module.css";
 

@@ -1,4 +1,4 @@
-import { Button, Slider } from "@mantine/core";
+import { Button } from "@mantine/core";
 import { IconGitBranch, IconPlayerTrackNextFilled } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { useMay } from "../api/me";
@@ -8,6 +8,7 @@ import { backToNow, lookBack } from "../bench/past";
 import { useBench } from "../stream/bench-store";
 import { currentEvents } from "../stream/event-log";
 import { formatMoment, formatPercent } from "../ui/format";
+import { Slider } from "../ui/slider";
 import { BranchMenu } from "./branch-menu";
 import { Compare } from "./compare";
 import styles from "./time-bar.module.css";

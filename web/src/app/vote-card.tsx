@@ -1,4 +1,4 @@
-import { Button, Slider } from "@mantine/core";
+import { Button } from "@mantine/core";
 import { useEffect, useState } from "react";
 import { ApiError } from "../api/client";
 import { askMe, castVote, useMe } from "../api/me";
@@ -7,6 +7,7 @@ import { announce } from "../bench/announce";
 import { hypothesisWords } from "../bench/hypothesis-words";
 import { showError } from "../bench/send";
 import { formatCount, formatIn } from "../ui/format";
+import { Slider } from "../ui/slider";
 import styles from "./vote-card.module.css";
 
 /** How soon a student's page hears of a vote. */

@@ -1,9 +1,10 @@
-import { ActionIcon, Slider, Tooltip } from "@mantine/core";
+import { ActionIcon, Tooltip } from "@mantine/core";
 import { IconArrowBackUp } from "@tabler/icons-react";
 import { useState } from "react";
 import { formatShort } from "./format";
 import styles from "./knob.module.css";
 import { NumberField } from "./number-field";
+import { Slider } from "./slider";
 import { roundTo, unitText } from "./unit-scale";
 
 interface KnobProps {

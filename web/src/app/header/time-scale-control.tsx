@@ -1,4 +1,4 @@
-import { ActionIcon, Button, Group, Popover, Slider, Stack, Text, Tooltip } from "@mantine/core";
+import { ActionIcon, Button, Group, Popover, Stack, Text, Tooltip } from "@mantine/core";
 import { useState } from "react";
 import { send } from "../../bench/send";
 import {
@@ -12,6 +12,7 @@ import {
   timeScaleToSlider,
 } from "../../bench/time-scale";
 import { useBench } from "../../stream/bench-store";
+import { Slider } from "../../ui/slider";
 import styles from "./header.module.css";
 
 const set = (value: number | null) => send({ kind: "time_scale", value }, `Time scale ${formatTimeScale(value)}`);

@@ -1,4 +1,4 @@
-import { Button, Radio, Slider } from "@mantine/core";
+import { Button, Radio } from "@mantine/core";
 import { type ReactNode, useMemo, useState } from "react";
 import { blind } from "../../api/blind";
 import type { Question } from "../../api/types";
@@ -7,6 +7,7 @@ import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import exercise from "../../ui/exercise.module.css";
 import { formatPercent, formatSi } from "../../ui/format";
+import { Slider } from "../../ui/slider";
 import styles from "./blind.module.css";
 
 interface AnswerProps {

@@ -1,7 +1,8 @@
-import { Button, Group, NumberInput, SegmentedControl, Slider, Stack } from "@mantine/core";
+import { Button, Group, NumberInput, SegmentedControl, Stack } from "@mantine/core";
 import type { BlockCard, Parameter } from "../../api/types";
 import { type SeverityScale, severityText } from "../../bench/severity";
 import { Formula } from "../../ui/formula";
+import { Slider } from "../../ui/slider";
 import { unitText } from "../../ui/unit-scale";
 import { ParameterRow } from "../card/parameter-row";
 import { ConditionFields } from "../condition/condition-fields";
