@@ -53,6 +53,7 @@ export async function startTour(tour: Tour): Promise<void> {
     showError(error);
   } finally {
     await putBack(before, bench).catch(showError);
+    await forgetRun().catch(showError);
     useTour.setState({ runs: false });
     announce("The tour has ended; all is as it was before.");
   }
@@ -113,7 +114,6 @@ async function until(met: () => boolean): Promise<void> {
 }
 
 async function putBack(before: Before | undefined, bench: string | undefined): Promise<void> {
-  await forgetRun();
   useView.setState({ sample: undefined });
   if (before) {
     await stepBack(before);

@@ -1,4 +1,5 @@
 import { api } from "../../api/api";
+import { ApiError } from "../../api/client";
 import type { Command } from "../../api/types";
 import { addPanel, dockNow, showPanel } from "../../bench/dock";
 import { send } from "../../bench/send";
@@ -42,8 +43,13 @@ let run: string | undefined;
 
 /** What a tour has left on the server is gone with it. */
 export async function forgetRun(): Promise<void> {
-  if (run) await api.removeRuns([run]);
+  const left = run;
   run = undefined;
+  if (!left) return;
+  await api.cancelRun(left).catch((error: unknown) => {
+    if (!(error instanceof ApiError && error.status === 409)) throw error; // it has ended
+  });
+  await api.removeRuns([left]);
 }
 
 export const TOURS: Tour[] = [

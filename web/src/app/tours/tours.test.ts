@@ -1,0 +1,47 @@
+// @vitest-environment jsdom
+import { afterEach, expect, it, vi } from "vitest";
+import { api } from "../../api/api";
+import { ApiError } from "../../api/client";
+import { forgetRun, TOURS } from "./tours";
+
+// panels hold plots, which ask for the screen as soon as they are loaded
+vi.hoisted(() => {
+  window.matchMedia ??= () => ({ matches: false, addEventListener() {}, removeEventListener() {} }) as never;
+});
+
+const said: string[] = [];
+
+/** A server on which the run of the tour is in a state when the tour ends. */
+async function takeTour(state: "running" | "done", others: string[] = []): Promise<void> {
+  vi.spyOn(api, "runs").mockResolvedValue(others.map((id) => ({ id })) as never);
+  vi.spyOn(api, "startRun").mockResolvedValue({ id: "of-tour" } as never);
+  vi.spyOn(api, "cancelRun").mockImplementation((id) => {
+    said.push(`cancel ${id}`);
+    const refusal = { code: "conflict", message: "it has ended", field: null, details: {} };
+    return state === "running" ? Promise.resolve({} as never) : Promise.reject(new ApiError(409, refusal as never));
+  });
+  vi.spyOn(api, "removeRuns").mockImplementation((ids) => {
+    said.push(`remove ${ids}`);
+    return Promise.resolve({} as never);
+  });
+  await TOURS.flatMap(({ steps }) => steps)
+    .find(({ title }) => title === "A run of its own")
+    ?.does?.();
+  await forgetRun();
+}
+
+afterEach(() => {
+  said.length = 0;
+  vi.restoreAllMocks();
+});
+
+it.each(["running", "done"] as const)("the run of a tour goes with it while it is %s, and only once", async (state) => {
+  await takeTour(state);
+  await forgetRun();
+  expect(said).toEqual(["cancel of-tour", "remove of-tour"]);
+});
+
+it("a run that was there before the tour stays", async () => {
+  await takeTour("done", ["of-tour"]);
+  expect(said).toEqual([]);
+});
