@@ -1,9 +1,8 @@
 import type { Page } from "@playwright/test";
 import { expect, test } from "./lab";
+import { sceneAtRest, sceneOf, sceneShown } from "./scene";
 
 test.use({ drawn: true });
-
-const FRAME = "iframe[title='The device in 3D']";
 
 /** The middle of the field of the first scope, and its ends. */
 async function fieldOf(page: Page) {
@@ -24,23 +23,13 @@ test("under the pointer the device in 3D is that of the moment, and it comes bac
   await openBench("research");
   const bench = new URL(page.url()).searchParams.get("bench");
   await page.getByRole("button", { name: "Pause", exact: true }).click();
-  const frame = page.locator(FRAME);
+  const frame = sceneOf(page);
   const caption = frame.contentFrame().locator("#caption");
   const moment = caption.locator("b");
   await expect(caption).toContainText("motion ×", { timeout: 120_000 });
   await page.mouse.move(4, 4);
-  const shown = async () => (await frame.screenshot()).toString("base64");
-  /** The picture once two in a row are the same. */
-  const steady = async () => {
-    let before = "";
-    const stands = async () => {
-      const last = before;
-      before = await shown();
-      return before === last;
-    };
-    await expect.poll(stands, { timeout: 120_000, intervals: [500] }).toBe(true);
-    return before;
-  };
+  const shown = () => sceneShown(page);
+  const steady = () => sceneAtRest(page);
   const now = await steady();
   await expect(moment).toBeHidden();
 

@@ -1,10 +1,11 @@
 import { expect, test } from "./lab";
+import { sceneAtRest, sceneOf, sceneShown } from "./scene";
 
 test.use({ drawn: true });
 
 test("the device is alive in 3D: it is drawn, and it moves", async ({ page, openBench }) => {
   await openBench("research");
-  const canvas = page.frameLocator("iframe[title='The device in 3D']").locator("canvas").first();
+  const canvas = sceneOf(page).contentFrame().locator("canvas").first();
   await expect(canvas).toBeVisible({ timeout: 120_000 });
   await expect(page.getByText("The 3D view waits for the server")).toBeHidden();
   const picture = async () => (await canvas.screenshot()).toString("base64");
@@ -21,28 +22,22 @@ test("scene and camera outlive layouts, a maximised panel, a closed panel, other
   page.on("console", (message) => message.type() === "warning" && warnings.push(message.text()));
   await openBench("research");
   await page.getByRole("button", { name: "Pause" }).click();
-  const frame = page.locator("iframe[title='The device in 3D']");
+  const frame = sceneOf(page);
   const inside = frame.contentFrame();
   await expect(inside.locator("#caption")).toContainText("motion ×", { timeout: 120_000 });
   await inside.locator("body").evaluate((body) => body.setAttribute("data-kept", "yes"));
-  const shown = async () => (await frame.screenshot()).toString("base64");
-  const steady = async () => {
-    const before = await shown();
-    await expect.poll(async () => (await shown()) === before, { timeout: 120_000, intervals: [500] }).toBe(true);
-    return before;
-  };
   await page.evaluate(() =>
     window.addEventListener("message", ({ data }) => data.look && Object.assign(window, { looked: data.look })),
   );
   // somebody turns the device
-  const whole = await steady();
+  const whole = await sceneAtRest(page);
   const box = (await frame.boundingBox()) as { x: number; y: number; width: number; height: number };
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   await page.mouse.down();
   await page.mouse.move(box.x + box.width / 2 + 90, box.y + box.height / 2 + 30, { steps: 5 });
   await page.mouse.up();
-  await expect.poll(shown, { timeout: 120_000 }).not.toBe(whole);
-  await steady();
+  await expect.poll(() => sceneShown(page), { timeout: 120_000 }).not.toBe(whole);
+  await sceneAtRest(page);
   const camera = () => page.evaluate(() => (window as { looked?: { position: number[] } }).looked?.position);
   const turned = await camera();
   expect(turned).toHaveLength(3);
@@ -90,21 +85,14 @@ test.describe("in the hand", () => {
     await page.getByRole("button", { name: "Stop" }).click();
     const cameras = page.getByRole("group", { name: "Camera" });
     await cameras.evaluate((group) => group.parentElement?.scrollIntoView());
-    const frame = page.locator("iframe[title='The device in 3D']");
+    const frame = sceneOf(page);
     const inside = frame.contentFrame();
     await expect(inside.locator("#caption")).toContainText("motion ×", { timeout: 120_000 });
-    const picture = async () => (await frame.screenshot()).toString("base64");
     const seen = new Set<string>();
     for (const name of ["Top", "Side", "Whole"]) {
       await cameras.getByRole("button", { name, exact: true }).click();
-      await expect.poll(async () => seen.has(await picture()), { timeout: 120_000 }).toBe(false);
-      let shown = "";
-      const steady = async () => {
-        const before = shown;
-        shown = await picture();
-        return shown === before;
-      };
-      await expect.poll(steady, { timeout: 120_000, intervals: [700] }).toBe(true);
+      await expect.poll(async () => seen.has(await sceneShown(page)), { timeout: 120_000 }).toBe(false);
+      const shown = await sceneAtRest(page);
       seen.add(shown);
       expect(await page.evaluate(edges, shown), `${name} is cut off`).toEqual({ left: true, right: true, drawn: true });
     }
