@@ -4,6 +4,7 @@ import { join } from "node:path";
 import type { Page } from "@playwright/test";
 import { expect, pictureOf, SCOPE_CANVAS, test } from "./lab";
 import { freePort, LabServer } from "./lab-server";
+import { sceneOf } from "./scene";
 
 const ROOT = join(import.meta.dirname, "..", "..");
 
@@ -84,7 +85,7 @@ test("a launch in a frame: bench, stream and 3D view work without a cookie", asy
 
   await frame.getByTestId("bench-state").click();
   await page.keyboard.press("1"); // the lecture layout has the device in view
-  const canvas = frame.frameLocator("iframe[title='The device in 3D']").locator("canvas").first();
+  const canvas = sceneOf(frame).contentFrame().locator("canvas").first();
   await expect(canvas).toBeVisible({ timeout: 120_000 });
   await expect(frame.getByText("The 3D view is loading")).toBeHidden({ timeout: 120_000 });
   await expect(frame.getByText("The 3D view waits")).toBeHidden();

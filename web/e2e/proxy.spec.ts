@@ -1,5 +1,6 @@
 import { expect, pictureOf, SCOPE_CANVAS, test } from "./lab";
 import { ProxyServer } from "./proxy-server";
+import { sceneOf } from "./scene";
 
 test.use({
   drawn: true,
@@ -33,7 +34,7 @@ for (const prefix of ["", "/bench"]) {
       const before = await pictureOf(page, SCOPE_CANVAS);
       await expect.poll(() => pictureOf(page, SCOPE_CANVAS)).not.toBe(before);
 
-      const frame = page.frameLocator("iframe[title='The device in 3D']");
+      const frame = sceneOf(page).contentFrame();
       const canvas = frame.locator("canvas").first();
       await expect(canvas).toBeVisible({ timeout: 120_000 });
       await expect(page.getByText("The 3D view is loading")).toBeHidden({ timeout: 120_000 });

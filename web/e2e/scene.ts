@@ -1,8 +1,8 @@
-import type { Page } from "@playwright/test";
+import type { FrameLocator, Page } from "@playwright/test";
 import { expect } from "./lab";
 
 /** The view of the device in 3D. */
-export const sceneOf = (page: Page) => page.locator("iframe[title='The device in 3D']");
+export const sceneOf = (page: Page | FrameLocator) => page.locator("iframe[title='The device in 3D']");
 
 /** What it shows, as text that can be compared; the buttons over it are not drawn to the bit. */
 export const sceneShown = async (page: Page): Promise<string> =>

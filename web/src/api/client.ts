@@ -41,3 +41,10 @@ export class ApiError extends Error {
     this.body = body;
   }
 }
+
+/** For `catch`: an answer with this status is no failure. */
+export const unless =
+  (status: number) =>
+  (error: unknown): undefined => {
+    if (!(error instanceof ApiError && error.status === status)) throw error;
+  };

@@ -1,6 +1,6 @@
 import { create } from "zustand";
 import { api } from "../api/api";
-import { ApiError } from "../api/client";
+import { ApiError, unless } from "../api/client";
 import { lectures } from "../api/lectures";
 import type { Cue, Lecture } from "../api/types";
 import { useBench } from "../stream/bench-store";
@@ -136,10 +136,4 @@ function keep(): void {
   if (lecture) sessionStorage.setItem(KEPT, JSON.stringify({ id: lecture.id, at, began, stage, before }));
 }
 
-async function remove(bench: string): Promise<void> {
-  try {
-    await api.removeBench(bench);
-  } catch (error) {
-    if (!(error instanceof ApiError && error.status === 404)) throw error;
-  }
-}
+const remove = (bench: string) => api.removeBench(bench).catch(unless(404));

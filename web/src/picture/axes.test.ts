@@ -24,6 +24,7 @@ it.each([
   [[-3, 3], 2.97],
   [[-2.9, 2.9], 1],
   [[0, 19], 2],
+  [[0.5, 8.6], 2],
 ] as const)("has more than one number from end to end of %s where %s have room", (range, count) => {
   expect(linearAxis(range).ticks(count).length).toBeGreaterThan(1);
 });

@@ -38,8 +38,8 @@ export function linearAxis(range: Range, title?: string, scale?: Pick<UnitScale,
     ticks(count) {
       const [low, high] = this.range.map((end) => end * factor);
       const ticks = linearTicks(low, high, Math.max(2, count));
-      // one number alone is no scale
-      return (ticks.length > 1 ? ticks : linearTicks(low, high, 2 * Math.max(2, count))).map((t) => t / factor);
+      // one number alone is no scale; of 5 asked for, two are there wherever the range lies
+      return (ticks.length > 1 ? ticks : linearTicks(low, high, 5)).map((t) => t / factor);
     },
     say: scale ? (ticks) => labelsOn(scale, ticks) : tickLabels,
   };

@@ -4,7 +4,7 @@ import { notifications } from "@mantine/notifications";
 import type { Driver } from "driver.js";
 import { create } from "zustand";
 import { api } from "../../api/api";
-import { ApiError } from "../../api/client";
+import { unless } from "../../api/client";
 import { announce } from "../../bench/announce";
 import { type Before, stepAside, stepBack } from "../../bench/aside";
 import { lectureRuns } from "../../bench/lecture";
@@ -120,7 +120,5 @@ async function putBack(before: Before | undefined, bench: string | undefined): P
     setLayout(before.layout);
   }
   if (!bench) return;
-  await api.removeBench(bench).catch((error: unknown) => {
-    if (!(error instanceof ApiError && error.status === 404)) throw error;
-  });
+  await api.removeBench(bench).catch(unless(404));
 }

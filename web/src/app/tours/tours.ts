@@ -1,5 +1,5 @@
 import { api } from "../../api/api";
-import { ApiError } from "../../api/client";
+import { unless } from "../../api/client";
 import type { Command } from "../../api/types";
 import { addPanel, dockNow, showPanel } from "../../bench/dock";
 import { send } from "../../bench/send";
@@ -46,9 +46,7 @@ export async function forgetRun(): Promise<void> {
   const left = run;
   run = undefined;
   if (!left) return;
-  await api.cancelRun(left).catch((error: unknown) => {
-    if (!(error instanceof ApiError && error.status === 409)) throw error; // it has ended
-  });
+  await api.cancelRun(left).catch(unless(409)); // it has ended
   await api.removeRuns([left]);
 }
 

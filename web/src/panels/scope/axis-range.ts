@@ -26,7 +26,7 @@ export function roundRange(low: number, high: number): { min: number; max: numbe
   const middle = (low + high) / 2;
   const least = Math.max(Math.abs(middle) * 1e-3, 1e-12);
   const half = Math.max((high - low) / 2, high - low < least ? Math.max(Math.abs(middle) * 0.2, 1e-3) : 0) * 1.06;
-  const step = niceStep((2 * half) / 32);
+  const step = niceStep(half / 16);
   return { min: Math.floor((middle - half) / step) * step, max: Math.ceil((middle + half) / step) * step };
 }
 
