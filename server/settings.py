@@ -109,7 +109,7 @@ class Settings(BaseSettings):
     )
     run_workers: int = Field(1, ge=0, le=64, description="Processes for headless runs and campaigns; 0 refuses them.")
     figures: bool = Field(
-        True, description="Make the figures of the gallery that are missing after a start, at low priority."
+        True, description="Make the figures that are missing when the gallery is opened, at low priority."
     )
     scheduler: str = Field("", description="Dask scheduler for campaigns; processes of this machine if unset.")
     log_format: str = Field("auto", pattern="^(auto|text|json)$", description="Log lines: text, json, or by terminal.")
