@@ -106,7 +106,9 @@ def _told(*arguments: str) -> None:
 def main() -> None:
     """Compute the results that are missing, all or those named; forget results of other code."""
     if not SAME_EVERYWHERE.items() <= os.environ.items():
-        os.execve(sys.executable, [sys.executable, "-m", "tests.library_pass", *sys.argv[1:]], os.environ | SAME_EVERYWHERE)
+        os.execve(
+            sys.executable, [sys.executable, "-m", "tests.library_pass", *sys.argv[1:]], os.environ | SAME_EVERYWHERE
+        )
     import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 
     folder = _place(BENCHES).parent

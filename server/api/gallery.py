@@ -28,6 +28,9 @@ from server.runs.listing import Run
 router = APIRouter(prefix="/gallery", tags=["gallery"], route_class=StrictRoute)
 
 
+First = Annotated[list[str], Query(max_length=64, description="Ids of cards in sight: their figures come first")]
+
+
 class Expected(BaseModel):
     """An expectation, and the measured value."""
 
@@ -93,9 +96,7 @@ class Chosen(Body):
 @router.get("")
 async def get_gallery(
     service: ServiceDep,
-    first: Annotated[
-        list[str], Query(max_length=64, description="Ids of cards in sight: their figures come first")
-    ] = [],  # noqa: B006
+    first: First = [],  # noqa: B006
 ) -> Gallery:
     """Show every library scenario: claim, expectations, figure and measured values. Missing figures are made now."""
     figures = service.figures

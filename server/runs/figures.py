@@ -129,7 +129,7 @@ class Figures:
         log.warning("%s", self.problem)
 
     def _read(self) -> dict[str, Scenario]:
-        """Read the figures that are there, drop those of other versions, and return the missing ones, cheapest first."""
+        """Read the figures that are there, drop those of other versions, and return the others, cheapest first."""
         for path in self._folder.glob("*.json"):
             if path.stem not in self.keys.values():
                 path.unlink(missing_ok=True)
