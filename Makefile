@@ -16,7 +16,7 @@ KERNEL_SOURCE := $(shell find core scenarios -name __pycache__ -prune -o -print)
 PAGE_SOURCE   := $(shell find web -name node_modules -prune -o -name dist -prune -o -name e2e -prune -o \
                    -mindepth 1 -not -name '*.test.ts*' -not -name '*.tsbuildinfo' -print)
 
-.PHONY: run classroom setup first-kernels test test-all flakes check fix dev bench load class-load soak page-speed image audit codegen digests lock clean help
+.PHONY: run classroom setup first-kernels test test-all flakes mutations check fix dev bench load class-load soak page-speed image audit codegen digests lock clean help
 
 run: $(PYTHON_STAMP)  ## Set everything up, serve the bench on http://127.0.0.1:8000 and print the link to open
 	@$(MAKE) --no-print-directory -j2 $(PAGE) first-kernels
@@ -36,6 +36,9 @@ test-all: setup  ## Run the long suite too: fifty seeds, fuzzers, kills, Postgre
 
 flakes: setup  ## Run a suite again and again beside busy processes; list the tests that did not always pass
 	@.venv/bin/python scripts/flakes.py $(ARGS)
+
+mutations: setup  ## Plant known faults one by one, and see that the tests notice (ARGS=words of their names)
+	@.venv/bin/python scripts/mutations.py $(ARGS)
 
 check: $(PYTHON_STAMP) $(NODE_STAMP)  ## Run the static checks: format, lint, imports, types
 	@.venv/bin/python scripts/run_tests.py check
