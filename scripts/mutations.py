@@ -1,7 +1,7 @@
 """Plant the faults of ``tests/mutations`` one by one in a copy of the checkout, and see the tests that name them fail.
 
-``make mutations`` tries all; ``ARGS="slider-tap ack"`` those whose names have one of these words. A patch that no longer
-applies is reported, like a fault that no test notices.
+``make mutations`` tries all; ``ARGS="slider-tap ack"`` those whose names have one of these words. A patch that no
+longer applies is reported, like a fault that no test notices.
 """
 
 from __future__ import annotations
