@@ -16,7 +16,7 @@ KERNEL_SOURCE := $(shell find core scenarios -name __pycache__ -prune -o -print)
 PAGE_SOURCE   := $(shell find web -name node_modules -prune -o -name dist -prune -o -name e2e -prune -o \
                    -mindepth 1 -not -name '*.test.ts*' -not -name '*.tsbuildinfo' -print)
 
-.PHONY: run classroom setup first-kernels test check fix dev bench load class-load soak page-speed image audit codegen digests lock clean help
+.PHONY: run classroom setup first-kernels test test-all flakes mutations check fix dev bench load class-load soak page-speed image audit codegen digests lock clean help
 
 run: $(PYTHON_STAMP)  ## Set everything up, serve the bench on http://127.0.0.1:8000 and print the link to open
 	@$(MAKE) --no-print-directory -j2 $(PAGE) first-kernels
@@ -28,11 +28,20 @@ classroom: run  ## The same for a class: students on this network join by a code
 setup: $(PYTHON_STAMP)  ## Set everything up, serve nothing
 	@$(MAKE) --no-print-directory -j2 $(PAGE) $(KERNEL_STAMP)
 
-test: setup  ## Run every test there is: lint, types, imports, Python, TypeScript, browser
-	@.venv/bin/python scripts/run_tests.py
+test: setup  ## Run the static checks and the short suite: Python, page, browser (ONLY=word: tests with that word)
+	@.venv/bin/python scripts/run_tests.py short
 
-check: $(PYTHON_STAMP) $(NODE_STAMP)  ## The quick part of `make test`: no slow tests, no browser
-	@.venv/bin/python scripts/run_tests.py quick
+test-all: setup  ## Run the long suite too: fifty seeds, fuzzers, kills, PostgreSQL, proxy, screens
+	@.venv/bin/python scripts/run_tests.py all
+
+flakes: setup  ## Run a suite again and again beside busy processes; list the tests that did not always pass
+	@.venv/bin/python scripts/flakes.py $(ARGS)
+
+mutations: setup  ## Plant known faults one by one, and see that the tests notice (ARGS=words of their names)
+	@.venv/bin/python scripts/mutations.py $(ARGS)
+
+check: $(PYTHON_STAMP) $(NODE_STAMP)  ## Run the static checks: format, lint, imports, types
+	@.venv/bin/python scripts/run_tests.py check
 
 fix: $(PYTHON_STAMP) $(NODE_STAMP)  ## Format everything and mend what the linters can mend
 	@.venv/bin/ruff check --fix-only --quiet . ; .venv/bin/ruff format .
@@ -79,7 +88,7 @@ clean:  ## Remove everything that was set up or built; recorded data stays
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help:  ## Show this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' Makefile
 
 $(PYTHON_STAMP): requirements.lock pyproject.toml scripts/venv
 	@scripts/venv

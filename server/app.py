@@ -43,6 +43,7 @@ from server.api import (
     snapshots,
     stream,
     sweeps,
+    testing,
     theory,
     thresholds,
     trace,
@@ -152,6 +153,8 @@ def create_app(settings: Settings) -> FastAPI:
         from server.view3d import proxy
 
         app.include_router(proxy.router)
+    if settings.clock == "manual":
+        app.include_router(testing.router, prefix=API)
     if settings.lti:
         from server.lti import routes
 
@@ -170,6 +173,7 @@ def create_app(settings: Settings) -> FastAPI:
         prefix=public.prefix,
         frames=frames,
         units=settings.units,
+        clock=service.clock,
     )
     app.add_middleware(errors.CatchAll)
     app.add_middleware(SecurityHeaders, prefix=public.prefix, frames=frames)

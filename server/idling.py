@@ -25,7 +25,7 @@ class Idling:
     """
 
     def __init__(
-        self, watchers: Callable[[str], int], idle_minutes: float, clock: Callable[[], float] = time.monotonic
+        self, watchers: Callable[[str], int], idle_minutes: float, clock: Callable[[], float] = time.perf_counter
     ) -> None:
         self._watchers, self._patience_s, self.clock = watchers, 60.0 * idle_minutes, clock
         self._seen: dict[str, float] = {}

@@ -12,6 +12,7 @@ from server.bench.engine import Engine
 from server.bench.experiment import THIS_VERSION, experiment_of
 from server.bench.session import Session
 from server.bench.status import Opened
+from server.clock import Clock
 from server.errors import ApiError, not_found
 from server.idling import EVERY_S, Idling
 from server.store.links import Content, LinkDetail, Links
@@ -91,10 +92,9 @@ class Reopening:
             await self._links.delete(bench_id)
             return session
 
-    async def run(self) -> None:
+    async def run(self, clock: Clock) -> None:
         """Let benches go that nobody needs, again and again."""
-        while True:
-            await asyncio.sleep(EVERY_S)
+        async for _ in clock.every(EVERY_S):
             await self.let_go()
 
     async def let_go(self) -> None:

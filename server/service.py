@@ -20,6 +20,7 @@ from server.bench.safety import Safety
 from server.bench.session import Session
 from server.bench.staging import Staging
 from server.bench.watchdog import Watchdog
+from server.clock import Clock, ManualClock
 from server.idling import Idling
 from server.kernels import Kernels
 from server.lag import Lateness, probe
@@ -75,8 +76,9 @@ class Service:
         self.id = secrets.token_hex(8)
         self.metrics = Metrics()
         self.lag = Lateness(self.metrics.loop_lag)
-        self.hub = Hub(settings, self.metrics, self._lateness)
-        self.engine = Engine(self.metrics, self._after_round)
+        self.clock = ManualClock() if settings.clock == "manual" else Clock()
+        self.hub = Hub(settings, self.metrics, self._lateness, self.clock)
+        self.engine = Engine(self.metrics, self._after_round, self.clock)
         place = settings.data / "combbench.sqlite3"
         self.database = self.shared = Database(settings.database_url or place)
         if settings.shard and settings.database_url:  # others use that one too; classes and recordings stay here
@@ -88,7 +90,7 @@ class Service:
         self.people, self.audit = People(self.database, shard), Audit(self.database)
         self.benches = Benches(self.engine, settings, self.metrics, self.audit.witness)
         self.units = self.benches.maker.units
-        self.driving = Driving(self.people, self.hub, self._note, self._go_without_driver)
+        self.driving = Driving(self.people, self.hub, self._note, self._go_without_driver, self.clock)
         self.hub.company = self.driving.company
         self.lesson = Lesson(self.database, self.people, self.audit, self.hub)
         self.staging = Staging(self.benches, self.engine)
@@ -112,7 +114,7 @@ class Service:
         )
         self.records = Records(self.engine, self.recordings, settings.max_recording_ticks)
         self.links = Links(self.shared, settings.max_links)
-        self.idling = Idling(self._present, settings.idle_minutes)
+        self.idling = Idling(self._present, settings.idle_minutes, self.clock)
         self.queue = Queue(self.shared, settings, self.metrics)
         self.jobs, self.thresholds = Jobs(self.queue, settings), Thresholds(self.queue, settings)
         self.sweeps = Sweeps(self.queue, settings, self.shared)
@@ -132,8 +134,8 @@ class Service:
             self.engine, self.records, self.keeping, self.metrics, self.hub.show_status, self.close_bench
         )
         self.watchdog = Watchdog(self.engine, self.safety)
-        self.commands = Buckets(settings.command_rate_per_s, settings.command_burst)
-        self.joining = Joining(self.classes)
+        self.commands = Buckets(settings.command_rate_per_s, settings.command_burst, clock=self.clock)
+        self.joining = Joining(self.classes, self.clock)
         self.sheets = Sheets(
             self.database,
             Shelf(self.shared),
@@ -172,9 +174,9 @@ class Service:
         await self._bring_back_seen()
         await self.queue.recover()
         tasks = [asyncio.create_task(self.hub.run()), asyncio.create_task(probe(self.lag))]
-        tasks.append(asyncio.create_task(self.keeping.run()))
+        tasks.append(asyncio.create_task(self.keeping.run(self.clock)))
         lasting = (self.audit, self.checkpoints, self.classes, self.driving, self.reopening, self.sheets)
-        tasks += [asyncio.create_task(part.run()) for part in lasting]
+        tasks += [asyncio.create_task(part.run(self.clock)) for part in lasting]
         tasks.append(asyncio.create_task(self.queue.warm(self.kernels.compiled)))
         # where pandas is installed, pyarrow loads it with the first array, which takes longer than a recording may wait
         tasks.append(asyncio.create_task(asyncio.to_thread(pa.array, [0.0])))

@@ -103,9 +103,13 @@ class Settings(BaseSettings):
     command_burst: int = Field(40, ge=1, description="Commands one client may send at once.")
     frame_rate_hz: float = Field(60.0, gt=0, le=120, description="Frames per second of a stream.")
 
+    clock: Literal["machine", "manual"] = Field(
+        "machine",
+        description="Clock of benches and limits; manual is for tests on loopback: requests advance it.",
+    )
     run_workers: int = Field(1, ge=0, le=64, description="Processes for headless runs and campaigns; 0 refuses them.")
     figures: bool = Field(
-        True, description="Make the figures of the gallery that are missing after a start, at low priority."
+        True, description="Make the figures that are missing when the gallery is opened, at low priority."
     )
     scheduler: str = Field("", description="Dask scheduler for campaigns; processes of this machine if unset.")
     log_format: str = Field("auto", pattern="^(auto|text|json)$", description="Log lines: text, json, or by terminal.")
@@ -122,6 +126,13 @@ class Settings(BaseSettings):
         """Listen to the network for a class, unless an address to listen on is given."""
         if self.classroom and "host" not in self.model_fields_set:
             self.host = ANY_IPV4
+        return self
+
+    @model_validator(mode="after")
+    def _no_strangers_at_a_manual_clock(self) -> Settings:
+        """Refuse a clock that requests advance where other machines could reach it."""
+        if self.clock == "manual" and (not self.is_loopback or self.public_origin):
+            raise ValueError("clock = manual is for tests: host must be this machine alone, without public_origin")
         return self
 
     @property

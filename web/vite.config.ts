@@ -37,5 +37,8 @@ export default defineConfig({
       },
     },
   },
-  test: { include: ["src/**/*.test.ts", "src/**/*.test.tsx"] },
+  test: {
+    include: ["src/**/*.test.ts", "src/**/*.test.tsx"],
+    outputFile: { junit: process.env.VITEST_JUNIT ?? "test-results/page.xml" },
+  },
 });

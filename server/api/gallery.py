@@ -5,8 +5,9 @@ from __future__ import annotations
 import asyncio
 import fnmatch
 from functools import cache
+from typing import Annotated
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel, Field
 
 from core.board.commands import Inject, Switch
@@ -25,6 +26,9 @@ from server.runs.figures import Figure, Figures
 from server.runs.listing import Run
 
 router = APIRouter(prefix="/gallery", tags=["gallery"], route_class=StrictRoute)
+
+
+First = Annotated[list[str], Query(max_length=64, description="Ids of cards in sight: their figures come first")]
 
 
 class Expected(BaseModel):
@@ -90,9 +94,13 @@ class Chosen(Body):
 
 
 @router.get("")
-async def get_gallery(service: ServiceDep) -> Gallery:
-    """Show every library scenario: claim, expectations, figure, and what was measured."""
+async def get_gallery(
+    service: ServiceDep,
+    first: First = [],  # noqa: B006
+) -> Gallery:
+    """Show every library scenario: claim, expectations, figure and measured values. Missing figures are made now."""
     figures = service.figures
+    figures.ask(first)
     run_ids = await asyncio.to_thread(lambda: figures.keys)
     runs = await service.jobs.some(list(run_ids.values()))
     return Gallery(
@@ -105,12 +113,12 @@ async def get_gallery(service: ServiceDep) -> Gallery:
 
 @router.get("/{scenario_id}/figure", response_class=Response, responses={200: {"content": {SVG: {}}}})
 async def get_figure(scenario_id: str, service: ServiceDep) -> Response:
-    """Return the figure of a library scenario: what it is about, small, with axes and units."""
+    """Return the figure of a library scenario, small, with axes and units."""
     if scenario_id not in ids():
         raise not_found("scenario", scenario_id)
     figure = service.figures.made.get(scenario_id)
     if figure is None:
-        raise not_found("figure of", scenario_id, "figures are made one after the other when the server has started")
+        raise not_found("figure of", scenario_id, "figures are made one after the other once the gallery is opened")
     return Response(with_style(figure.svg), media_type=SVG, headers={"Cache-Control": "private, max-age=3600"})
 
 

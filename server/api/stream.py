@@ -84,7 +84,7 @@ async def stream(socket: WebSocket, bench_id: str, service: SocketServiceDep) ->
     seen, bench = service.views.seen(session, person), service.views.of(session, person)
     hub, line = service.hub, Line.of(socket)
     room = hub.room(seen)
-    client = Client(line, seen, service.metrics.sent, room.news, room.cuts, bench.last_event, person)
+    client = Client(line, seen, service.metrics.sent, room.news, room.cuts, bench.last_event, person, hub.clock)
     conversation = Conversation(client, session, service, person)
     hub.add(client)
     if not person.is_teacher:
@@ -141,8 +141,8 @@ class Conversation:
     def __init__(self, client: Client, bench: Session, service: Service, person: Person) -> None:
         self._client, self._bench, self._service, self._person = client, bench, service, person
         settings = service.settings
-        self._messages = Bucket(FLOOD_RATE, FLOOD_BURST)
-        self._commands = Bucket(settings.command_rate_per_s, settings.command_burst)
+        self._messages = Bucket(FLOOD_RATE, FLOOD_BURST, service.clock)
+        self._commands = Bucket(settings.command_rate_per_s, settings.command_burst, service.clock)
         self._subscribed: dict[int, int] = {}
 
     def hear(self, text: bytes) -> bool:

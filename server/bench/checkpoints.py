@@ -30,6 +30,7 @@ from server.bench.events import KEPT, Event
 from server.bench.experiment import THIS_VERSION
 from server.bench.session import Session
 from server.bench.watch import KeptWatch
+from server.clock import Clock
 from server.errors import ApiError
 
 log = logging.getLogger(__name__)
@@ -102,10 +103,9 @@ class Checkpoints:
         self._written: dict[str, tuple[int, int, bool]] = {}
         self._turn = asyncio.Lock()
 
-    async def run(self) -> None:
-        """Write again and again what has changed."""
-        while True:
-            await asyncio.sleep(EVERY_S)
+    async def run(self, clock: Clock) -> None:
+        """Write the benches that have changed, again and again."""
+        async for _ in clock.every(EVERY_S):
             await self.write()
 
     async def write(self) -> None:

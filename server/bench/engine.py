@@ -12,7 +12,6 @@ import asyncio
 import logging
 import os
 import threading
-import time
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -20,6 +19,7 @@ from typing import Any, Protocol, TypeVar
 
 from server.bench.crew import Crew, LeftBehind
 from server.bench.job import Job
+from server.clock import Clock
 from server.errors import ApiError
 from server.lag import Lateness
 from server.metrics import Metrics
@@ -50,6 +50,10 @@ class Workload(Protocol):
     def is_running(self) -> bool:
         """Whether it wants to advance."""
 
+    @property
+    def is_hurried(self) -> bool:
+        """Whether it advances to a tick as fast as possible, so that no time needs to pass."""
+
     def target(self, now: float) -> int | None:
         """Return the tick to reach in this round; none means no limit."""
 
@@ -72,17 +76,17 @@ class Engine:
         Where lateness and rounds are counted.
     on_round : callable
         Called on the engine thread after every round and after every batch of jobs.
-    clock : callable
-        Monotonic seconds.
+    clock : Clock, optional
+        Monotonic seconds; those of the machine by default.
     """
 
     def __init__(
         self,
         metrics: Metrics,
         on_round: Callable[[], None],
-        clock: Callable[[], float] = time.perf_counter,
+        clock: Clock | None = None,
     ) -> None:
-        self._metrics, self._on_round, self.clock = metrics, on_round, clock
+        self._metrics, self._on_round, self.clock = metrics, on_round, clock or Clock()
         self.lateness = Lateness(metrics.wake_lateness)
         self._work: dict[str, Workload] = {}
         self._jobs: deque[Job] = deque()
@@ -90,7 +94,8 @@ class Engine:
         self._wake = threading.Condition()
         self._stopping = False
         self.crew: Crew[Workload | Job] = Crew(self._run, PROCESSORS - 1)
-        self._beat, self._due = clock(), 0.0
+        self._settled: list[Future[None]] = []
+        self._beat, self._due = self.clock(), 0.0
         self._silent_until = 0.0
 
     def start(self) -> None:
@@ -140,6 +145,14 @@ class Engine:
             self._wake.notify()
         return job.future
 
+    async def settle(self) -> None:
+        """Return once all jobs are done and every bench has reached its tick; for a manual clock."""
+        settled: Future[None] = Future()
+        with self._wake:
+            self._settled.append(settled)
+            self._wake.notify()
+        await asyncio.wrap_future(settled)
+
     def interrupt(self, function: Callable[[], None]) -> None:
         """Run a function before the next slice of any bench and before every job; it must not raise an error."""
         self._urgent.appendleft(function)
@@ -186,9 +199,11 @@ class Engine:
 
     def _turn(self) -> None:
         """Wait for a deadline or a job, serve it, and repeat."""
-        deadline = self.clock()
+        deadline = served = self.clock()
         while True:
-            running = any(work.is_running for work in self._work.values())
+            running = self.running
+            if self.clock.is_manual and (self.clock() > served or any(work.is_hurried for work in running)):
+                deadline = self.clock()
             stopping = self._wait(deadline if running else None)
             self._beat = self.clock()
             if self._run_jobs():
@@ -207,6 +222,7 @@ class Engine:
                 self._on_round()
                 if not whole:
                     continue
+                served = now
                 deadline += PERIOD_S
                 if deadline < self.clock() - PERIOD_S:
                     deadline = self.clock()
@@ -218,8 +234,10 @@ class Engine:
                 now = self.clock()
                 pause = 1.0 if deadline is None else deadline - now
                 if pause > 0:
+                    while self._settled:
+                        self._settled.pop().set_result(None)
                     self._due = now + pause
-                    self._wake.wait(pause)
+                    self.clock.wait(self._wake, pause)
                     self._due = 0.0
             return self._stopping
 
@@ -248,7 +266,8 @@ class Engine:
         targets = [(work, work.target(now)) for work in self._work.values() if work.is_running]
         paced = [pair for pair in targets if pair[1] is not None]
         free = [pair for pair in targets if pair[1] is None]
-        if not (self._turns(paced, end) and self._turns(free, end - SPARE_S)):
+        spare_from = now if self.clock.is_manual else end - SPARE_S  # one slice each where no time passes meanwhile
+        if not (self._turns(paced, end) and self._turns(free, spare_from)):
             return False
         done = self.clock()
         for work, target in targets:

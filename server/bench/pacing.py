@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 
 CATCH_UP_S = 0.05
@@ -100,6 +101,12 @@ class Pacer:
             self.given_up_s += excess / rate
             target -= excess
         return target
+
+    def due(self, tick: int) -> float:
+        """Return the time at which a tick becomes the target, s; infinite where time sets no target."""
+        if self._scale is None or self._fast_to is not None:
+            return math.inf
+        return self._wall + (tick - self._tick + 1e-3) * self.dt_s / self._scale
 
     def record(self, tick: int, target: int | None, now: float) -> None:
         """Note the tick that a round of work reached."""

@@ -50,6 +50,11 @@ class Running:
         """Whether time runs, until a pause or to the end of a step."""
         return self.is_started or bool(self.steps)
 
+    @property
+    def is_hurried(self) -> bool:
+        """Whether it advances to a tick as fast as possible: steps, or a scenario that skips ahead."""
+        return bool(self.steps) or self.pacer.fast_to is not None
+
     def limit(self, most_scale: float) -> None:
         """Allow no higher time scale than this."""
         self._most_scale = most_scale

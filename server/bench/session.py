@@ -114,6 +114,11 @@ class Session(Jumping):
         return self.running.is_started
 
     @property
+    def is_hurried(self) -> bool:
+        """Whether it advances to a tick as fast as possible, so that no time needs to pass."""
+        return self.running.is_hurried
+
+    @property
     def pacer(self) -> Pacer:
         """The pace of the bench."""
         return self.running.pacer

@@ -78,7 +78,7 @@ def install(app: FastAPI, service: Service) -> Frames:
         frames,
         Once[tuple[Launch, Login]](CODE_S),
         Once[Launch](CHOICE_S),
-        Buckets(LAUNCHES_PER_S, LAUNCHES_AT_ONCE),
+        Buckets(LAUNCHES_PER_S, LAUNCHES_AT_ONCE, clock=service.clock),
     )
     app.include_router(router)
     app.include_router(pages)

@@ -222,6 +222,12 @@ _DOORS = {
     """,
 }
 
+_TESTING_DOORS = {
+    Need.TEACHER: f"""
+        POST {API}/testing/advance  *
+    """,
+}
+
 LTI = "/lti"
 _LTI_DOORS = {
     # A launch proves by a signature who it is, or leads to a secret that works once; keys and addresses are public.
@@ -259,10 +265,13 @@ DOORS, _own = _table(_DOORS)
 """What each door needs, by its method and its path."""
 LTI_DOORS, _of_platforms = _table(_LTI_DOORS)
 """The same of the doors that are there where learning platforms are configured, and nowhere else."""
-OPEN_WHILE_BLIND = frozenset(_own | _of_platforms)
+TESTING_DOORS, _of_tests = _table(_TESTING_DOORS)
+"""The same of the door that advances a manual clock, and is there only with it."""
+OPEN_WHILE_BLIND = frozenset(_own | _of_platforms | _of_tests)
 """The doors marked ``*``: those that know no bench, and those that serve the view of one whose fault is hidden."""
 
-_PATTERNS = [(method, compile_path(path)[0], need, path) for (method, path), need in {**DOORS, **LTI_DOORS}.items()]
+ALL = {**DOORS, **LTI_DOORS, **TESTING_DOORS}
+_PATTERNS = [(method, compile_path(path)[0], need, path) for (method, path), need in ALL.items()]
 _PAGE = ("/api/", "/health/", "/benches/", "/metrics")
 """Below these, what is not in the table is no part of the page."""
 

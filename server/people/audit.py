@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import logging
 from collections import deque
 from datetime import datetime
@@ -13,6 +12,7 @@ from sqlalchemy import delete, func, select
 
 from server.bench.events import Event
 from server.bench.session import Session
+from server.clock import Clock
 from server.store.base import now
 from server.store.database import Database
 from server.store.people import AuditRow
@@ -75,10 +75,9 @@ class Audit:
             }
         )
 
-    async def run(self) -> None:
-        """Write what came, again and again."""
-        while True:
-            await asyncio.sleep(EVERY_S)
+    async def run(self, clock: Clock) -> None:
+        """Write the new entries, again and again."""
+        async for _ in clock.every(EVERY_S):
             try:
                 await self.write()
             except Exception:

@@ -13,6 +13,7 @@ from sqlalchemy import delete, select, update
 
 from core.errors import InputError
 from server.bench.making import prepare
+from server.clock import Clock
 from server.errors import ApiError, not_found
 from server.people.audit import Audit
 from server.people.blinds import Blinds
@@ -238,17 +239,21 @@ class Classes:
         await self._games.forget(class_id)
         await self._database.run(lambda session: session.execute(delete(ClassRow).where(ClassRow.id == class_id)))
 
-    async def run(self) -> None:
-        """Bring the benches back that there were, then end classes whose time is over, again and again."""
+    async def run(self, clock: Clock) -> None:
+        """Reopen the benches of all students, then end classes whose time is over, now and again and again."""
         await self.benches.recover(self._people.students())
-        while True:
-            try:
-                for row in await self._rows():
-                    if not _lasts(row.until):
-                        await self.end(row.id)
-            except Exception:
-                log.exception("a class that is over could not be ended; it is tried again")
-            await asyncio.sleep(EVERY_S)
+        await self.end_due()
+        async for _ in clock.every(EVERY_S):
+            await self.end_due()
+
+    async def end_due(self) -> None:
+        """End the classes whose time is over."""
+        try:
+            for row in await self._rows():
+                if not _lasts(row.until):
+                    await self.end(row.id)
+        except Exception:
+            log.exception("a class that is over could not be ended; it is tried again")
 
     async def row(self, class_id: str) -> ClassRow:
         """Return the row of a class, or refuse with 404."""

@@ -6,7 +6,6 @@ the person comes; after that the bench is free, and does what its scenario says 
 
 from __future__ import annotations
 
-import asyncio
 import logging
 import time
 from collections.abc import Callable
@@ -14,6 +13,7 @@ from collections.abc import Callable
 from core.board.commands import MakeSafe
 from server.bench.session import Session
 from server.bench.status import Company, Somebody
+from server.clock import Clock
 from server.errors import ApiError
 from server.people.access import Need
 from server.people.lease import LEASE_S, Lease, Pages, Presence
@@ -55,7 +55,7 @@ class Driving:
         pages: Pages,
         note: Note,
         lost: Callable[[str, str], None],
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         self._people, self._pages, self._note, self._lost, self._clock = people, pages, note, lost, clock
         self._leases: dict[str, Lease] = {}
@@ -200,10 +200,9 @@ class Driving:
             links=links,
         )
 
-    async def run(self) -> None:
+    async def run(self, clock: Clock) -> None:
         """Look at all leases, again and again."""
-        while True:
-            await asyncio.sleep(LOOK_S)
+        async for _ in clock.every(LOOK_S):
             try:
                 self.look()
             except Exception:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+from collections.abc import Callable
 
 from server.errors import ApiError, ErrorBody
 from server.people.classes import Classes
@@ -38,11 +39,13 @@ class Joining:
     ----------
     classes : Classes
         Which they join.
+    clock : callable
+        Seconds.
     """
 
-    def __init__(self, classes: Classes) -> None:
+    def __init__(self, classes: Classes, clock: Callable[[], float]) -> None:
         self._classes = classes
-        self._tries = Buckets(JOINS_PER_S, JOINS_AT_ONCE)
+        self._tries = Buckets(JOINS_PER_S, JOINS_AT_ONCE, clock=clock)
 
     def check(self, address: str) -> None:
         """Refuse an address from which too much is tried."""

@@ -16,6 +16,7 @@ from server.bench.benches import Benches
 from server.bench.engine import Engine
 from server.bench.session import Session
 from server.bench.watch import KeptWatch
+from server.clock import Clock
 from server.errors import ApiError, not_found
 from server.people.blinds import Blinds
 from server.people.classes import Classes
@@ -87,10 +88,9 @@ class Sheets:
         await self.shelf.refresh()
         await self._works.recover()
 
-    async def run(self) -> None:
+    async def run(self, clock: Clock) -> None:
         """Watch benches that have come back, and forget the work of classes that are over, again and again."""
-        while True:
-            await asyncio.sleep(EVERY_S)
+        async for _ in clock.every(EVERY_S):
             try:
                 there = {person.id for person in self._people.students()}
                 await self._forget([w for w in self._works.all() if w.class_id and w.person_id not in there])

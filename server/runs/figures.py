@@ -1,8 +1,9 @@
-"""Figures of the gallery: made once for each scenario and version of the code, and kept in the data folder.
+"""Figures of the gallery: one for each scenario and version of the code.
 
-They are made by the worker processes of headless runs, at their low priority, one after the other: a run that somebody
-asks for waits for one figure at most. What the table of results has of them is not computed again, and what they
-measure is put there. A scenario that fails, or a full disk, is told in one line and stops nothing.
+Those that an image or a wheel brings are in `BUILT`. The others are made when the gallery is first opened, the cards in
+sight first, by the worker processes of headless runs at their low priority, one after the other: a run that a person
+starts waits for one figure at most. Results in the table of runs are not computed again, and new ones are added to it.
+A scenario that fails, or a full disk, gives one line in the log and stops nothing.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import logging
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 from scenarios.campaign.campaign import Campaign
@@ -27,6 +29,9 @@ from server.runs.worker import draw
 from server.settings import Settings
 
 log = logging.getLogger(__name__)
+
+BUILT = Path(__file__).resolve().parent / "built_figures"
+"""Figures made when an image or a wheel was built; a checkout has none."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +58,9 @@ class Figures:
         self._queue, self._settings = queue, settings
         self._folder = settings.data / "figures"
         self._task: asyncio.Task[None] | None = None
+        self._missing: dict[str, Scenario] | None = None
+        self._first: list[str] = []
+        self._ready: Callable[[], Awaitable[None]] | None = None
         self.made: dict[str, Figure] = {}
         self.failed: dict[str, str] = {}
         self.problem = ""
@@ -73,23 +81,33 @@ class Figures:
         return self._task is not None and not self._task.done()
 
     def start(self, ready: Callable[[], Awaitable[None]]) -> None:
-        """Read what is there, and make the others once the server is ready for it."""
-        self._task = asyncio.create_task(self._make_all(ready))
+        """Allow figures to be made, once the server is ready for the work."""
+        self._ready = ready
+
+    def ask(self, first: list[str]) -> None:
+        """Make the figures that are missing, these scenarios first; called whenever the gallery is looked at."""
+        self._first = first
+        if not self.is_making and self._missing != {} and self._ready is not None:
+            self._task = asyncio.create_task(self._make_all(self._ready))
 
     async def stop(self) -> None:
-        """End; what is made stays."""
+        """Stop making figures; those that are made stay."""
         if self._task is not None:
             self._task.cancel()
             await asyncio.gather(self._task, return_exceptions=True)
 
     async def _make_all(self, ready: Callable[[], Awaitable[None]]) -> None:
-        missing = await asyncio.to_thread(self._read)
-        if not missing or not self._settings.figures or not self._settings.run_workers:
+        if self._missing is None:
+            found = await asyncio.to_thread(self._read)
+            self._missing = found if self._settings.figures and self._settings.run_workers else {}
+        if not self._missing:
             return
         await ready()
-        for scenario, key in missing:
+        while self._missing:
+            name = next((name for name in self._first if name in self._missing), next(iter(self._missing)))
+            scenario = self._missing.pop(name)
             try:
-                figure = Figure(key, **await self._draw(scenario))
+                figure = Figure(self.keys[name], **await self._draw(scenario))
                 self.made[scenario.id] = figure
                 await asyncio.to_thread(self._keep, figure)
             except OSError as error:
@@ -110,24 +128,31 @@ class Figures:
         self.problem = " ".join(text.split())
         log.warning("%s", self.problem)
 
-    def _read(self) -> list[tuple[Scenario, str]]:
-        """Read the figures that are there, drop those of other versions, and return what is missing, cheapest first."""
+    def _read(self) -> dict[str, Scenario]:
+        """Read the figures that are there, drop those of other versions, and return the others, cheapest first."""
         for path in self._folder.glob("*.json"):
             if path.stem not in self.keys.values():
                 path.unlink(missing_ok=True)
         for name, key in self.keys.items():
-            try:
-                kept = json.loads((self._folder / f"{key}.json").read_text("utf-8"))
-                self.made[name] = Figure(key, kept["summary"], kept["svg"])
-            except (OSError, ValueError, KeyError, TypeError):  # missing, or not whole: it is made again
-                continue
+            for folder in (self._folder, BUILT):
+                try:
+                    kept = json.loads((folder / f"{key}.json").read_text("utf-8"))
+                    self.made[name] = Figure(key, kept["summary"], kept["svg"])
+                    break
+                except (OSError, ValueError, KeyError, TypeError):  # missing, or not whole: it is made again
+                    continue
         missing = [scenario for scenario in library() if scenario.id not in self.made]
         missing.sort(key=lambda scenario: (not is_demo(scenario.id), cost(scenario)))
-        return [(scenario, self.keys[scenario.id]) for scenario in missing]
+        return {scenario.id: scenario for scenario in missing}
 
     def _keep(self, figure: Figure) -> None:
-        self._folder.mkdir(parents=True, exist_ok=True)
-        write_json(self._folder / f"{figure.key}.json", {"summary": figure.summary, "svg": figure.svg})
+        keep(self._folder, figure)
+
+
+def keep(folder: Path, figure: Figure) -> None:
+    """Write a figure into a folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    write_json(folder / f"{figure.key}.json", {"summary": figure.summary, "svg": figure.svg})
 
 
 def cost(scenario: Scenario) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import html
+import time
 from collections import Counter
 from collections.abc import Callable
 from urllib.parse import urlencode
@@ -79,11 +80,12 @@ class Gate:
         prefix: str = "",
         frames: Frames | None = None,
         units: str = "teacher",
+        clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         self._app, self._identity, self._people, self._driving = app, identity, people, driving
         self._origin, self._is_blind = origin, is_blind
         self._open, self._prefix, self._frames, self._units = open_paths, prefix, frames, units
-        self._requests = Buckets(REQUESTS_PER_S, REQUESTS_AT_ONCE)
+        self._requests = Buckets(REQUESTS_PER_S, REQUESTS_AT_ONCE, clock=clock)
         self._sockets: Counter[str] = Counter()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:

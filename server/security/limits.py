@@ -20,7 +20,7 @@ class Bucket:
         Seconds.
     """
 
-    def __init__(self, rate: float, burst: float, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, rate: float, burst: float, clock: Callable[[], float] = time.perf_counter) -> None:
         self._rate, self._burst, self._clock = rate, burst, clock
         self._tokens, self._at = burst, clock()
 
@@ -44,15 +44,19 @@ class Buckets:
         Of every bucket.
     most : int
         Callers remembered.
+    clock : callable
+        Seconds.
     """
 
-    def __init__(self, rate: float, burst: float, most: int = 1024) -> None:
-        self._rate, self._burst, self._most = rate, burst, most
+    def __init__(
+        self, rate: float, burst: float, most: int = 1024, clock: Callable[[], float] = time.perf_counter
+    ) -> None:
+        self._rate, self._burst, self._most, self._clock = rate, burst, most, clock
         self._buckets: OrderedDict[str, Bucket] = OrderedDict()
 
     def take(self, caller: str, cost: float = 1.0) -> bool:
         """Take a token of ``caller``, or several."""
-        bucket = self._buckets.pop(caller, None) or Bucket(self._rate, self._burst)
+        bucket = self._buckets.pop(caller, None) or Bucket(self._rate, self._burst, self._clock)
         self._buckets[caller] = bucket
         if len(self._buckets) > self._most:
             self._buckets.popitem(last=False)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from sqlalchemy import delete, select, true
 
+from server.clock import Clock
 from server.errors import ApiError
 from server.settings import Settings
 from server.store.database import Database
@@ -57,14 +58,17 @@ class Keeping:
             raise ApiError(507, "no_space", text, hint="delete recordings, or wait for their retention to end")
         return left
 
-    async def run(self) -> None:
+    async def run(self, clock: Clock) -> None:
         """Delete recordings and runs beyond the retention, now and every hour."""
-        while True:
-            try:
-                await self.expire()
-            except Exception:
-                log.exception("old recordings and runs could not be deleted")
-            await asyncio.sleep(EVERY_S)
+        await self._try_to_expire()
+        async for _ in clock.every(EVERY_S):
+            await self._try_to_expire()
+
+    async def _try_to_expire(self) -> None:
+        try:
+            await self.expire()
+        except Exception:
+            log.exception("old recordings and runs could not be deleted")
 
     async def expire(self) -> int:
         """Delete recordings and runs that ended longer ago than the retention; return how many."""

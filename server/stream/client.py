@@ -10,6 +10,7 @@ import asyncio
 import logging
 import time
 from collections import deque
+from collections.abc import Callable
 
 from pydantic import BaseModel
 
@@ -57,6 +58,8 @@ class Client:
         Number of the last event the client has.
     person : Person
         Whose page it is.
+    clock : callable
+        Seconds.
     """
 
     def __init__(
@@ -68,8 +71,9 @@ class Client:
         cuts: SharedCuts,
         last_event: int,
         person: Person = TEACHER,
+        clock: Callable[[], float] = time.perf_counter,
     ) -> None:
-        self.person = person
+        self.person, self._clock = person, clock
         self.line, self.session, self.cuts = line, session, cuts
         self._sent, self._news = sent, news
         self.name = "page"
@@ -82,7 +86,7 @@ class Client:
         self._outbox: deque[bytes] = deque()
         self._wants_events = self._wants_status = self._wants_frame = False
         self._frame = self._acked = 0
-        self._taken_at = self._moved_at = time.monotonic()
+        self._taken_at = self._moved_at = clock()
         self._passed_on = 0
         self._told_slow_at = -1e9
 
@@ -115,7 +119,7 @@ class Client:
     def acknowledge(self, frame: int) -> None:
         """Note that the client has taken every frame up to this one."""
         self._acked = max(self._acked, min(frame, self._frame))
-        self._taken_at = time.monotonic()
+        self._taken_at = self._clock()
         if self._wants_frame:
             self.flush()
 
@@ -194,7 +198,7 @@ class Client:
         if not shown:
             return []
         if self._frame == self._acked:
-            self._taken_at = time.monotonic()
+            self._taken_at = self._clock()
         self._frame += 1
         parts = encode(self._frame, self.session.is_running, self.cuts.moment, shown)
         length = sum(map(len, parts))
@@ -208,7 +212,7 @@ class Client:
             return
         self.dropped += 1
         self._sent.frames_dropped += 1
-        now = time.monotonic()
+        now = self._clock()
         if now - self._taken_at > 1.0 and now - self._told_slow_at > STALL_S:
             self._told_slow_at = now
             text = f"this page takes frames too slowly; {self.dropped} were left out"

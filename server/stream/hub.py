@@ -37,10 +37,18 @@ class Hub:
         Where streams are counted.
     lateness : callable
         Returns the fields of a status that say how late the service is.
+    clock : callable
+        Seconds, by which a stream counts as stalled; pictures keep to those of the machine.
     """
 
-    def __init__(self, settings: Settings, metrics: Metrics, lateness: Callable[[], dict[str, Any]]) -> None:
-        self._settings, self._metrics, self._lateness = settings, metrics, lateness
+    def __init__(
+        self,
+        settings: Settings,
+        metrics: Metrics,
+        lateness: Callable[[], dict[str, Any]],
+        clock: Callable[[], float] = time.perf_counter,
+    ) -> None:
+        self._settings, self._metrics, self._lateness, self.clock = settings, metrics, lateness, clock
         self._numbers = count(1)
         self._rooms: dict[Seen, Room] = {}
         self._pace = Pace(settings.frame_rate_hz)
@@ -176,7 +184,7 @@ class Hub:
     async def run(self) -> None:
         """Offer the status, and close stalled streams."""
         while True:
-            due = time.monotonic() + STATUS_S
+            due = self.clock() + STATUS_S
             await asyncio.sleep(STATUS_S)
             for room in self._rooms.values():
                 room.cuts.gather()  # of a bench that stands, too

@@ -131,7 +131,7 @@ def test_printed_step_is_the_slowest_and_the_direct_factor_the_quickest():
     assert np.mean(found["fixed"]) == pytest.approx(12.6, abs=1.5)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("first", [1, HELD_OUT])
 @pytest.mark.parametrize("noise", [0.02, 0.1, 0.3])
 def test_three_ways_at_every_noise(noise, first):
@@ -145,7 +145,7 @@ def test_three_ways_at_every_noise(noise, first):
     assert np.mean(done["direct"] <= done["fixed"]) >= 0.7
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize(("noise", "middle"), [(0.02, (2, 13, 26, 7)), (0.3, (3, math.inf, 33, 22))])
 def test_middle_of_100_runs(noise, middle):
@@ -158,7 +158,7 @@ def test_middle_of_100_runs(noise, middle):
     assert (np.mean(np.isinf(done["shorter"])) > 0.5) == (noise == 0.3)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_fixed_senses_earlier_only_when_it_has_become_ragged():
     """The text: fixed senses earlier, adaptive rises sharper. True at much noise, the reverse at little."""
 

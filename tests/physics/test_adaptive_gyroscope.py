@@ -117,7 +117,7 @@ def test_gains_that_diverge_stop_the_bench(gains, stops):
         assert result.metrics["rate.error_pct"] == pytest.approx(0.0, abs=5.0)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_rate_of_slow_references_at_1_mhz():
     found = bench("adaptive_rate", "gyro-a", 1000, 1000, (100.0, 200.0), **SLOW).metrics
     assert found["rate.error_pct.1"] == pytest.approx(-0.1, abs=0.02)

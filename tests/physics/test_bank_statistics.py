@@ -15,7 +15,7 @@ from tests.physics.seeds import HELD_OUT, judged, seven_steps, winners_of
 
 BANK: dict[str, Any] = {"kind": "mmae", "process_noise_v": 0.3}
 EVENTS = get("ch5-seven-step").document["events"]
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.long
 
 
 @pytest.mark.parametrize("first", [1, HELD_OUT])

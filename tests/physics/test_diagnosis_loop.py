@@ -34,7 +34,7 @@ def test_feedback_does_no_harm_and_lack_of_excitation_does():
     check_loop(range(1, 4), 0.006)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_feedback_and_excitation_over_many_seeds():
     check_loop(range(101, 126), 0.003)
 

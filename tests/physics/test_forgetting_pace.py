@@ -14,7 +14,7 @@ from tests.physics.test_identify import TWO, W0, bench, settled_ms
 
 @pytest.mark.parametrize(
     ("first", "second", "ms", "ratio"),
-    [(10e3, 30e3, 6.0, 2.9), pytest.param(10.0, 30.0, 400.0, 2.4, marks=pytest.mark.slow)],
+    [(10e3, 30e3, 6.0, 2.9), pytest.param(10.0, 30.0, 400.0, 2.4, marks=pytest.mark.long)],
 )
 def test_the_pace_of_forgetting_by_its_equations_alone(first, second, ms, ratio):
     """From theta = 0 the error of the coefficients is P e^(-B t) P0^-1 theta, and P^-1 follows from the regressor."""

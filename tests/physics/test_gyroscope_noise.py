@@ -31,7 +31,7 @@ def context(nominal: TwoAxis, khz: float = 100.0, seed: int = 1) -> Context:
     return Context(dt_ms=1.0 / khz, every=1, seed=seed, device=nominal, model=nominal)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("khz", [20.0, 100.0])
 @pytest.mark.parametrize("deg_per_s", [0.0, 2e5])
 def test_equipartition_on_both_axes(khz, deg_per_s):

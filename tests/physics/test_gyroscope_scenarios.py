@@ -33,7 +33,7 @@ def test_the_bank_says_what_is_there(seed):
     assert result.metrics["diagnosis.bank.missed_steps"] == 0.0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [3, 8])
 def test_an_allan_deviation_has_three_branches(seed):
     """N^2/tau + (2 ln 2/pi) B^2 + K^2 tau/3 at every octave, within three deviations of its own scatter."""

@@ -29,7 +29,7 @@ SOFT_ADHESION = {
 # -- heat
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("factor", [1.0, 5.0])
 def test_thermal_motion_obeys_equipartition(factor):
     """kT/2 in each of x, y and theta, whatever the damping: 0.2775 nm, 4.49 pm, 95.8 nrad."""

@@ -170,7 +170,7 @@ def keeps_its_promise() -> bool:
     return rms(error(5000, damping=4.0)[-1000:]) < 0.02
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("mutant", ["", *MUTANTS])
 def test_a_mutilated_law_breaks_its_promise(mutant: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     source = inspect.getsource(mrac)

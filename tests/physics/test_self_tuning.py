@@ -161,7 +161,7 @@ def test_a_long_single_sine_without_noise_winds_nothing_up(bank):
 # -- the seven steps
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("first", [1, HELD_OUT])
 def test_reading_a_is_slower_the_longer_its_memory(first):
     banks = {f"a{int(1000 * f)}": {**A, "forgetting": f} for f in (0.86, 0.9, 0.98, 0.995)}
@@ -172,7 +172,7 @@ def test_reading_a_is_slower_the_longer_its_memory(first):
     assert found["a980"].correct >= 0.95  # the text calls it dysfunctional
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_with_noise_a_longer_memory_is_the_better_one():
     """The text's range 0.86 to 0.9 switches without end; 0.95 is best."""
     banks = {f"a{int(100 * f)}": {**A, "forgetting": f} for f in (0.86, 0.9, 0.95, 0.98)}
@@ -185,7 +185,7 @@ def test_with_noise_a_longer_memory_is_the_better_one():
     assert found["a95"].correct == pytest.approx(0.972, abs=0.006)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("first", [1, HELD_OUT])
 def test_anchored_banks_have_the_order_of_the_text_and_its_thresholds_by_their_anchor(first):
     def bank(forgetting: float, anchor: float) -> dict[str, Any]:
@@ -205,7 +205,7 @@ def test_anchored_banks_have_the_order_of_the_text_and_its_thresholds_by_their_a
     assert found["r1000_98"].correct > 0.9 and found["r10_86"].correct < 0.3
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_other_readings_do_not_show_the_pattern():
     banks = {
         "fixed": {"kind": "arx_bank"},

@@ -74,7 +74,7 @@ def test_residuals_that_are_no_numbers_are_unexplained_and_forgotten():
         assert w[14] == expected
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_true_hypothesis_is_called_unexplained_no_more_often_than_by_chance():
     """White residuals: an average whose weights fall off has a longer tail than the chi-square that sets the limit."""
     random = np.random.default_rng(1)

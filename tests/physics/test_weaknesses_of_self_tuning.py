@@ -21,7 +21,7 @@ SAID: dict[tuple[float, float], dict[str, int]] = {
 """By noise (um) and tone (Hz): percent of the samples that are right."""
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize("case", SAID)
 def test_the_figures_a_self_tuning_bank_gives_are_those_it_has(case):

@@ -194,7 +194,7 @@ def test_a_fault_that_is_not_on_the_list_is_unknown(name):
     assert [verdict for verdict, _ in verdicts(UNKNOWN_FAULTS[name], range(1, 4))] == [UNKNOWN] * 3
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("first", [1, HELD_OUT])
 def test_verdicts_over_many_seeds(first):
     seeds = range(first, first + 20)
@@ -227,7 +227,7 @@ def test_an_alias_is_isolated_as_what_it_stands_for_and_the_log_names_it():
     assert any("isolated: m+5 (the same here: stiffness x 0.9676)" in text for text in said), said
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("hz", [2000.0, 200.0])
 def test_false_alarms_of_both_tests_are_as_many_as_was_asked_for(hz):
     """1e-3 of the samples of a healthy device, over 600 000 of them; also of a window of a fifth of a period."""

@@ -59,7 +59,7 @@ def carry_out(ticks):
 }
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("by", BY)
 def test_memory_does_not_grow_with_the_length_of_a_run(by: str, tmp_path: Path) -> None:
     """The largest resident size of a process of its own, after a run and after one four times as long."""

@@ -19,7 +19,7 @@ def longest_first() -> list[Scenario]:
     return sorted(library(), key=lambda scenario: scenario.samples or 0, reverse=True)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("scenario", longest_first(), ids=lambda scenario: scenario.id)
 def test_a_claim_holds_over_seeds(scenario: Scenario) -> None:
@@ -39,7 +39,7 @@ def test_a_claim_holds_over_seeds(scenario: Scenario) -> None:
                 break  # whatever the others give
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name", ["ch5-seven-step", "ch3-pull-in-map", "gyro-diagnosis", "ch6-drift", "ch2-doppler", "gyro-allan"]
 )

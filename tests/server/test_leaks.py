@@ -16,7 +16,7 @@ STARTS, FIRST = 50, 8
 """Starts, and those that may still load what stays, such as modules and kernels."""
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(900)
 def test_fifty_starts_leave_nothing_behind(tmp_path: Path) -> None:
     process = psutil.Process()

@@ -7,6 +7,14 @@ import { join } from "node:path";
 const COMBBENCH = join(import.meta.dirname, "..", "..", ".venv", "bin", "combbench");
 const START_MS = 120_000;
 
+/** Time passes by `advance` alone; so the rate of commands is not limited. Only the test of the gallery has figures made. */
+const USUAL = {
+  COMBBENCH_CLOCK: "manual",
+  COMBBENCH_COMMAND_BURST: "100000",
+  COMBBENCH_FIGURES: "false",
+  COMBBENCH_RUN_WORKERS: "1",
+};
+
 /** A real server of its own: free port, empty data folder. */
 export class LabServer {
   /** Address with the token in it. */
@@ -34,9 +42,8 @@ export class LabServer {
   }
 
   async start(): Promise<void> {
-    // figures take some seconds of the machine: only the test of the gallery has them made
     // packages come without bytecode, and without keeping it each start and each worker compiles them for seconds
-    const env = { ...process.env, PYTHONDONTWRITEBYTECODE: "", COMBBENCH_FIGURES: "false", ...this.settings };
+    const env = { ...process.env, PYTHONDONTWRITEBYTECODE: "", ...USUAL, ...this.settings };
     const child = spawn(COMBBENCH, ["serve", "--port", String(this.port), "--data", this.data], { env });
     this.process = child;
     this.said = "";
@@ -66,6 +73,16 @@ export class LabServer {
     const text = await answer.text();
     if (!answer.ok) throw new Error(`${method} ${path}: ${answer.status} ${text}`);
     return (text ? JSON.parse(text) : undefined) as T;
+  }
+
+  /** Let wall time pass on all benches, s; the status of each has gone out when this returns. */
+  async advance(seconds: number): Promise<void> {
+    await this.ask("POST", "/testing/advance", { seconds });
+  }
+
+  /** Let a bench run for so many ticks; all benches that run do so for the same time. */
+  async advanceTicks(bench: string, ticks: number): Promise<void> {
+    await this.ask("POST", "/testing/advance", { bench, ticks });
   }
 
   /** What it warned of so far, the last lines. */

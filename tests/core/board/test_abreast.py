@@ -154,7 +154,7 @@ def test_controllers_that_look_on_are_left_out_unless_a_command_may_switch_to_th
     assert board.wiring.row("pid") not in board.wiring.left_out and board.wiring.row("mrac") in board.wiring.left_out
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(300)
 def test_all_steps_but_one_run_for_all_boards_at_once():
     blocks = {block for family in registry.FAMILIES for block in registry.blocks(family).values()}

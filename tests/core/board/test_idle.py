@@ -43,7 +43,7 @@ def check(scenario: Scenario) -> Any:
     return alone
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(600)
 def test_the_library() -> None:
     for scenario in library():

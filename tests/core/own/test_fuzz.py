@@ -151,7 +151,7 @@ def _call(table: np.ndarray, slots: Slots, tick: int, nothing: np.ndarray, trips
     )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(1500)
 def test_random_steps_stay_in_their_own_slots() -> None:
     total = ran = 0

@@ -87,7 +87,7 @@ def test_the_floor_is_flat_over_the_span_that_is_declared():
     assert math.sqrt(sampled) == pytest.approx(floor(100.0), rel=2e-3)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_floor_of_long_records_is_0_664_b():
     counts = (100, 1000, 10_000)
     rows = np.array([variances(noise(seed, 1_000_000, bias_instability_deg_h=B), counts) for seed in range(1, 21)])

@@ -25,7 +25,7 @@ def test_14_nm_at_30_db_and_no_slips():
     check_at_30_db(range(1, 11))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_14_nm_at_30_db_and_no_slips_in_a_hundred_runs():
     check_at_30_db(range(1, 101))
 

@@ -23,7 +23,7 @@ def test_below_25_nm_at_30_db_wherever_the_grating_is():
     check(errors(UNIT, range(1, 21)), 25.0, 0.10)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_below_25_nm_at_30_db_in_a_hundred_runs():
     check(errors(UNIT, range(1, 101)), 25.0, 0.05)
 

@@ -111,7 +111,7 @@ def told(seed: int, seconds: int, **values: float) -> RateNoise:
     return fit(taus, row.value("deviation", 20), row.value("averages", 20))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("n", "b", "k", "known"),
     [

@@ -140,7 +140,7 @@ def test_a_case_in_which_the_board_stops_is_refused() -> None:
         answers(chosen, case, {"mmae": section(Mmae, chosen)}, {})
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize("machine", [{}, OLDER], ids=["this machine", "an older one"])
 def test_the_kept_table_is_recomputed_to_the_bit(machine: dict[str, str]) -> None:

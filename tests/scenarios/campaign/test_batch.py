@@ -42,7 +42,7 @@ def abreast(monkeypatch: Any) -> Any:
     return alone
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(600)
 def test_the_library(abreast):
     ran_alone = []
@@ -57,7 +57,7 @@ def test_the_library(abreast):
     assert ran_alone == ALONE
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(600)
 def test_two_hundred_points(abreast):
     ranges = {

@@ -34,7 +34,7 @@ def test_the_system_of_the_peers_is_the_plant():
         x = step @ x
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_plant_is_much_faster_than_its_peers():
     board = gyroscope.running(gyroscope.ONE)
     device = cast(TwoAxis, board.spec.nominal)

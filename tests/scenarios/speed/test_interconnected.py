@@ -32,7 +32,7 @@ def test_mrac_is_what_python_control_simulates(rate_khz):
     assert np.abs(gains - [1, 0, 0, 0]).max() > 0.2
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_board_is_much_faster_than_the_interconnected_simulation():
     board = Board(ADAPTIVE)
     board.advance(CHUNK)
@@ -42,7 +42,7 @@ def test_board_is_much_faster_than_the_interconnected_simulation():
     assert peer > 100 * advance_cost(board, 10 * CHUNK)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_every_controller_has_its_price():
     costs = {}
     for document in (ADAPTIVE, GAIN):

@@ -36,7 +36,7 @@ def test_the_loop_is_the_board():
         np.testing.assert_allclose(found[:, column], trace[name], atol=1e-7, err_msg=name)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_board_is_much_faster():
     board = build(with_values(get("ch5-seven-step"), {"events": [], "plant.drive_noise_v": 0.01}))
     board.advance(CHUNK)

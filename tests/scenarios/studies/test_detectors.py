@@ -47,7 +47,7 @@ def test_a_fault_that_is_none_is_detected_by_chance():
         assert found[f"roc.{signal}.area"] == pytest.approx(0.5, abs=0.15)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_who_detects_what_at_one_false_alarm_in_100_000():
     """CUSUM is quickest for the fault it was built for and blind to another; a long window sees any."""
 

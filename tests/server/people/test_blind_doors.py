@@ -161,7 +161,7 @@ def a_fault(chance: random.Random) -> list[Any]:
 
 
 @pytest.mark.parametrize(
-    ("runs", "seed"), [(5, 1), *(pytest.param(41, seed, marks=pytest.mark.slow) for seed in range(5))]
+    ("runs", "seed"), [(5, 1), *(pytest.param(41, seed, marks=pytest.mark.long) for seed in range(5))]
 )
 def test_what_can_be_fetched_is_the_same_whatever_is_hidden(
     live: Live, runs: int, seed: int, monkeypatch: pytest.MonkeyPatch

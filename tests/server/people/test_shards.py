@@ -22,7 +22,7 @@ from tests.server.nginx import NAME, nginx, sharded_site
 from tests.server.security.test_proxy import Here
 from tests.server.store.postgres import ROOT, free_port, new_database, postgres
 
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(600)]
+pytestmark = [pytest.mark.long, pytest.mark.timeout(600)]
 RUN = {"scenario": "ch5-seven-step", "set": {"samples": 1500}, "seed": 5}
 VOTE = {"text": "Which?", "answers": ["this", "that"]}
 SHEET = (ROOT / "scenarios" / "sheets" / "first-look.md").read_text()

@@ -16,7 +16,7 @@ from tests.server.nginx import NAME, nginx
 from tests.server.people.group import open_class
 from tests.server.security.test_proxy import Here
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.long
 PREFIXES = "/a", "/b"
 
 

@@ -44,7 +44,7 @@ def done(served: Served, sweep_id: str) -> dict[str, Any]:
     return dict(served.http.get(f"/api/v1/sweeps/{sweep_id}").json())
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(400)
 def test_two_hundred_runs_though_worker_scheduler_and_server_are_killed(tmp_path: Path) -> None:
     data, moments = tmp_path / "data", random.Random(11)

@@ -19,7 +19,7 @@ from websockets.sync.client import connect
 from tests.server.conftest import SUBPROTOCOL, serving
 from tests.server.nginx import NAME, nginx
 
-pytestmark = pytest.mark.slow  # and the page has to be built
+pytestmark = pytest.mark.long  # and the page has to be built
 
 
 class Lab:

@@ -76,7 +76,7 @@ def check(served: Served, recording_id: str, tick: int, expected: Any) -> int:
     return lost
 
 
-@pytest.mark.parametrize("times", [4, pytest.param(50, marks=[pytest.mark.slow, pytest.mark.timeout(600)])])
+@pytest.mark.parametrize("times", [4, pytest.param(50, marks=[pytest.mark.long, pytest.mark.timeout(600)])])
 def test_a_server_killed_while_it_records_loses_a_second_at_most(tmp_path: Path, times: int) -> None:
     data, moments, expected = tmp_path / "data", random.Random(times), truth(6000)
     lost: list[int] = []

@@ -74,7 +74,8 @@ export const api = {
   plants: (id: string) => data(client.GET("/api/v1/benches/{bench_id}/plants", bench(id))),
   devices: async () => (await data(client.GET("/api/v1/devices"))).devices,
   scenarios: async () => (await data(client.GET("/api/v1/scenarios"))).scenarios,
-  gallery: () => data(client.GET("/api/v1/gallery")),
+  /** `first`: the cards in sight, whose figures are made before the others. */
+  gallery: (first: string[]) => data(client.GET("/api/v1/gallery", { params: { query: { first } } })),
   benchmark: (benchmark_id: string) =>
     data(client.GET("/api/v1/benchmarks/{benchmark_id}", { params: { path: { benchmark_id } } })),
   runs: async (query: RunFilter) => (await data(client.GET("/api/v1/runs", { params: { query } }))).runs,

@@ -1416,7 +1416,7 @@ export interface paths {
         };
         /**
          * Get Gallery
-         * @description Show every library scenario: claim, expectations, figure, and what was measured.
+         * @description Show every library scenario: claim, expectations, figure and measured values. Missing figures are made now.
          */
         get: operations["get_gallery_api_v1_gallery_get"];
         put?: never;
@@ -1436,7 +1436,7 @@ export interface paths {
         };
         /**
          * Get Figure
-         * @description Return the figure of a library scenario: what it is about, small, with axes and units.
+         * @description Return the figure of a library scenario, small, with axes and units.
          */
         get: operations["get_figure_api_v1_gallery__scenario_id__figure_get"];
         put?: never;
@@ -11891,7 +11891,10 @@ export interface operations {
     };
     get_gallery_api_v1_gallery_get: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Ids of cards in sight: their figures come first */
+                first?: string[];
+            };
             header?: never;
             path?: never;
             cookie?: never;

@@ -1,6 +1,6 @@
 import { Button, Progress } from "@mantine/core";
 import { IconFileText, IconPlayerPlay, IconPlayerTrackNext } from "@tabler/icons-react";
-import { useState } from "react";
+import { useEffect, useRef, useState } from "react";
 import { api } from "../api/api";
 import { useMay } from "../api/me";
 import type { GalleryCard } from "../api/types";
@@ -8,6 +8,7 @@ import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
 import { setPage } from "../bench/view-store";
 import { micro } from "../ui/metric-name";
+import { useOnScreen } from "../ui/on-screen";
 import { Verdict } from "../ui/verdict";
 import { ExpectationTable } from "./expectation-table";
 import styles from "./gallery.module.css";
@@ -18,10 +19,18 @@ interface GalleryEntryProps {
   /** Whether the server still makes figures. */
   isMaking: boolean;
   onChanged(): void;
+  /** Called when a good part of the card comes into view, and when it leaves. */
+  onSight(id: string, isShown: boolean): void;
 }
 
 /** A scenario of the library: its figure, its claim beside what was measured, and the two ways to run it. */
-export function GalleryEntry({ card, isMaking, onChanged }: GalleryEntryProps) {
+export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntryProps) {
+  const element = useRef<HTMLLIElement>(null);
+  const isShown = useOnScreen(element);
+  useEffect(() => {
+    onSight(card.id, isShown);
+    return () => onSight(card.id, false);
+  }, [card.id, isShown, onSight]);
   const [starting, setStarting] = useState(false);
   const drives = useMay("drive");
   const teaches = useMay("teach");
@@ -41,7 +50,7 @@ export function GalleryEntry({ card, isMaking, onChanged }: GalleryEntryProps) {
   const headless = () => api.startRun({ scenario: card.id }).then(onChanged, showError);
 
   return (
-    <li className={styles.card}>
+    <li ref={element} className={styles.card}>
       <div className={styles.thumbnail}>
         {card.figure ? (
           <img src={`./api/v1/gallery/${card.id}/figure?v=${card.figure}`} alt={`Figure of ${title}`} loading="lazy" />

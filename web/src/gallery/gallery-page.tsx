@@ -1,6 +1,6 @@
 import { Button, NativeSelect, Progress, TextInput } from "@mantine/core";
 import { IconFolderOpen } from "@tabler/icons-react";
-import { useMemo, useState } from "react";
+import { useCallback, useMemo, useRef, useState } from "react";
 import { api } from "../api/api";
 import { useMay } from "../api/me";
 import { useAnswer } from "../api/queries";
@@ -15,13 +15,21 @@ import { LectureList } from "./lecture-list";
 
 const BUSY_MS = 700;
 const CALM_MS = 15_000;
+/** Most cards that are named as in sight, in the order in which they came. */
+const MOST_FIRST = 64;
 const isUnderWay = (state: string) => state === "queued" || state === "running";
 
 /** Every experiment of the library: what is claimed, what was measured, and whether that agrees. */
 export function GalleryPage() {
-  const { value, error, since, again } = useAnswer(["gallery"], api.gallery, (now) =>
-    now?.figures.is_making || now?.cards.some((card) => isUnderWay(card.state)) ? BUSY_MS : CALM_MS,
+  const inSight = useRef(new Set<string>());
+  const { value, error, since, again } = useAnswer(
+    ["gallery"],
+    () => api.gallery([...inSight.current].slice(0, MOST_FIRST)),
+    (now) => (now?.figures.is_making || now?.cards.some((card) => isUnderWay(card.state)) ? BUSY_MS : CALM_MS),
   );
+  const onSight = useCallback((id: string, isShown: boolean) => {
+    inSight.current[isShown ? "add" : "delete"](id);
+  }, []);
   const [filter, setFilter] = useState(EVERYTHING);
   const drives = useMay("drive");
   const teaches = useMay("teach");
@@ -105,7 +113,13 @@ export function GalleryPage() {
       {value && cards.length > 0 ? (
         <ul className={styles.grid} data-stale={error !== undefined} aria-label="Experiments">
           {cards.map((card) => (
-            <GalleryEntry key={card.id} card={card} isMaking={figures?.is_making === true} onChanged={again} />
+            <GalleryEntry
+              key={card.id}
+              card={card}
+              isMaking={figures?.is_making === true}
+              onChanged={again}
+              onSight={onSight}
+            />
           ))}
         </ul>
       ) : value ? (
