@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import hashlib
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -174,6 +175,13 @@ def inner_digest(board: Board) -> str:
     for array in (board.wiring.p, board.wiring.s, board.wiring.w, board.wiring.io):
         sha.update(np.ascontiguousarray(array).data)
     return sha.hexdigest()
+
+
+def pairs(first: Sequence[Any], second: Sequence[Any], third: Sequence[Any]) -> list[tuple[Any, Any, Any]]:
+    """Return cases in which each value meets each value of another parameter, the third being the shortest list."""
+    rows = [(a, b, third[(i + j) % len(third)]) for i, a in enumerate(first) for j, b in enumerate(second)]
+    assert len(third) <= min(len(first), len(second)), "some of them never meet"
+    return rows
 
 
 def phasor(signal: np.ndarray, frequency_hz: float, dt_ms: float, first: int = 0) -> complex:

@@ -131,7 +131,7 @@ def cases(name: str) -> dict[str, dict[str, Any]]:
         story = [command for command in whole if "switch" not in command or command["switch"] in able]
         found[label] = {"bench": bench, "commands": story}
     for profile in PROFILES if entry.family == "faults" else ():
-        command = {"fault": entry.name, "severity": entry.suggested, "profile": profile, "at_sample": 37}
+        command = {"fault": entry.name, "severity": entry.suggested, "profile": profile, "at_sample": 36}
         found[f"{name} {profile['kind']}"] = {"bench": document({}, rich(entry)), "commands": [command]}
     return found
 

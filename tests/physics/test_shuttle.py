@@ -152,9 +152,10 @@ def test_held_and_analogue_drive_each_match_their_own_closed_form():
     a, b = continuous(gain)
     w = 2 * math.pi * 2.0
     steady = np.linalg.solve(1j * w * np.eye(2) - a, b[:, 0] * volts)
-    exact = [
-        (np.imag(steady * np.exp(1j * w * t)) - linalg.expm(a * t) @ np.imag(steady))[0] for t in np.arange(n) * dt
-    ]
+    over, free, exact = linalg.expm(a * dt), np.imag(steady), []
+    for t in np.arange(n) * dt:
+        exact.append((np.imag(steady * np.exp(1j * w * t)) - free)[0])
+        free = over @ free
     peak = np.abs(exact).max()
     assert np.abs(smooth - exact).max() < 2e-5 * peak  # (w dt)^4 / 12 = 2e-5
     assert np.abs(smooth - exact).max() < 0.001 * np.abs(held - exact).max()
@@ -274,8 +275,7 @@ def test_a_runaway_inside_one_tick_trips_the_board():
 # -- heat
 
 
-@pytest.mark.parametrize("damping", [0.0, 4.0])
-@pytest.mark.parametrize("plant", ["linear", "nonlinear"])
+@pytest.mark.parametrize(("plant", "damping"), [("linear", 4.0), ("nonlinear", 0.0)])
 def test_thermal_motion_obeys_equipartition(plant, damping):
     values = {**STILL, "plant.thermal_noise": True, "plant.model": plant}
     if plant == "nonlinear":
