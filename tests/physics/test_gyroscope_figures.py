@@ -114,11 +114,7 @@ def test_the_figures_of_the_text_devices():
     assert zeros == pytest.approx([10.0, 18.37], abs=0.01)
     straight = Device(**SOFT, damping_y_ns_m=2.4e-6, drive_amplitude_um=1.0)
     found = measured(
-        straight,
-        900,
-        rate=turning(100),
-        slots={"drive": "drive_tracking"},
-        controller={"kind": "open_loop_rate"},
+        straight, 900, rate=turning(100), slots={"drive": "drive_tracking"}, controller={"kind": "open_loop_rate"}
     )
     assert found["rate.scale_pm_per_dps"] == pytest.approx(3.705, rel=5e-3)
 
@@ -187,10 +183,7 @@ def test_force_to_rebalance_settles_or_rings_on_the_split():
 
     def loop(gain: float) -> dict[str, float]:
         return measured(
-            DUAL,
-            2400,
-            rate=step(100, 700),
-            controller={"kind": "force_to_rebalance", "integral_gain_per_ms3": gain},
+            DUAL, 2400, rate=step(100, 700), controller={"kind": "force_to_rebalance", "integral_gain_per_ms3": gain}
         )
 
     w = math.sqrt(DUAL.kx / DUAL.mx)

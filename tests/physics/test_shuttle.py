@@ -210,10 +210,7 @@ CONSERVATIVE = {**STILL, "plant.model": "nonlinear", "device.damping_ns_m": 1e-2
 
 def test_energy_is_conserved_without_damping():
     cubic = 2e9
-    trace = play(
-        make({**CONSERVATIVE, "plant.cubic_n_m3": cubic, "plant.initial_displacement_um": 4.0}),
-        400,
-    )
+    trace = play(make({**CONSERVATIVE, "plant.cubic_n_m3": cubic, "plant.initial_displacement_um": 4.0}), 400)
     x, v = trace["plant.displacement"] * 1e-6, trace["plant.velocity"] * 1e-3
     energy = 0.5 * M * v**2 + 0.5 * K * x**2 + 0.25 * cubic * x**4
     assert 0.25 * cubic * x[0] ** 4 > 0.05 * energy[0]  # the cubic spring does take part
