@@ -13,6 +13,9 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, settings
 
+# Matrices here are small: more threads only wait for one another, and their waiting is processor time.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 
 pytest_plugins = ["tests.budget"]

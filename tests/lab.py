@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import hashlib
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -38,11 +39,7 @@ RICH: dict[str, Any] = {
             "kind": "mmae",
             "hypotheses": [{"name": "healthy"}, {"name": "m+5", "mass": 1.05}, {"name": "b+30", "damping": 1.3}],
         },
-        "slow": {
-            "kind": "mmae",
-            "every": 2,
-            "hypotheses": [{"name": "healthy"}, {"name": "m+5", "mass": 1.05}],
-        },
+        "slow": {"kind": "mmae", "every": 2, "hypotheses": [{"name": "healthy"}, {"name": "m+5", "mass": 1.05}]},
     },
 }
 """A bench with everything on it."""
@@ -71,18 +68,10 @@ AXES_RICH: dict[str, Any] = {
 
 AXES_STORY: list[dict[str, Any]] = [
     {"fault": "added_mass", "severity": 0.01, "at_sample": 20},
-    {
-        "fault": "stiffness",
-        "severity": 0.02,
-        "profile": {"kind": "ramp", "duration_ms": 0.4},
-        "at_sample": 30,
-    },
+    {"fault": "stiffness", "severity": 0.02, "profile": {"kind": "ramp", "duration_ms": 0.4}, "at_sample": 30},
     {"switch": "sense_axis_sync", "at_sample": 50},
     {"switch": "drive_loop", "at_sample": 60},
-    {
-        "set": {"rate.angle_random_walk_deg_rt_h": 0.5, "sensors.pick_off.noise_pm_rthz": 0.1},
-        "at_sample": 70,
-    },
+    {"set": {"rate.angle_random_walk_deg_rt_h": 0.5, "sensors.pick_off.noise_pm_rthz": 0.1}, "at_sample": 70},
     {"switch": "whole_angle", "at_sample": 90},
     {"heal": ["added_mass"], "at_sample": 97},
 ]
@@ -90,12 +79,7 @@ AXES_STORY: list[dict[str, Any]] = [
 
 STORY: list[dict[str, Any]] = [
     {"fault": "added_mass", "severity": 0.05, "at_sample": 20},
-    {
-        "fault": "stiffness",
-        "severity": 0.2,
-        "profile": {"kind": "ramp", "duration_ms": 0.4},
-        "at_sample": 30,
-    },
+    {"fault": "stiffness", "severity": 0.2, "profile": {"kind": "ramp", "duration_ms": 0.4}, "at_sample": 30},
     {
         "fault": "damping",
         "severity": 0.5,
@@ -103,10 +87,7 @@ STORY: list[dict[str, Any]] = [
         "at_sample": 41,
     },
     {"switch": "mrac", "at_sample": 60},
-    {
-        "set": {"reference.amplitude_v": 4.0, "sensors.ideal.noise_um": 0.05},
-        "when": "plant.velocity > 5",
-    },
+    {"set": {"reference.amplitude_v": 4.0, "sensors.ideal.noise_um": 0.05}, "when": "plant.velocity > 5"},
     {"switch": "pid", "at_sample": 90},
     {"heal": ["added_mass"], "at_sample": 97},
     {"switch": "open_loop", "at_sample": 110},
@@ -174,6 +155,13 @@ def inner_digest(board: Board) -> str:
     for array in (board.wiring.p, board.wiring.s, board.wiring.w, board.wiring.io):
         sha.update(np.ascontiguousarray(array).data)
     return sha.hexdigest()
+
+
+def pairs(first: Sequence[Any], second: Sequence[Any], third: Sequence[Any]) -> list[tuple[Any, Any, Any]]:
+    """Return cases in which each value meets each value of another parameter, the third being the shortest list."""
+    rows = [(a, b, third[(i + j) % len(third)]) for i, a in enumerate(first) for j, b in enumerate(second)]
+    assert len(third) <= min(len(first), len(second)), "some of them never meet"
+    return rows
 
 
 def phasor(signal: np.ndarray, frequency_hz: float, dt_ms: float, first: int = 0) -> complex:

@@ -14,10 +14,9 @@ from core import registry
 from core.block import Block
 from core.board.board import Board
 from core.board.parse import parse
-from core.board.wiring import wire
 from core.device.catalogue import device
 from core.errors import InputError
-from tests.core.fence import run_behind_fences
+from tests.core.fence import FencedBoard
 from tests.core.own.texts import FIT
 from tests.lab import AXES_RICH, AXES_STORY, RICH, STORY, do, document, inner_digest, make, play, run_digest
 
@@ -25,8 +24,12 @@ TICKS = 120
 SECTION = {"reference": "reference", "plant": "plant", "sense": "sensor", "control": "controller"}
 KIND = {"plant": "model"}
 FORCED = {"slots": {"drive": "forced_drive"}, "controller": {"kind": "open_loop_rate"}}
-RESONATOR = device({}).oscillator()
-ALL = [entry for family in registry.FAMILIES for entry in registry.blocks(family).values()]
+ENDS = ("not a finite", "touched", "shorted")
+PROFILES = (
+    {"kind": "step"},
+    {"kind": "ramp", "duration_ms": 0.7},
+    {"kind": "intermittent", "period_ms": 0.13, "duty": 0.4},
+)
 
 
 def name_of(entry: type[Block]) -> str:
@@ -69,7 +72,7 @@ def chosen(entry: type[Block]) -> dict[str, Any]:
         table = {KIND.get(entry.family, "kind"): entry.name}
         if entry.family == "reference":
             table["amplitude_v"] = 8.0
-        if entry.unsuited(RESONATOR, RESONATOR):
+        if entry.unsuited(resonator := device({}).oscillator(), resonator):
             plain = {"model": "transfer_function"}
             return {"device": {"id": "second-order-gain"}, "plant": plain, SECTION[entry.family]: table}
         return {SECTION[entry.family]: table}
@@ -116,84 +119,72 @@ def variants(entry: type[Block]) -> dict[str, dict[str, Any]]:
     return found
 
 
-def profiles(entry: type[Block]) -> list[dict[str, Any]]:
-    return [
-        {"kind": "step"},
-        {"kind": "ramp", "duration_ms": 0.7},
-        {"kind": "intermittent", "period_ms": 0.13, "duty": 0.4},
-    ]
-
-
-def cases() -> dict[str, dict[str, Any]]:
-    found = {}
-    for entry in ALL:
-        for name, values in variants(entry).items():
-            bench = document(values, rich(entry))
-            # nothing but the reference drives between samples, and not every controller suits every bench
-            is_analogue = bench.get("drive", {}).get("kind") == "analogue"
-            able = () if is_analogue else parse(bench).controllers
-            whole = AXES_STORY if rich(entry) is AXES_RICH else STORY
-            story = [command for command in whole if "switch" not in command or command["switch"] in able]
-            found[name] = {"document": bench, "commands": story, "faults": []}
-        if entry.family == "faults":
-            for profile in profiles(entry):
-                severity = entry.suggested
-                command = {"fault": entry.name, "severity": severity, "profile": profile}
-                found[f"{name_of(entry)} {profile['kind']}"] = {
-                    "document": document({}, rich(entry)),
-                    "commands": [{**command, "at_sample": 37}],
-                    "faults": [(entry.name, severity, profile)],
-                }
+def cases(name: str) -> dict[str, dict[str, Any]]:
+    """Return the benches of a block, by name."""
+    entry, found = block_of(name), {}
+    for label, values in variants(entry).items():
+        bench = document(values, rich(entry))
+        # nothing but the reference drives between samples, and not every controller suits every bench
+        is_analogue = bench.get("drive", {}).get("kind") == "analogue"
+        able = () if is_analogue else parse(bench).controllers
+        whole = AXES_STORY if rich(entry) is AXES_RICH else STORY
+        story = [command for command in whole if "switch" not in command or command["switch"] in able]
+        found[label] = {"bench": bench, "commands": story}
+    for profile in PROFILES if entry.family == "faults" else ():
+        command = {"fault": entry.name, "severity": entry.suggested, "profile": profile, "at_sample": 36}
+        found[f"{name} {profile['kind']}"] = {"bench": document({}, rich(entry)), "commands": [command]}
     return found
 
 
-CASES = cases()
-OF_BLOCK = {name_of(entry): {} for entry in ALL}
-for _name, _case in CASES.items():
-    OF_BLOCK[_name.split()[0]][_name] = _case
-every_block = pytest.mark.parametrize("entry", [pytest.param(entry, id=name_of(entry)) for entry in ALL])
+def block_of(name: str) -> type[Block]:
+    family, _, own = name.partition("/")
+    return registry.blocks(family)[own]
 
 
-def board_of(case: dict[str, Any], *, compiled: bool = True) -> Board:
-    return make(base=case["document"], commands=case["commands"], compiled=compiled)
+NAMES = [f"{family}/{name}" for family in registry.FAMILIES for name in registry.blocks(family)]
+every_block = pytest.mark.parametrize("name", NAMES)
+
+
+def played(board: Board, case: dict[str, Any]) -> Board:
+    """Return a board with the commands of a case waiting."""
+    for command in case["commands"]:
+        do(board, command)
+    return board
 
 
 # -- the same bits, however it is run
 
 
 @every_block
-def test_compiled_steps_give_the_bits_of_plain_python(entry):
-    for name, case in OF_BLOCK[name_of(entry)].items():
-        fast, slow = board_of(case), board_of(case, compiled=False)
-        assert run_digest(fast, TICKS) == run_digest(slow, TICKS), name
-        assert inner_digest(fast) == inner_digest(slow), name
-        assert fast.trip == slow.trip, name
-
-
-@every_block
-def test_deterministic_and_finite(entry):
-    for name, case in OF_BLOCK[name_of(entry)].items():
-        board = board_of(case)
-        trace = play(board, 8 * TICKS)
+def test_a_step_touches_only_its_own_numbers_and_gives_the_bits_of_its_compiled_form(name):
+    ran = False
+    for label, case in cases(name).items():
+        spec = parse(case["bench"])
+        fast, fenced = played(Board(spec), case), played(FencedBoard(spec, block_of(name)), case)
+        ticks = TICKS if label == name or case["commands"][0].get("fault") == block_of(name).name else TICKS // 2
+        assert run_digest(fast, ticks) == run_digest(fenced, ticks), label
+        assert inner_digest(fast) == inner_digest(fenced), label
+        assert fast.trip == fenced.trip, label
+        assert not any(fenced.unwritten.values()), f"{label}: {fenced.unwritten}"
+        ran = ran or bool(fenced.unwritten)
+        trace = play(fast, 8 * TICKS - ticks)
         # a law with its safety switched off may run away, and fingers may touch, but then the board says so
-        ends = ("not a finite", "touched", "shorted")
-        assert board.trip is None or any(words in board.trip.reason for words in ends), name
-        for signal, values in trace.items():
-            assert board.trip is not None or np.all(np.isfinite(values)), f"{name}: {signal}"
-        again = board_of(case)
-        play(again, 8 * TICKS)
-        assert again.digest() == board.digest() and inner_digest(again) == inner_digest(board), name
+        assert fast.trip is None or any(words in fast.trip.reason for words in ENDS), label
+        assert fast.trip is not None or not [one for one, values in trace.items() if not np.isfinite(values).all()], (
+            label
+        )
+        if label == name:
+            again = played(Board(spec), case)
+            assert run_digest(again, 8 * TICKS) == fast.digest() and inner_digest(again) == inner_digest(fast)
+    assert ran, "it is on no bench"
 
 
-@every_block
-def test_steps_touch_only_their_own_parameters_state_and_ports(entry):
-    for case in OF_BLOCK[name_of(entry)].values():
-        faults = {
-            name: registry.block("faults", name).Params(severity=severity, profile=profile, start_tick=5)
-            for name, severity, profile in case["faults"]
-        }
-        spec = parse(case["document"]).with_faults(faults)
-        run_behind_fences(spec, wire(spec), entry, 42)
+@pytest.mark.parametrize(("base", "story"), [(RICH, STORY), (AXES_RICH, AXES_STORY)], ids=["x", "x and y"])
+def test_a_whole_bench_in_plain_python_gives_the_bits_of_compiled_steps(base, story):
+    fast, slow = make({}, story, base=base), make({}, story, base=base, compiled=False)
+    assert run_digest(fast, TICKS) == run_digest(slow, TICKS)
+    assert inner_digest(fast) == inner_digest(slow)
+    assert fast.trip == slow.trip
 
 
 # -- snapshots
@@ -201,16 +192,16 @@ def test_steps_touch_only_their_own_parameters_state_and_ports(entry):
 
 @settings(max_examples=12, phases=[Phase.generate])  # shrinking boards takes minutes
 @given(
-    name=st.sampled_from(sorted(CASES)),
+    name=st.sampled_from(NAMES),
+    which=st.integers(0, 99),
     chunks=st.lists(st.integers(1, 90), min_size=1, max_size=12),
     again=st.lists(st.integers(1, 40), min_size=1, max_size=12),
 )
-def test_snapshot_is_exact_for_any_chunks(name, chunks, again):
-    total = sum(chunks) + sum(again)
-    straight = board_of(CASES[name])
+def test_snapshot_is_exact_for_any_chunks(name, which, chunks, again):
+    total, found = sum(chunks) + sum(again), [*cases(name).values()]
+    case = found[which % len(found)]
+    straight, board = (played(Board(parse(case["bench"])), case) for _ in range(2))
     play(straight, total)
-
-    board = board_of(CASES[name])
     for n in chunks:
         board.advance(n)
     kept = board.checkpoint()
@@ -246,8 +237,9 @@ def test_forks_do_not_disturb_each_other():
 # -- documentation
 
 
-@pytest.mark.parametrize("entry", [pytest.param(entry, id=name_of(entry)) for entry in ALL])
-def test_documented(entry):
+@every_block
+def test_documented(name):
+    entry = block_of(name)
     card = registry.card(entry)
     assert card.title and len(card.summary) > 15 and card.summary.rstrip().endswith((".", "`"))
     for kind, ports in (("input", card.inputs), ("output", card.outputs), ("tap", card.taps)):
@@ -269,7 +261,7 @@ def test_documented(entry):
 
 def test_a_likelihood_of_its_own_says_what_it_is():
     """The page explains a sample by the normal density unless the class says beside its likelihood what it has."""
-    told = [entry for entry in ALL if hasattr(entry, "log_likelihood")]
+    told = [entry for entry in map(block_of, NAMES) if hasattr(entry, "log_likelihood")]
     assert told
     for entry in told:
         owner = next(base for base in entry.__mro__ if "log_likelihood" in vars(base))
@@ -278,7 +270,7 @@ def test_a_likelihood_of_its_own_says_what_it_is():
 
 def test_units_are_written_in_the_names_of_parameters_or_beside_them():
     suffixes = {"um": "_um", "V": "_v", "ms": "_ms", "Hz": "_hz", "K": "_k", "nN": "_nn", "deg": "_deg"}
-    for entry in ALL:
+    for entry in map(block_of, NAMES):
         for parameter in registry.card(entry).parameters:
             suffix = suffixes.get(parameter.unit)
             # a severity is called that whatever it counts
@@ -298,19 +290,19 @@ def bounds_of(parameter: registry.ParameterCard) -> list[float]:
     return [bound for bound in (parameter.minimum, parameter.maximum) if bound is not None]
 
 
-@pytest.mark.parametrize(
-    "entry", [pytest.param(entry, id=name_of(entry)) for entry in ALL if entry.family != "faults" and limits(entry)]
-)
-def test_a_parameter_at_its_limit_is_refused_or_runs(entry):
-    for name, value in limits(entry):
-        at_its_limit(entry, name, value)
+@pytest.mark.parametrize("name", [name for name in NAMES if not name.startswith("faults/")])
+def test_a_parameter_at_its_limit_is_refused_or_runs(name):
+    entry = block_of(name)
+    for parameter, value in limits(entry):
+        at_its_limit(entry, parameter, value)
 
 
 def at_its_limit(entry: type[Block], name: str, value: float) -> None:
     label = f"{name_of(entry)}.{name}={value:g}"
     values = {**chosen(entry), f"{path_of(entry)}.{name}": value}
+    bench = rich(entry) if entry.family == "diagnose" else {**rich(entry), "diagnosers": {}}
     try:
-        board = make(values, base=rich(entry))
+        board = make(values, base=bench)
     except InputError as error:
         path = f"{path_of(entry)}.{name}".replace("controller", "controllers.")
         assert error.field == path or name in error.field, label

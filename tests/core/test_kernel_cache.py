@@ -8,7 +8,6 @@ import textwrap
 from pathlib import Path
 from types import FunctionType, ModuleType
 
-import numpy as np
 import pytest
 
 from core.kernel_cache import key
@@ -113,16 +112,11 @@ def outer_in_a_process(folder: Path, source: str) -> list[str]:
     return done.stdout.split()
 
 
-def test_a_second_process_compiles_nothing_and_an_edit_only_what_it_touches(tmp_path):
+def test_a_second_process_compiles_nothing_an_edit_what_it_touches_and_damage_everything(tmp_path):
     assert outer_in_a_process(tmp_path, SOURCE) == ["7.0", "2"]
     assert outer_in_a_process(tmp_path, SOURCE) == ["7.0", "0"]
     assert outer_in_a_process(tmp_path, SOURCE.replace("+ 3.0", "+ 4.0")) == ["8.0", "1"]
     assert outer_in_a_process(tmp_path, SOURCE.replace("FACTOR = 2.0", "FACTOR = 3.0")) == ["8.0", "2"]
-
-
-def test_a_damaged_file_is_compiled_again(tmp_path):
-    assert outer_in_a_process(tmp_path, SOURCE) == ["7.0", "2"]
     for path in (tmp_path / "kept" / "kernels").iterdir():
         path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
     assert outer_in_a_process(tmp_path, SOURCE) == ["7.0", "2"]
-    assert np.isfinite(float(outer_in_a_process(tmp_path, SOURCE)[0]))

@@ -66,25 +66,28 @@ class Frame:
 
     def assembled(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return inner forces and their tangent at displacements (ux, uy, turn) of each node."""
+        a, b, ea, ei = (np.array(column) for column in zip(*self.elements, strict=True))
+        at = np.hstack([3 * a[:, None] + np.arange(3), 3 * b[:, None] + np.arange(3)])
+        drawn, moved = self.places[b] - self.places[a], u[at]
+        chord = drawn + moved[:, 3:5] - moved[:, 0:2]
+        first, length = np.hypot(*drawn.T), np.hypot(*chord.T)
+        c, s = chord.T / length
+        turn = np.arctan2(drawn[:, 0] * chord[:, 1] - drawn[:, 1] * chord[:, 0], np.sum(drawn * chord, axis=1))
+        t1, t2 = moved[:, 2] - turn, moved[:, 5] - turn
+        normal = ea * (length - first) / first
+        m1, m2 = 2 * ei / first * (2 * t1 + t2), 2 * ei / first * (t1 + 2 * t2)
+        nil = np.zeros_like(c)
+        r, z = np.array([-c, -s, nil, c, s, nil]).T, np.array([s, -c, nil, -s, c, nil]).T
+        turned = z / length[:, None]
+        strain = np.stack([r, np.eye(6)[2] - turned, np.eye(6)[5] - turned], axis=1)
+        inner = np.array([[ea, nil, nil], [nil, 4 * ei, 2 * ei], [nil, 2 * ei, 4 * ei]]).transpose(2, 0, 1)
+        own = strain.transpose(0, 2, 1) @ (inner / first[:, None, None]) @ strain
+        own += (normal / length)[:, None, None] * z[:, :, None] * z[:, None, :]
+        both = r[:, :, None] * z[:, None, :]
+        own += ((m1 + m2) / (length * length))[:, None, None] * (both + both.transpose(0, 2, 1))
         force, tangent = np.zeros(len(u)), np.zeros((len(u), len(u)))
-        for a, b, ea, ei in self.elements:
-            at = [3 * a, 3 * a + 1, 3 * a + 2, 3 * b, 3 * b + 1, 3 * b + 2]
-            drawn = self.places[b] - self.places[a]
-            chord = drawn + u[at[3:5]] - u[at[0:2]]
-            first, length = np.hypot(*drawn), np.hypot(*chord)
-            c, s = chord / length
-            turn = np.arctan2(drawn[0] * chord[1] - drawn[1] * chord[0], drawn @ chord)
-            t1, t2 = u[at[2]] - turn, u[at[5]] - turn
-            normal = ea * (length - first) / first
-            m1, m2 = 2 * ei / first * (2 * t1 + t2), 2 * ei / first * (t1 + 2 * t2)
-            r = np.array([-c, -s, 0, c, s, 0])
-            z = np.array([s, -c, 0, -s, c, 0])
-            b_matrix = np.array([r, np.eye(6)[2] - z / length, np.eye(6)[5] - z / length])
-            inner = np.array([[ea, 0, 0], [0, 4 * ei, 2 * ei], [0, 2 * ei, 4 * ei]]) / first
-            force[at] += b_matrix.T @ [normal, m1, m2]
-            own = b_matrix.T @ inner @ b_matrix + normal / length * np.outer(z, z)
-            own += (m1 + m2) / (length * length) * (np.outer(r, z) + np.outer(z, r))
-            tangent[np.ix_(at, at)] += own
+        np.add.at(force, at, np.einsum("eij,ei->ej", strain, np.array([normal, m1, m2]).T))
+        np.add.at(tangent, (at[:, :, None], at[:, None, :]), own)
         return force, tangent
 
     def settle(self, travel: float, steps: int) -> np.ndarray:

@@ -22,10 +22,7 @@ SLOW = {"frequency_x_hz": 663.676, "frequency_y_hz": 813.282}
 def bench(kind: str, name: str, ms: float, khz: float, rates: tuple[float, float], **law: Any) -> Result:
     """Run an adaptive controller with a rate that steps in the middle, rad/s."""
     first, second = (RAD * rate for rate in rates)
-    points = [
-        {"at_ms": 0.5 * ms, "deg_per_s": first},
-        {"at_ms": 0.5 * ms + 1e-3, "deg_per_s": second},
-    ]
+    points = [{"at_ms": 0.5 * ms, "deg_per_s": first}, {"at_ms": 0.5 * ms + 1e-3, "deg_per_s": second}]
     document = {
         "schema": 1,
         "sample_rate_khz": khz,

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 from core.diagnose.axes_model import over_a_tick
 from core.errors import InputError
-from tests.lab import do, inject, make, play, run_digest
+from tests.lab import do, inject, make, play
 from tests.two_axis import DAMPING, GYRO, MASS, OMEGA, STIFFNESS, TURN, held
 
 H = 0.01
@@ -190,13 +190,6 @@ def test_a_board_that_starts_anew_keeps_what_was_scored():
     assert board.scores()["bank"] == before
     play(board, 2000)
     assert board.trip is None and board.scores()["bank"].truth == 0
-
-
-def test_the_same_bits_compiled_or_not():
-    document = {"diagnosers": {"bank": {"kind": "axes_bank"}, "slow": {"kind": "axes_bank", "every": 3}}}
-    values = {**document, "rate": {"kind": "constant", "deg_per_s": 100.0}}
-    digests = {run_digest(make(values, base=GYRO, compiled=compiled), 60) for compiled in (True, False)}
-    assert len(digests) == 1
 
 
 def test_what_does_not_fit_is_refused():

@@ -64,8 +64,9 @@ def test_every_stiffness_of_the_suspension_goes_with_the_modulus(cause):
     np.testing.assert_allclose(suspension(board), scale * nominal, rtol=1e-9)
 
 
-@pytest.mark.parametrize("cause", CAUSES)
-@pytest.mark.parametrize("model", ["linear", "planar"])
+@pytest.mark.parametrize(
+    ("model", "cause"), [*(("linear", cause) for cause in CAUSES), ("planar", "softness"), ("planar", "all")]
+)
 def test_pull_in_goes_with_the_root_of_the_modulus(cause, model):
     board, scale = changed(cause, model)
     board.advance(3)
@@ -98,7 +99,7 @@ def test_heat_shakes_the_rotation_by_the_softer_spring():
     board = bench(0.0, values={"environment.temperature_k": 500.0, "sample_rate_khz": 100.0}, thermal_noise=True)
     board.advance(1)
     inject(board, stiffness=-0.7)
-    turn = play(board, 300_000)["plant.rotation"][2000:]
+    turn = play(board, 60_000)["plant.rotation"][2000:]
     spring = 4.51e-7 * 0.3 * (1 - PER_K * 200)
     assert np.sqrt(np.mean(turn**2)) == pytest.approx(math.sqrt(HEAT * 500 / 300 / spring) * 1e3, rel=0.04)
 

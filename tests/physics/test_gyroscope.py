@@ -91,20 +91,6 @@ def test_motion_is_that_of_another_integrator(name, khz, kind):
         np.testing.assert_allclose(found[2:, i], expected[2:], atol=2e-8)
 
 
-def test_compiled_and_plain_give_the_same_bits():
-    params = {**SWING, "thermal_noise": True}
-    with np.errstate(over="ignore"):
-        for block in (Gyroscope, GyroscopePair):
-            fast, slow = (alone("gyro-b", 20, block, compiled=compiled, **params) for compiled in (True, False))
-            for plant in (fast, slow):
-                plant["rate"] = 300.0
-                held(plant, "x", 3.0, 2.0, -1.0)
-                held(plant, "y", -1.0)
-                plant.play(200)
-            np.testing.assert_array_equal(fast.w, slow.w)
-            np.testing.assert_array_equal(fast.s, slow.s)
-
-
 def test_without_damping_energy_stays_and_the_rate_does_no_work():
     free = {"damping_x_ns_m": 1e-40, "damping_y_ns_m": 1e-40, "damping_xy_ns_m": 0.0}
     plant = alone("gyro-a", 50, over=free, **SWING)

@@ -92,8 +92,7 @@ def step(deg_per_s: float, at_ms: float) -> dict[str, Any]:
     return {"kind": "step", "deg_per_s": deg_per_s, "start_ms": at_ms}
 
 
-@pytest.mark.parametrize("khz", [50.0, 200.0])
-@pytest.mark.parametrize("device", [MODEL, PLANT, LIGHT], ids=["2-2", "4-5", "light"])
+@pytest.mark.parametrize(("device", "khz"), [(MODEL, 50.0), (PLANT, 200.0), (LIGHT, 50.0)], ids=["2-2", "4-5", "light"])
 def test_open_loop_figures(device, khz):
     found = measured(
         device, 1600, khz, rate=step(100, 800), slots={"drive": "drive_tracking"}, controller={"kind": "open_loop_rate"}
@@ -115,11 +114,7 @@ def test_the_figures_of_the_text_devices():
     assert zeros == pytest.approx([10.0, 18.37], abs=0.01)
     straight = Device(**SOFT, damping_y_ns_m=2.4e-6, drive_amplitude_um=1.0)
     found = measured(
-        straight,
-        900,
-        rate=turning(100),
-        slots={"drive": "drive_tracking"},
-        controller={"kind": "open_loop_rate"},
+        straight, 900, rate=turning(100), slots={"drive": "drive_tracking"}, controller={"kind": "open_loop_rate"}
     )
     assert found["rate.scale_pm_per_dps"] == pytest.approx(3.705, rel=5e-3)
 
@@ -135,8 +130,10 @@ def test_open_loop_scale_of_a_dual_mass_device(khz, before):
     assert found["rate.scale_pm_per_dps"] == pytest.approx(scale, rel=1.5e-3)
 
 
-@pytest.mark.parametrize("khz", [50.0, 100.0, 200.0])
-@pytest.mark.parametrize(("quadrature", "lead_deg"), [(200.0, 0.0), (200.0, 3.0), (-80.0, 0.0)])
+@pytest.mark.parametrize(
+    ("khz", "quadrature", "lead_deg"),
+    [(50.0, 200.0, 0.0), (50.0, -80.0, 3.0), (100.0, 200.0, 3.0), (200.0, -80.0, 0.0)],
+)
 def test_half_a_sample_reads_as_a_rate(khz, quadrature, lead_deg):
     """A held force lags half a sample and is weaker by sin(a)/a; the loop asks for that much more."""
     w = math.sqrt(DUAL.kx / DUAL.mx)
@@ -152,8 +149,14 @@ def test_half_a_sample_reads_as_a_rate(khz, quadrature, lead_deg):
     assert advanced["gyro.tilt_deg"] == pytest.approx(0.0, abs=1e-5)
 
 
-@pytest.mark.parametrize("controller", [{"kind": "force_to_rebalance"}, {"kind": "sense_axis_sync", "follow": "rest"}])
-@pytest.mark.parametrize("drive", ["drive_loop", "drive_tracking"])
+@pytest.mark.parametrize(
+    ("drive", "controller"),
+    [
+        ("drive_loop", {"kind": "force_to_rebalance"}),
+        ("drive_tracking", {"kind": "force_to_rebalance"}),
+        ("drive_tracking", {"kind": "sense_axis_sync", "follow": "rest"}),
+    ],
+)
 def test_a_force_is_a_rate_by_the_frequency_of_the_carrier(drive, controller):
     """Cross stiffness as strong as that of set A: the mode is 3.7 % below the frequency of x with y at rest.
 
@@ -180,10 +183,7 @@ def test_force_to_rebalance_settles_or_rings_on_the_split():
 
     def loop(gain: float) -> dict[str, float]:
         return measured(
-            DUAL,
-            2400,
-            rate=step(100, 700),
-            controller={"kind": "force_to_rebalance", "integral_gain_per_ms3": gain},
+            DUAL, 2400, rate=step(100, 700), controller={"kind": "force_to_rebalance", "integral_gain_per_ms3": gain}
         )
 
     w = math.sqrt(DUAL.kx / DUAL.mx)
@@ -223,7 +223,7 @@ def test_sense_axes_in_step(drive):
     assert free["rate.phase_difference_deg"] == pytest.approx(difference, abs=2e-4)
 
 
-@pytest.mark.parametrize("khz", [100.0, 200.0])
+@pytest.mark.parametrize("khz", [100.0])
 def test_a_drive_loop_makes_the_partner_swing_with_the_first(khz):
     """One carrier, at the resonance of the first: the first needs d w A, the partner what keeps it off its own."""
     document = {
@@ -247,7 +247,7 @@ def test_a_drive_loop_makes_the_partner_swing_with_the_first(khz):
     assert [first, second] == pytest.approx(needed, rel=5e-3)
 
 
-@pytest.mark.parametrize("khz", [100.0, 200.0])
+@pytest.mark.parametrize("khz", [200.0])
 def test_y_at_rest_leaves_the_cross_damping(khz):
     controller = {"kind": "sense_axis_sync", "follow": "rest"}
     found = measured(PLANT, 1200, khz, slots={"drive": "drive_tracking"}, controller=controller)

@@ -9,11 +9,7 @@ from scipy.signal import cont2discrete
 from tests.lab import inject, make, phasor, play, rms
 from tests.loop import A1, KP, KRAD, W0, follow, simulate, tail
 
-TWO_TONES = {
-    "kind": "multi_sine",
-    "amplitude_v": 5.0,
-    "tones": [{"frequency_hz": KRAD}, {"frequency_hz": 2.9 * KRAD}],
-}
+TWO_TONES = {"kind": "multi_sine", "amplitude_v": 5.0, "tones": [{"frequency_hz": KRAD}, {"frequency_hz": 2.9 * KRAD}]}
 
 
 class Law:

@@ -53,11 +53,7 @@ STUCK = ("point_adhesion", {}, Frame(LCR, adhesion=0.75))
 
 @pytest.mark.parametrize(
     ("damage", "travel", "shifts_nm", "corners_nm"),
-    [
-        (END, 1.0, (0.1, -0.6), (2.1, 3.1)),
-        (END, 8.0, None, (24.0, 49.0)),
-        (STUCK, 1.0, (1.1, 0.6), None),
-    ],
+    [(END, 1.0, (0.1, -0.6), (2.1, 3.1)), (END, 8.0, None, (24.0, 49.0)), (STUCK, 1.0, (1.1, 0.6), None)],
     ids=["truss end", "truss end, far", "adhesion"],
 )
 def test_across_the_drive_the_planar_plant_is_rough_where_it_says_so(damage, travel, shifts_nm, corners_nm):

@@ -41,8 +41,7 @@ def test_without_its_normaliser_gain_1_is_too_much(faults):
     assert left(faults=faults, law={"normalise": False}) == math.inf
 
 
-@pytest.mark.parametrize("model", ["copy", "damped"])
-@pytest.mark.parametrize(("noise_um", "most_um"), [(0.01, 0.005), (0.03, 0.02)])
+@pytest.mark.parametrize(("noise_um", "most_um", "model"), [(0.01, 0.005, "copy"), (0.03, 0.02, "damped")])
 def test_noise_costs_less_than_itself(noise_um, most_um, model):
     values = {"sensor.noise_um": noise_um, "model.kind": model}
     for seed in (1, 8):

@@ -10,12 +10,13 @@ import pytest
 
 from core import registry
 from core.device.catalogue import devices
-from tests.lab import inject, make, play, rms
+from tests.lab import inject, make, pairs, play, rms
 from tests.loop import KRAD, tail
 
 RESONATORS = [device.id for device in devices() if device.usual_plant == "linear"]
 SOME = ["ch4", "lcr-350", "table-1-1-350-min", "table-1-1-500-max", "fabricated-2"]
 FOLLOWERS = ["mrac", "mrac_velocity", "indirect_mrac", "stvsc", "self_sliding"]
+IDENTIFIERS = ["gradient", "least_squares", "recursive_least_squares", "adaptive_forgetting"]
 AGED = {"added_mass": 0.05, "stiffness": 0.8}
 
 
@@ -26,9 +27,7 @@ def bench(device: str, rate_khz: int = 100, noise_um: float = 0.0, **values: Any
     return make({"reference": reference, "drive.limit_v": 200, **own, **values})
 
 
-@pytest.mark.parametrize("device", SOME)
-@pytest.mark.parametrize("rate_khz", [50, 100, 200])
-@pytest.mark.parametrize("kind", FOLLOWERS)
+@pytest.mark.parametrize(("kind", "device", "rate_khz"), pairs(FOLLOWERS, SOME, (50, 100, 200)))
 def test_an_aged_device_is_followed(kind, rate_khz, device):
     """Relative to 2 um the error is what it is for the device of chapter 3: time goes with w0, volts with kp."""
     board = bench(device, rate_khz, 0.01, controller={"kind": kind})
@@ -55,9 +54,7 @@ def test_every_controller_may_drive_every_resonator(device):
         assert rms(tail(trace)) < most
 
 
-@pytest.mark.parametrize("device", SOME)
-@pytest.mark.parametrize("rate_khz", [50, 100, 200])
-@pytest.mark.parametrize("kind", ["gradient", "least_squares", "recursive_least_squares", "adaptive_forgetting"])
+@pytest.mark.parametrize(("kind", "device", "rate_khz"), pairs(IDENTIFIERS, SOME, (50, 100, 200)))
 def test_four_tones_identify_any_device(kind, rate_khz, device):
     """The tones stand where those of the device of chapter 3 do beside its resonance; the line between two samples of
     the displacement is off by its curvature, (w h)^2/12, so half the rate costs four times as much."""

@@ -52,12 +52,7 @@ def pid_gains(values: dict[str, Any]) -> tuple[float, float, float, float]:
 def test_pid_places_a_triple_pole(pole):
     _, proportional, integral, derivative = pid_gains({"pole": pole})
     # s^3 + (a1 + kp Kd) s^2 + (a2 + kp Kp) s + kp Ki in 1/w0, without the derivative filter
-    closed = [
-        1.0,
-        A1 + KP * derivative * W0,
-        1.0 + KP * proportional,
-        KP * integral / W0,
-    ]
+    closed = [1.0, A1 + KP * derivative * W0, 1.0 + KP * proportional, KP * integral / W0]
     companion = np.array([[0, 1, 0], [0, 0, 1], [-closed[3], -closed[2], -closed[1]]])
     np.testing.assert_allclose(np.linalg.eigvals(companion), -pole, atol=2e-3 * pole)
     np.testing.assert_allclose(closed, np.poly([-pole] * 3), rtol=1e-7)

@@ -154,14 +154,7 @@ def test_a_hypothesis_on_the_drive_is_not_the_truth_of_a_healthy_device():
 
 def test_what_no_hypothesis_names_is_no_step_and_is_never_missed():
     """A ramp passes through masses that none of the hypotheses has."""
-    events = [
-        {
-            "fault": "added_mass",
-            "severity": 0.05,
-            "profile": {"kind": "ramp", "duration_ms": 20.0},
-            "at_ms": 10,
-        }
-    ]
+    events = [{"fault": "added_mass", "severity": 0.05, "profile": {"kind": "ramp", "duration_ms": 20.0}, "at_ms": 10}]
     scenario = with_values(get("ch5-seven-step"), {"events": events, "samples": 3000, "expect": []})
     result = run(scenario, seed=11)
     truth = result.signal("kalman.truth")

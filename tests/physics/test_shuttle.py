@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 
-import control
 import numpy as np
 import pytest
 from scipy import linalg, signal, special
@@ -71,7 +70,7 @@ DEVICE = Oscillator(
 
 
 @pytest.mark.parametrize("length", [0, 1, 2, 3, 4, 5, 8, 5003])
-def test_held_response_against_lsim_lfilter_and_control(length):
+def test_held_response_against_lsim_and_lfilter(length):
     u = voltages()[:length]
     found = held_response(DEVICE, u, 0.01)
     assert found.shape == (length,)
@@ -87,9 +86,6 @@ def test_held_response_against_lsim_lfilter_and_control(length):
         ([DEVICE.force / DEVICE.mass], [1.0, DEVICE.damping / DEVICE.mass, DEVICE.stiffness / DEVICE.mass]), 0.01
     )
     np.testing.assert_allclose(found / scale, signal.lfilter(numerator[0], denominator, u) / scale, atol=1e-11)
-    held = control.c2d(control.ss(a, b, c, d), 0.01, method="zoh")
-    y = control.forced_response(held, inputs=u).outputs
-    np.testing.assert_allclose(found / scale, y / scale, atol=1e-12)
 
 
 def test_the_plant_is_the_record_of_the_voltage_it_was_given():
@@ -156,9 +152,10 @@ def test_held_and_analogue_drive_each_match_their_own_closed_form():
     a, b = continuous(gain)
     w = 2 * math.pi * 2.0
     steady = np.linalg.solve(1j * w * np.eye(2) - a, b[:, 0] * volts)
-    exact = [
-        (np.imag(steady * np.exp(1j * w * t)) - linalg.expm(a * t) @ np.imag(steady))[0] for t in np.arange(n) * dt
-    ]
+    over, free, exact = linalg.expm(a * dt), np.imag(steady), []
+    for t in np.arange(n) * dt:
+        exact.append((np.imag(steady * np.exp(1j * w * t)) - free)[0])
+        free = over @ free
     peak = np.abs(exact).max()
     assert np.abs(smooth - exact).max() < 2e-5 * peak  # (w dt)^4 / 12 = 2e-5
     assert np.abs(smooth - exact).max() < 0.001 * np.abs(held - exact).max()
@@ -213,10 +210,7 @@ CONSERVATIVE = {**STILL, "plant.model": "nonlinear", "device.damping_ns_m": 1e-2
 
 def test_energy_is_conserved_without_damping():
     cubic = 2e9
-    trace = play(
-        make({**CONSERVATIVE, "plant.cubic_n_m3": cubic, "plant.initial_displacement_um": 4.0}),
-        400,
-    )
+    trace = play(make({**CONSERVATIVE, "plant.cubic_n_m3": cubic, "plant.initial_displacement_um": 4.0}), 400)
     x, v = trace["plant.displacement"] * 1e-6, trace["plant.velocity"] * 1e-3
     energy = 0.5 * M * v**2 + 0.5 * K * x**2 + 0.25 * cubic * x**4
     assert 0.25 * cubic * x[0] ** 4 > 0.05 * energy[0]  # the cubic spring does take part
@@ -278,8 +272,7 @@ def test_a_runaway_inside_one_tick_trips_the_board():
 # -- heat
 
 
-@pytest.mark.parametrize("damping", [0.0, 4.0])
-@pytest.mark.parametrize("plant", ["linear", "nonlinear"])
+@pytest.mark.parametrize(("plant", "damping"), [("linear", 4.0), ("nonlinear", 0.0)])
 def test_thermal_motion_obeys_equipartition(plant, damping):
     values = {**STILL, "plant.thermal_noise": True, "plant.model": plant}
     if plant == "nonlinear":

@@ -249,8 +249,7 @@ PULL_IN = with_values(
 
 
 @pytest.mark.parametrize(
-    ("kind", "holds"),
-    [("open_loop", False), ("mrac", False), ("indirect_mrac", False), ("stvsc", True), ("pid", True)],
+    ("kind", "holds"), [("open_loop", False), ("mrac", False), ("indirect_mrac", False), ("stvsc", True), ("pid", True)]
 )
 def test_who_holds_the_shuttle_past_the_fold(kind, holds):
     trace = play(make({"controller.kind": kind}, base=PULL_IN), 4000)

@@ -92,11 +92,7 @@ def test_the_text_s_adhesion_and_broken_truss():
 
 @pytest.mark.parametrize(
     ("damage", "turn"),
-    [
-        (Damage(adhesion=("inner", 0.75)), 31.4),
-        (Damage(lost_ends=(2,)), -12.5),
-        (Damage(lost_ends=(0, 1, 2)), -44.6),
-    ],
+    [(Damage(adhesion=("inner", 0.75)), 31.4), (Damage(lost_ends=(2,)), -12.5), (Damage(lost_ends=(0, 1, 2)), -44.6)],
 )
 def test_a_hurt_side_turns_the_shuttle(damage, turn):
     """Rotation per travel by another frame program; the sign: the softer side, at +y, runs ahead, x - theta y > x."""
@@ -167,11 +163,7 @@ def test_static_displacement_under_faults(plant, fault, parameters, ratio):
 
 @pytest.mark.parametrize(
     ("fault", "omega", "ratio"),
-    [
-        ("point_adhesion", 1.0, 1.459),
-        ("point_adhesion", 2.9, 1.473),
-        ("broken_truss", 1.0, 0.830),
-    ],
+    [("point_adhesion", 1.0, 1.459), ("point_adhesion", 2.9, 1.473), ("broken_truss", 1.0, 0.830)],
 )
 def test_effort_to_follow_the_healthy_device(fault, omega, ratio):
     """|G_healthy/G_faulty| at a tone in krad/s: what a controller has to multiply the voltage by."""

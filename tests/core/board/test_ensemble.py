@@ -21,12 +21,7 @@ BENCH: dict[str, Any] = {
     "plant": {"model": "linear", "drive_noise_v": 0.01},
     "sensor": {"kind": "ideal", "noise_um": 0.02},
     "controller": {"kind": "open_loop"},
-    "diagnosers": {
-        "kalman": {
-            "kind": "mmae",
-            "hypotheses": [{"name": "healthy"}, {"name": "k+50", "stiffness": 1.5}],
-        }
-    },
+    "diagnosers": {"kalman": {"kind": "mmae", "hypotheses": [{"name": "healthy"}, {"name": "k+50", "stiffness": 1.5}]}},
 }
 TWINS: dict[str, dict[str, Any]] = {
     "adaptive": {"controller": {"kind": "mrac"}},

@@ -87,12 +87,6 @@ def test_blocks_are_joined_by_name() -> None:
     assert fold.digest(a, [*"aa"]) == fold.digest(both, ["a", "a", "", ""]) == alone
 
 
-@pytest.mark.parametrize("base", [lab.QUIET, lab.RICH])
-def test_compiled_and_uncompiled_boards_agree(base: dict[str, Any]) -> None:
-    first, second = (lab.make(commands=lab.STORY, base=base, compiled=compiled) for compiled in (True, False))
-    assert lab.run_digest(first, 150) == lab.run_digest(second, 150)
-
-
 def test_the_digest_is_of_the_trace() -> None:
     """Folded anew from the rows of the trace, by the definition."""
     board = lab.make(base=lab.RICH)

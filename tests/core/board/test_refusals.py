@@ -47,11 +47,7 @@ REFUSED: list[tuple[dict[str, Any], str, str]] = [
     ({"set": {"diagnosers.other.kind": "mmae"}}, "diagnosers", "not_live"),
     ({"set": {"drive.kind": "analogue"}}, "drive.kind", "not_live"),
     ({"set": {"plant.drive": "analogue"}}, "plant.drive", "not_live"),
-    (
-        {"set": {"controller.kind": "mrac", "controller.filter_pole": 2.0}},
-        "controller.filter_pole",
-        "not_live",
-    ),
+    ({"set": {"controller.kind": "mrac", "controller.filter_pole": 2.0}}, "controller.filter_pole", "not_live"),
     ({"set": {"sensor.every": 2}}, "sensor.every", "not_live"),
     ({"set": {"sensor.noise_um": -1.0}}, "sensor.noise_um", "invalid"),
     ({"set": {"sensor.noise_um": "much"}}, "sensor.noise_um", "invalid"),

@@ -42,9 +42,7 @@ COMMANDS = st.one_of(
     ),
     st.just({"heal": "all"}),
     st.builds(
-        lambda name, cold: {"switch": name, "cold": cold},
-        st.sampled_from(["open_loop", "pid", "mrac"]),
-        st.booleans(),
+        lambda name, cold: {"switch": name, "cold": cold}, st.sampled_from(["open_loop", "pid", "mrac"]), st.booleans()
     ),
     st.builds(
         lambda values: {"set": values},

@@ -11,14 +11,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from core.block import Block
 from core.board.board import Board
 from core.board.commands import parse_command
+from core.board.instances import instances
 from core.board.stored import Stored, revived, stored
 from core.errors import InputError
 from scenarios.library import get, ids
 from scenarios.run import build
-
-LIVE = [name for name in ids() if get(name).study is None]
+from scenarios.schema import Scenario
 
 
 def written(kept: Stored) -> Stored:
@@ -43,13 +44,27 @@ def same(first: Board, second: Board, ticks: int) -> None:
     assert first.scores() == second.scores() and first.save() == second.save()
 
 
-@pytest.mark.parametrize("name", LIVE)
-def test_every_scenario_goes_on_from_its_middle(name: str) -> None:
-    scenario = get(name)
+def test_scenarios_with_every_block_of_the_library_go_on_from_their_middle() -> None:
+    seen: set[type[Block]] = set()
+    for scenario in map(get, ids()):
+        blocks = set() if scenario.study is not None else {one.block for one in instances(scenario.spec)}
+        if not blocks <= seen:
+            seen |= blocks
+            goes_on_from_its_middle(scenario, 512)
+
+
+@pytest.mark.long
+def test_every_scenario_goes_on_from_its_middle() -> None:
+    for scenario in map(get, ids()):
+        if scenario.study is None:
+            goes_on_from_its_middle(scenario, 1024)
+
+
+def goes_on_from_its_middle(scenario: Scenario, ticks: int) -> None:
     board = build(scenario)
     for _ in range(5):
         board.advance(min(512, (scenario.samples or 4000) // 8))
-    same(board, revived(written(stored(board))), 1024)
+    same(board, revived(written(stored(board))), ticks)
 
 
 COMMANDS = st.sampled_from(
@@ -89,8 +104,6 @@ def test_it_goes_on_whatever_was_done(what: list[tuple[int, dict[str, Any]]], af
 
 def test_twins_go_on_too() -> None:
     document = {**get("first-look").document, "twins": {"other": {"controller": {"kind": "pid"}}}}
-    from scenarios.schema import Scenario
-
     board = build(Scenario.load(document))
     board.advance(500)
     board.apply(parse_command({"fault": "added_mass", "severity": 0.05}), "api")

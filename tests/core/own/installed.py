@@ -2,25 +2,64 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
 import sys
 import tomllib
 from pathlib import Path
+from typing import Any
 
 from tests.core.own.texts import ROOT
 
 TEMPLATE = ROOT / "docs" / "template"
+ANSWERS = """
+import importlib, json, sys, traceback
+from contextlib import redirect_stdout
+from core.board.packages import packages
+
+said = sys.stdout
+for line in sys.stdin:
+    code, words = json.loads(line)
+    importlib.invalidate_caches()
+    packages.cache_clear()
+    found = {"words": words}
+    try:
+        with redirect_stdout(sys.stderr):
+            exec(code, found)
+        answer = found["answer"], ""
+    except Exception:
+        answer = None, traceback.format_exc()
+    print(json.dumps(answer), file=said, flush=True)
+"""
 
 
 class Installed:
-    """A folder in which Python finds the template, from a copy of its source."""
+    """A folder in which Python finds the template, from a copy of its source, and a Python that answers there."""
 
     def __init__(self, folder: Path) -> None:
         self.folder, self.source = folder, folder / "source"
-        shutil.copytree(TEMPLATE, self.source)
         self._project = tomllib.loads((TEMPLATE / "pyproject.toml").read_text("utf-8"))["project"]
+        self.renew()
+        self._python = subprocess.Popen(
+            [sys.executable, "-c", ANSWERS],
+            cwd=folder,
+            env=self.environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+
+    @property
+    def environment(self) -> dict[str, str]:
+        """The environment in which Python finds it."""
+        return {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, (self.folder, self.source, ROOT)))}
+
+    def renew(self) -> None:
+        """Install the template as it comes."""
+        shutil.rmtree(self.source, ignore_errors=True)
+        shutil.copytree(TEMPLATE, self.source)
         self.rename(self._project["version"])
 
     def rename(self, version: str) -> None:
@@ -39,15 +78,15 @@ class Installed:
         """Name the class of its unit."""
         (self.info / "entry_points.txt").write_text(f"[{group}]\n{unit} = {where}\n", "utf-8")
 
-    def __call__(self, *words: str) -> subprocess.CompletedProcess[str]:
-        """Call Python where it is installed."""
-        path = os.pathsep.join(map(str, (self.folder, self.source, ROOT)))
-        command = [sys.executable, *words]
-        return subprocess.run(
-            command,
-            cwd=self.folder,
-            env={**os.environ, "PYTHONPATH": path},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+    def answer(self, code: str, *words: Any) -> Any:
+        """Return ``answer`` of code that is given ``words``; it looks for packages anew."""
+        assert self._python.stdin is not None and self._python.stdout is not None
+        self._python.stdin.write(json.dumps([code, words]) + "\n")
+        self._python.stdin.flush()
+        answer, error = json.loads(self._python.stdout.readline())
+        assert not error, error
+        return answer
+
+    def end(self) -> None:
+        """Let the Python that answers come to its end."""
+        self._python.communicate()

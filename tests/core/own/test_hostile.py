@@ -22,35 +22,42 @@ from scenarios.schema import Scenario
 from tests.core.own.hostile import corpus
 from tests.core.own.texts import ROOT, odd
 
-CORPUS = corpus()
-LOOK = get("first-look").document
+
+def look() -> dict[str, Any]:
+    return get("first-look").document
 
 
 def test_there_are_many() -> None:
-    assert len(set(CORPUS)) >= 300
+    assert len({text for texts in corpus().values() for text in texts}) >= 300
 
 
 def test_the_frame_they_are_put_into_is_a_unit() -> None:
     unit("odd", odd())
 
 
-@pytest.mark.parametrize("number", range(len(CORPUS)))
-def test_a_hostile_text_is_refused_in_one_line(
-    number: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("place", ["whole", "step", "top", "attributes", "pack"])
+def test_each_hostile_text_is_refused_in_one_line(
+    place: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    before = set(sys.modules)
-    with pytest.raises(InputError) as raised:
-        unit("odd", CORPUS[number])
-        build(Scenario.load({**LOOK, "units": {"odd": {"source": CORPUS[number]}}}))
-    assert "\n" not in str(raised.value) and len(str(raised.value)) < 500
-    assert not list(tmp_path.iterdir()) and capfd.readouterr() == ("", ""), "something of it was executed"
-    assert not {"socket", "subprocess", "ctypes"} & (set(sys.modules) - before)
+    let_in = []
+    for text in corpus()[place]:
+        before, said = set(sys.modules), ""
+        try:
+            unit("odd", text)
+            build(Scenario.load({**look(), "units": {"odd": {"source": text}}}))
+        except InputError as error:
+            said = str(error)
+        loaded = {"socket", "subprocess", "ctypes"} & (set(sys.modules) - before)
+        is_executed = loaded or [*tmp_path.iterdir()] or capfd.readouterr() != ("", "")
+        if not said or "\n" in said or len(said) >= 500 or is_executed:
+            let_in.append((text[-300:], said, is_executed))
+    assert let_in == []
 
 
 def test_a_storm_of_numbers_that_are_none_stays_in_its_own_slots() -> None:
     storm = odd("step", "for i in range(5):\n    s.line[i] = 1e308 * 1e308 - 1e308 * 1e308\nx.seen = s.line[0]")
-    plain, stormy = (build(Scenario.load({**LOOK, "units": {"odd": {"source": text}}})) for text in (odd(), storm))
+    plain, stormy = (build(Scenario.load({**look(), "units": {"odd": {"source": text}}})) for text in (odd(), storm))
     for board in (plain, stormy):
         board.advance(1000)
     assert np.isnan(stormy.value("odd.seen")) and stormy.trip is None
@@ -63,7 +70,7 @@ def test_a_step_that_is_slow_to_compile_is_given_up(monkeypatch: pytest.MonkeyPa
         "import scenarios.own as own; own.MOST_S = 0; import sys; from tests.core.own.texts import PI;"
         "sys.argv = ['own']; import io, json; sys.stdin = io.StringIO(json.dumps(['pi', PI])); own.main()"
     )
-    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, timeout=100)
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert ended.returncode != 0
 
 
@@ -71,7 +78,7 @@ def test_how_many_hypotheses_there_are_is_not_the_units_to_say() -> None:
     text = (ROOT / "docs" / "own-units.md").read_text("utf-8").split("```python\n")[2].partition("```")[0]
     lying = text.replace("p = cls.Packed.blank()", "p = cls.Packed.blank()\n        p.count = 1e6")
     scenario = Scenario.load(
-        {**LOOK, "units": {"judge": {"source": lying}}, "diagnosers": {"mine": {"kind": "judge"}}, "expect": []}
+        {**look(), "units": {"judge": {"source": lying}}, "diagnosers": {"mine": {"kind": "judge"}}, "expect": []}
     )
     board = build(scenario)
     assert board.wiring.parameters("mine").count == 6.0
@@ -125,7 +132,7 @@ def test_what_the_framework_counts_on_is_not_the_units_to_declare(old: str, new:
 
 
 def test_a_fault_of_ones_own_cannot_come_while_the_board_runs() -> None:
-    board = build(Scenario.load(LOOK))
+    board = build(Scenario.load(look()))
     source = (ROOT / "core" / "faults" / "stiffness.py").read_text("utf-8")
     with pytest.raises(InputError) as raised:
         board.apply(Set(set={"units.softer.source": source}), "test")

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
-import json
+import subprocess
+import sys
+from importlib.metadata import EntryPoint
 from pathlib import Path
 
+import pytest
+
+from core import registry
+from core.errors import InputError
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
@@ -12,34 +18,65 @@ from tests.core.own.installed import TEMPLATE, Installed
 from tests.core.own.test_own_units import with_unit
 
 LEAD = {"controller.kind": "lead", "duration_ms": 5.0}
+CALLED = """
+import io, json
+from contextlib import redirect_stdout
+from server.cli import app
+with redirect_stdout(io.StringIO()) as said:
+    app(words, standalone_mode=False)
+answer = json.loads(said.getvalue())
+"""
+TESTED = """
+import test_lead
+tests = [value for name, value in vars(test_lead).items() if name.startswith("test_")]
+for test in tests:
+    test()
+answer = len(tests)
+"""
 
 
 def test_an_installed_unit_is_in_the_catalogue_and_runs_as_its_text_does(installed: Installed) -> None:
-    cards = installed("-m", "server.cli", "catalog", "control", "--json")
-    card = next(one for one in json.loads(cards.stdout) if one["name"] == "lead")
+    card = next(one for one in installed.answer(CALLED, "catalog", "control", "--json") if one["name"] == "lead")
     assert card["family"] == "control" and card["title"] == "Lead"
     assert [one["name"] for one in card["parameters"]] == ["gain_v_um", "time_ms", "ratio"]
     assignments = [word for name, value in LEAD.items() for word in ("--set", f"{name}={value}")]
-    done = installed("-m", "server.cli", "run", "first-look", *assignments, "--json")
+    done = installed.answer(CALLED, "run", "first-look", *assignments, "--json")
     ours = run(with_unit("lead", (TEMPLATE / "lead.py").read_text("utf-8"), LEAD, "first-look"))
-    assert done.returncode == 0, done.stderr
-    assert json.loads(done.stdout)["digest"] == ours.digest
+    assert done["digest"] == ours.digest
     assert ours.digest != run(with_values(get("first-look"), {"duration_ms": 5.0})).digest
 
 
 def test_the_test_of_the_template_passes_where_it_is_installed(installed: Installed) -> None:
+    assert installed.answer(TESTED) == 2
+
+
+@pytest.mark.long
+def test_pytest_runs_the_test_of_the_template(installed: Installed) -> None:
     folder = str(installed.source)
-    done = installed("-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir", folder, folder)
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir", folder, folder]
+    done = subprocess.run(command, cwd=folder, env=installed.environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout
     assert "2 passed" in done.stdout
 
 
-def test_a_package_that_cannot_be_loaded_is_named_in_one_line(installed: Installed, tmp_path: Path) -> None:
+def test_a_package_that_cannot_be_loaded_is_refused_by_its_name() -> None:
+    entry = EntryPoint("none", "no_such_module:None", "combbench.control")
+    with pytest.raises(InputError) as raised:
+        registry._installed(entry)
+    assert raised.value.field == "combbench.control.none"
+    assert "names no_such_module:None, which cannot be loaded" in str(raised.value)
+
+
+@pytest.mark.long
+def test_the_command_line_names_a_package_that_cannot_be_loaded(installed: Installed, tmp_path: Path) -> None:
     info = tmp_path / "broken-1.0.dist-info"
     info.mkdir()
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: broken\nVersion: 1.0\n", "utf-8")
     (info / "entry_points.txt").write_text("[combbench.control]\nnone = no_such_module:None\n", "utf-8")
-    done = installed("-m", "server.cli", "catalog", "control")
+    path = f"{tmp_path}:{installed.environment['PYTHONPATH']}"
+    command = [sys.executable, "-m", "server.cli", "catalog", "control"]
+    environment = {**installed.environment, "PYTHONPATH": path}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 2 and done.stdout == ""
     (line,) = done.stderr.strip().split("\n")
     assert line.startswith("combbench: combbench.control.none: broken names no_such_module:None")

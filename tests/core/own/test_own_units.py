@@ -118,10 +118,7 @@ def test_a_unit_runs_in_shadow_beside_the_library_and_counts_for_no_digest_there
 
 
 def test_a_unit_that_puts_out_no_number_trips_the_board_when_it_drives() -> None:
-    text = odd(
-        "step",
-        "bad = (e - e) / (e - e)\nx.seen = bad",
-    ).replace("x.voltage = p.gain * e", "x.voltage = bad")
+    text = odd("step", "bad = (e - e) / (e - e)\nx.seen = bad").replace("x.voltage = p.gain * e", "x.voltage = bad")
     board = build(with_unit("odd", text))
     board.advance(100)
     assert board.trip is None, "in shadow it disturbs nobody"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import shutil
 from typing import Any
 
@@ -17,20 +16,19 @@ from scenarios.schema import Scenario
 from tests.core.own.installed import TEMPLATE, Installed
 
 HASH = "0" * 64
-SAID = """
-import json, sys
+CARRIED = """
 from core.errors import InputError
 from scenarios.edit import with_values
 from scenarios.key import content_hash, run_key
 from scenarios.library import get
 from scenarios.schema import Scenario
-base, values, more = json.loads(sys.argv[1])
+base, values, more = words
 try:
     one = Scenario.load({**with_values(get(base), values).document, **more})
 except InputError as error:
-    print(json.dumps(str(error)))
+    answer = str(error)
 else:
-    print(json.dumps([one.document.get("packages"), run_key(content_hash(one.document), 1)]))
+    answer = [one.document.get("packages"), run_key(content_hash(one.document), 1)]
 """
 
 
@@ -38,9 +36,7 @@ def carried(
     installed: Installed, values: dict[str, Any], more: dict[str, Any] | None = None, base: str = "first-look"
 ) -> Any:
     """Return the packages a scenario carries where the template is installed, and the key of its run; or why not."""
-    done = installed("-c", SAID, json.dumps([base, values, more or {}]))
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    return installed.answer(CARRIED, base, values, more or {})
 
 
 @pytest.fixture
@@ -50,21 +46,19 @@ def mark() -> dict[str, str]:
     return {"version": "0.1.0", "source": hashlib.sha256(f"lead\n{text}".encode()).hexdigest()}
 
 
-@pytest.mark.parametrize(
-    "values",
-    [
-        {"controller.kind": "lead"},
-        {"controllers.lead.ratio": 0.5},
-        {"events": [{"at_sample": 5, "switch": "lead"}]},
-        {"events": [{"at_sample": 5, "set": {"controllers.lead.ratio": 0.5}}]},
-        {"events": [{"when": "lead.voltage > 1", "fault": "added_mass", "severity": 0.05}]},
-        {"twins.other.controller.kind": "lead"},
-    ],
-)
-def test_a_scenario_that_names_a_block_of_a_package_carries_it(
-    installed: Installed, mark: dict[str, str], values: dict[str, Any]
-) -> None:
-    assert carried(installed, values)[0] == {"combbench-lead": mark}
+NAMED: list[dict[str, Any]] = [
+    {"controller.kind": "lead"},
+    {"controllers.lead.ratio": 0.5},
+    {"events": [{"at_sample": 5, "switch": "lead"}]},
+    {"events": [{"at_sample": 5, "set": {"controllers.lead.ratio": 0.5}}]},
+    {"events": [{"when": "lead.voltage > 1", "fault": "added_mass", "severity": 0.05}]},
+    {"twins.other.controller.kind": "lead"},
+]
+
+
+def test_a_scenario_that_names_a_block_of_a_package_carries_it(installed: Installed, mark: dict[str, str]) -> None:
+    for values in NAMED:
+        assert carried(installed, values)[0] == {"combbench-lead": mark}, values
 
 
 def test_other_scenarios_carry_nothing_and_keep_their_hash_and_key(installed: Installed) -> None:
@@ -76,7 +70,7 @@ def test_other_scenarios_carry_nothing_and_keep_their_hash_and_key(installed: In
         assert carried(installed, values) == [None, run_key(content_hash(here), 1)]
 
 
-def test_a_unit_of_its_own_stands_in_place_of_that_of_a_package(installed: Installed) -> None:
+def test_a_unit_of_its_own_takes_the_place_of_the_unit_of_a_package(installed: Installed) -> None:
     unit = {"units": {"lead": {"source": (TEMPLATE / "lead.py").read_text("utf-8")}}}
     assert carried(installed, {}, {**unit, "controller": {"kind": "lead"}})[0] is None
 
@@ -97,18 +91,17 @@ def test_points_of_a_campaign_that_name_it_have_its_source_in_their_keys(install
         "variants": [{"name": k, "set": {"controller.kind": k}} for k in ("pid", "lead")],
     }
     code = """
-import json, sys
 from scenarios.campaign.points import Contents
 from scenarios.campaign.sweep import Sweep
-print(json.dumps(list(Contents(Sweep(json.loads(sys.argv[1])).points))))
+answer = list(Contents(Sweep(words[0]).points))
 """
-    before = json.loads(installed("-c", code, json.dumps(sweep)).stdout)
+    before = installed.answer(code, sweep)
     installed.rename("0.1.1")
-    after = json.loads(installed("-c", code, json.dumps(sweep)).stdout)
+    after = installed.answer(code, sweep)
     assert [one == other for one, other in zip(before, after, strict=True)] == [True, False]
 
 
-def test_one_that_is_another_here_is_refused_in_one_line(installed: Installed, mark: dict[str, str]) -> None:
+def test_a_package_that_is_another_here_is_refused_in_one_line(installed: Installed, mark: dict[str, str]) -> None:
     document = {"controller": {"kind": "lead"}, "packages": {"combbench-lead": mark}}
     assert carried(installed, {}, document)[0] == {"combbench-lead": mark}
     file = installed.source / "lead.py"
@@ -120,7 +113,7 @@ def test_one_that_is_another_here_is_refused_in_one_line(installed: Installed, m
     assert carried(installed, {}, document) == line
 
 
-def test_the_source_is_that_of_the_whole_package_whatever_its_line_ends(installed: Installed) -> None:
+def test_the_source_is_the_whole_package_whatever_its_line_ends(installed: Installed) -> None:
     package = installed.source / "made"
     (package / "deep").mkdir(parents=True)
     shutil.move(installed.source / "lead.py", package / "lead.py")
@@ -138,23 +131,23 @@ def test_the_source_is_that_of_the_whole_package_whatever_its_line_ends(installe
     assert source() != first
 
 
-@pytest.mark.parametrize(
-    ("packages", "line"),
-    [
-        ({"lead": {"version": "0.1.0", "source": HASH}}, "packages.lead: is not installed here"),
-        ({"lead": "0.1.0"}, "packages.lead: "),
-        ({"lead": {"version": "0.1.0"}}, "packages.lead.source: "),
-        (
-            {"lead": {"version": "1", "source": HASH, "url": "x"}},
-            "packages.lead.url: unknown field; allowed: version, source",
-        ),
-        ({"Lead_": {"version": "1", "source": HASH}}, "packages.'Lead_': must be the name of a package, of small"),
-        (["lead"], "packages: must be a table, got ['lead']"),
-    ],
-)
-def test_a_package_that_is_missing_or_malformed_is_refused_before_anything_else(packages: Any, line: str) -> None:
-    document = {**get("first-look").document, "controller": {"kind": "lead"}, "packages": packages}
-    with pytest.raises(InputError) as raised:
-        Scenario.load(document)
-    assert str(raised.value).startswith(line)
-    assert "\n" not in str(raised.value)
+REFUSED: list[tuple[Any, str]] = [
+    ({"lead": {"version": "0.1.0", "source": HASH}}, "packages.lead: is not installed here"),
+    ({"lead": "0.1.0"}, "packages.lead: "),
+    ({"lead": {"version": "0.1.0"}}, "packages.lead.source: "),
+    (
+        {"lead": {"version": "1", "source": HASH, "url": "x"}},
+        "packages.lead.url: unknown field; allowed: version, source",
+    ),
+    ({"Lead_": {"version": "1", "source": HASH}}, "packages.'Lead_': must be the name of a package, of small"),
+    (["lead"], "packages: must be a table, got ['lead']"),
+]
+
+
+def test_a_package_that_is_missing_or_malformed_is_refused_before_anything_else() -> None:
+    for packages, line in REFUSED:
+        document = {**get("first-look").document, "controller": {"kind": "lead"}, "packages": packages}
+        with pytest.raises(InputError) as raised:
+            Scenario.load(document)
+        assert str(raised.value).startswith(line)
+        assert "\n" not in str(raised.value)

@@ -114,13 +114,7 @@ def told(seed: int, seconds: int, **values: float) -> RateNoise:
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("n", "b", "k", "known"),
-    [
-        (N, 0.0, K, (0, 2)),
-        (N, B, 0.0, (0, 1)),
-        (N, 0.0, 0.0, (0,)),
-        (0.0, B, 0.0, (1,)),
-        (0.0, 0.0, K, (2,)),
-    ],
+    [(N, 0.0, K, (0, 2)), (N, B, 0.0, (0, 1)), (N, 0.0, 0.0, (0,)), (0.0, B, 0.0, (1,)), (0.0, 0.0, K, (2,))],
 )
 def test_records_give_the_noise_that_went_in(n, b, k, known):
     """Over 16 seeds: each within its own errors, the mean within its own, and nothing that is not there."""
