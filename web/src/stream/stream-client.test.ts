@@ -1,5 +1,5 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { encodeFrame } from "./encode-frame.fixture";
+import { encodeFrame } from "../testing/encode-frame";
 import { reconnectDelay, StreamClient, type StreamHandlers } from "./stream-client";
 import type { Channel, ChannelEvents } from "./transport";
 

@@ -1,0 +1,35 @@
+import { MantineProvider } from "@mantine/core";
+import { Notifications } from "@mantine/notifications";
+import { QueryClientProvider } from "@tanstack/react-query";
+import { render } from "@testing-library/react";
+import userEvent from "@testing-library/user-event";
+import type { ReactNode } from "react";
+import { vi } from "vitest";
+import { useMe } from "../api/me";
+import { PanelVisible } from "../api/panel-visible";
+import { queryClient } from "../api/queries";
+import type { Me } from "../api/types";
+import { cssVariables, theme } from "../app/theme";
+
+/** Say who is at the page; without a word it is a teacher. */
+export const be = (role: Me["role"], rest: Partial<Me> = {}): void =>
+  useMe.setState({ me: { id: role, role, name: role, bench: null, class_id: null, hand: false, ...rest } });
+
+/**
+ * Mount a view as the page does, in a panel that is in sight unless told otherwise. Returns the queries of testing-library, a `user` who clicks and
+ * types, and `show`, which hides the panel or shows it again.
+ */
+export function mount(view: ReactNode, { visible = true } = {}) {
+  if (!useMe.getState().me) be("teacher");
+  const page = (isVisible: boolean) => (
+    <QueryClientProvider client={queryClient}>
+      <MantineProvider env="test" theme={theme} cssVariablesResolver={cssVariables} forceColorScheme="dark">
+        <PanelVisible value={isVisible}>{view}</PanelVisible>
+        <Notifications />
+      </MantineProvider>
+    </QueryClientProvider>
+  );
+  const user = userEvent.setup(vi.isFakeTimers() ? { advanceTimers: (ms) => vi.advanceTimersByTime(ms) } : {});
+  const shown = render(page(visible));
+  return { user, ...shown, show: (isVisible: boolean) => shown.rerender(page(isVisible)) };
+}
