@@ -1,4 +1,4 @@
-/** What a browser has and jsdom has not, as far as the page uses it. The set-up file fills the gaps in. */
+/** What a browser has and jsdom has not, as far as the page uses it: the set-up file loads this before all else. */
 import { act } from "@testing-library/react";
 import { penOf } from "./recording-pen";
 
@@ -125,8 +125,9 @@ const noMedia = (media: string) =>
     removeListener() {},
   }) as never;
 
-/** Fill the gaps; once for a file of tests. */
-export function fillGaps(): void {
+fillGaps();
+
+function fillGaps(): void {
   Object.assign(globalThis, {
     ResizeObserver: FakeResizeObserver,
     IntersectionObserver: FakeIntersectionObserver,

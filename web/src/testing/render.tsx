@@ -33,3 +33,7 @@ export function mount(view: ReactNode, { visible = true } = {}) {
   const shown = render(page(visible));
   return { user, ...shown, show: (isVisible: boolean) => shown.rerender(page(isVisible)) };
 }
+
+/** A text by its words, for queries: a space stands for any white space, as the one between a number and its unit. */
+export const words = (text: string): RegExp =>
+  new RegExp(`^${text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&").replace(/ /g, "\\s")}$`);

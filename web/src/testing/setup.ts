@@ -1,3 +1,4 @@
+import "./jsdom-gaps"; // before a module of the page keeps what jsdom has
 import "@testing-library/jest-dom/vitest";
 import { cleanNotifications, cleanNotificationsQueue } from "@mantine/notifications";
 import { notifyManager } from "@tanstack/react-query";
@@ -6,7 +7,7 @@ import { afterEach, beforeEach, expect, vi } from "vitest";
 import { queryClient } from "../api/queries";
 import { stream } from "../stream/stream";
 import { server } from "./fake-server";
-import { fillGaps, resetScreen } from "./jsdom-gaps";
+import { resetScreen } from "./jsdom-gaps";
 import { resetStores } from "./stores";
 
 vi.mock("zustand", async (real) => {
@@ -14,7 +15,6 @@ vi.mock("zustand", async (real) => {
   return { ...zustand, create: (await import("./stores")).remembering(zustand.create) };
 });
 
-fillGaps();
 // an answer that comes between two lines of a test changes the view all the same
 notifyManager.setNotifyFunction((notify) => act(notify));
 // testing-library moves the clock of a test only where it finds one of jest's
