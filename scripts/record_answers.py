@@ -1,4 +1,4 @@
-"""Record what the service answers and streams, for the tests of the page: the same bytes each time."""
+"""Record answers and streams of the service for the tests of the page: the same bytes each time."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import Any
 
 import httpx
-from websockets.sync.client import ClientConnection, connect
+from websockets.sync.client import connect
+from websockets.sync.connection import Connection
 
 from server.app import create_app
 from server.serve import bind, make_server
@@ -89,7 +90,7 @@ class Recorder:
         self.until(f"/benches/{bench}", lambda found: found["tick"] == head and found["state"] == "paused")
 
     @contextmanager
-    def stream(self, bench: str) -> Iterator[ClientConnection]:
+    def stream(self, bench: str) -> Iterator[Connection]:
         """Watch a bench."""
         url = f"{self.address.replace('http', 'ws')}/api/v1/benches/{bench}/stream"
         headers = {"Authorization": f"Bearer {TOKEN}"}
@@ -97,11 +98,11 @@ class Recorder:
             yield line
 
     def write(self, folder: Path, name: str, content: Any) -> None:
-        """Write a recording, without what differs between two of them, or after any change of the sources."""
+        """Write a recording without times, ids and digests: two recordings have the same bytes."""
         text = json.dumps(_settled(content), ensure_ascii=False, separators=(",", ":"))
         for found in sorted(self._names, key=len, reverse=True):
             text = re.sub(rf"(?<!\w){re.escape(found)}(?!\w)", self._names[found], text)
-        lines = re.sub(r'(?<=[\]}]),(?=[\[{])', ",\n", MOMENT.sub(NOW, DIGEST.sub('"digest"', text)))
+        lines = re.sub(r"(?<=[\]}]),(?=[\[{])", ",\n", MOMENT.sub(NOW, DIGEST.sub('"digest"', text)))
         (folder / f"{name}.json").write_text(lines + "\n", encoding="utf-8")
 
 
@@ -113,7 +114,7 @@ def _settled(content: Any) -> Any:
 
 
 def record_bench(recorder: Recorder, folder: Path, name: str, scenario: str, fault: dict[str, Any]) -> str:
-    """Record a bench with one fault that acts: what its stream says, and pictures of a scope and of each bank.
+    """Record a bench with an active fault: messages of its stream, and pictures of a scope and of each bank.
 
     Returns
     -------
@@ -149,7 +150,9 @@ def record_bench(recorder: Recorder, folder: Path, name: str, scenario: str, fau
     recorder.name(heard["hello"]["server"], "server")
     events = {"type": "events", "events": recorder.get(f"/benches/{bench}/events")["events"]}
     frames = {plot: frames[plot] for plot in plots}
-    recorder.write(folder, name, {"hello": heard["hello"], "status": heard["status"], "events": events, "frames": frames})
+    recorder.write(
+        folder, name, {"hello": heard["hello"], "status": heard["status"], "events": events, "frames": frames}
+    )
     return bench
 
 
@@ -165,7 +168,7 @@ def _plots(bench: dict[str, Any]) -> dict[str, list[str]]:
 
 
 def record_library(recorder: Recorder, folder: Path) -> None:
-    """Record what is the same for every bench: the blocks, the scenarios, the devices, entries of the gallery."""
+    """Record the library: its blocks, its scenarios, its devices, entries of its gallery."""
     blocks = recorder.get("/catalog")["blocks"]
     recorder.write(folder, "catalog", {"blocks": [block for block in blocks if block["family"] in FAMILIES]})
     recorder.write(folder, "scenarios", recorder.get("/scenarios"))
@@ -205,7 +208,7 @@ def record_class(recorder: Recorder, folder: Path) -> None:
 def serving() -> Iterator[Recorder]:
     """Serve with an empty folder of data, until all is recorded."""
     with tempfile.TemporaryDirectory() as data:
-        settings = Settings(port=0, data=Path(data), token=TOKEN, figures=False)  # type: ignore[arg-type]
+        settings = Settings(port=0, data=Path(data), token=TOKEN, figures=False)
         listener = bind(settings)
         server = make_server(settings, create_app(settings))
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})

@@ -17,7 +17,7 @@ const patch = (connection: Partial<Connection>) =>
 
 export type Stream = ReturnType<typeof createStream>;
 
-/** A stream over channels of a transport, with its animation loop; what it hears of the bench goes into `useBench`. */
+/** A stream over channels of a transport, with its animation loop; it writes the state of the bench into `useBench`. */
 export function createStream(transport: Transport) {
   let benchId = "";
   let serverId = "";
@@ -110,7 +110,7 @@ export function createStream(transport: Transport) {
         return;
       case "error":
         client.feeds.refused();
-        // back on a bench where a fault is hidden, a panel asks for what is hidden before it says so itself
+        // back on a bench where a fault is hidden, a panel asks for hidden signals before the page knows of it
         if (known.bench?.blind && message.error.field === "signals") return;
         if (message.error.field?.startsWith("behind.")) {
           useBench.setState((s) => ({ behindRefused: s.behindRefused + 1 }));
@@ -139,7 +139,7 @@ export function createStream(transport: Transport) {
     useBench.setState({ events });
   }
 
-  /** Put what is known into the store. */
+  /** Write the known state into the store. */
   function tell(): void {
     useBench.setState({ ...known, blind: Boolean(known.bench?.blind) });
   }

@@ -1,4 +1,4 @@
-/** What a channel tells its owner, never before the channel has been handed over. */
+/** Events of a channel. The first one comes after the transport has returned the channel. */
 export interface ChannelEvents {
   onOpen(): void;
   onMessage(data: ArrayBuffer | string): void;

@@ -6,7 +6,7 @@ export interface Asked {
   path: string;
   query: Record<string, string>;
   body: unknown;
-  /** What stands in the path at the place of each `:name`. */
+  /** Parts of the path by the `:name` of the route. */
   params: Record<string, string>;
 }
 

@@ -14,7 +14,7 @@ const LOST = 1006;
 
 type Sent<T extends ClientMessage["type"]> = Extract<ClientMessage, { type: T }>;
 
-/** What a panel subscribes to now. */
+/** The present subscription of a panel. */
 interface Subscribed {
   panel: number;
   /** How often the panel has subscribed on this channel. */
@@ -22,11 +22,11 @@ interface Subscribed {
   subscription: Subscription;
 }
 
-/** The board at the other end of the page's stream: the test says what it sends, and reads what it was sent. */
+/** The board at the other end of the page's stream: a test sends its messages and reads the messages of the page. */
 export class FakeTransport {
   /** Every message of the page, the oldest first. */
   sent: ClientMessage[] = [];
-  /** What is subscribed to on this channel, by panel. */
+  /** Subscriptions on this channel, by panel. */
   private readonly panels = new Map<number, Subscribed>();
   private channel: (Channel & { events: ChannelEvents; isOpen: boolean }) | undefined;
   private answered = 0;
@@ -43,7 +43,7 @@ export class FakeTransport {
     return this.of("command").map(({ command }) => command);
   }
 
-  /** What the panels in sight subscribe to. */
+  /** Subscriptions of the visible panels. */
   get subscriptions(): Subscription[] {
     return [...this.panels.values()].map(({ subscription }) => subscription);
   }
@@ -72,7 +72,7 @@ export class FakeTransport {
     this.say({ type: "hello", wire: 2, server: "server", last_event: 0, bench, ...rest } as ServerMessage);
   }
 
-  /** Say what has changed of the bench. */
+  /** Send changes of the bench. */
   status(changes: Partial<Status>): void {
     this.say({ type: "status", ...changes } as Status);
   }
@@ -173,7 +173,7 @@ export function connect(bench: Bench): FakeTransport {
   return board;
 }
 
-/** A stream looks every so often whether the server is silent: only in a test whose clock stands and goes as the test says. */
+/** A stream checks on a timer whether the server is silent. Only a test with a clock of its own lets this timer run. */
 function withoutWatch<T>(make: () => T): T {
   const timer = vi.spyOn(globalThis, "setInterval").mockReturnValue(0 as never);
   try {

@@ -1,4 +1,4 @@
-/** What a browser has and jsdom has not, as far as the page uses it: the set-up file loads this before all else. */
+/** Parts of a browser that the page uses and jsdom lacks. The set-up file loads this module before any other. */
 import { act } from "@testing-library/react";
 import { penOf } from "./recording-pen";
 
@@ -9,7 +9,7 @@ const observers = new Set<FakeResizeObserver>();
 const frames = new Map<number, FrameRequestCallback>();
 let lastFrame = 0;
 
-/** Draw one picture of the screen: all that waits for an animation frame runs once, and what follows from it. */
+/** Draw one picture of the screen: every callback that waits for an animation frame runs once. */
 export const drawOnce = (): Promise<void> =>
   act(async () => {
     const due = [...frames.values()];
@@ -17,7 +17,7 @@ export const drawOnce = (): Promise<void> =>
     for (const draw of due) draw(performance.now());
   });
 
-/** Give every element another size, px, and tell those that watch theirs. An element styled with a width keeps that. */
+/** Give every element another size, px, and tell the observers. An element with a width in its style keeps this width. */
 export function resize(width: number, height: number): void {
   size = { width, height };
   act(() => {

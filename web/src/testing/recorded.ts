@@ -11,7 +11,7 @@ export interface RecordedFrame {
   bytes: string;
 }
 
-/** A bench that has paused with a fault that acts: what its stream says, and what its scope and its banks show. */
+/** A paused bench with an active fault: messages of its stream, and pictures of its scope and of its banks. */
 interface RecordedBench {
   hello: { bench: Bench };
   status: Status;
@@ -20,7 +20,7 @@ interface RecordedBench {
   frames: Record<string, RecordedFrame>;
 }
 
-/** Answers of a service, by what was asked. */
+/** Answers of a service, by name. */
 interface RecordedAnswers {
   catalog: { blocks: BlockCard[] };
   scenarios: Schemas["ScenarioList"];

@@ -2,7 +2,7 @@ import type { Pen } from "../picture/pen";
 
 export type Point = readonly [x: number, y: number];
 
-/** One thing that was painted, where it lies on the canvas, px, and in the style that was in force. */
+/** A painted mark: its place on the canvas, px, and its style. */
 export interface Mark {
   kind: "line" | "area" | "rect" | "text" | "image";
   colour: string;
@@ -23,7 +23,7 @@ type Matrix = [number, number, number, number, number, number];
 const LETTER = 0.55;
 const CORNERS = 24;
 
-/** A pen that paints nothing and keeps a list of what it was asked to paint: of the picture since it was cleared last. */
+/** A pen that paints nothing and lists the marks of the present picture, since the canvas was cleared. */
 export class RecordingPen implements Pen {
   readonly canvas: HTMLCanvasElement;
   /** All of the picture, in the order it was painted. */
@@ -46,23 +46,23 @@ export class RecordingPen implements Pen {
     this.canvas = canvas;
   }
 
-  /** The texts, with where they are and in which colour. */
+  /** The texts with their places and colours. */
   get texts(): Mark[] {
     return this.marks.filter(({ kind }) => kind === "text");
   }
 
-  /** What the texts say. */
+  /** The words of the texts. */
   get words(): string[] {
     return this.texts.map(({ text }) => text);
   }
 
-  /** Lines that were stroked, or those of a colour. */
+  /** Stroked lines, of one colour if it is given. */
   lines = (colour?: string): Mark[] => this.of("line", colour);
 
-  /** Areas that were filled, or those of a colour; rectangles are apart. */
+  /** Filled areas other than rectangles, of one colour if it is given. */
   areas = (colour?: string): Mark[] => this.of("area", colour);
 
-  /** Rectangles that were filled, or those of a colour. */
+  /** Filled rectangles, of one colour if it is given. */
   rects = (colour?: string) => this.of("rect", colour).map((mark) => ({ ...mark, ...extentOf([mark]) }));
 
   /** Pixels that were put there. */
@@ -70,7 +70,7 @@ export class RecordingPen implements Pen {
     return this.marks.flatMap(({ image }) => image ?? []);
   }
 
-  /** How far the picture reaches, px; nothing was painted beyond. */
+  /** The box around all marks, px. */
   get extent() {
     return extentOf(this.marks);
   }
@@ -177,7 +177,7 @@ export class RecordingPen implements Pen {
     this.mark("image", [[x, y]], "", { image: copied(image) });
   }
 
-  /** What the other canvas shows lies here too. */
+  /** Put the pixels of another canvas here. */
   drawImage(canvas: CanvasImageSource, x: number, y: number): void {
     const image = canvas instanceof HTMLCanvasElement ? penOf(canvas).images.at(-1) : undefined;
     this.mark("image", [this.at(x, y)], "", { image });
@@ -207,7 +207,7 @@ export class RecordingPen implements Pen {
 
 const pens = new WeakMap<HTMLCanvasElement, RecordingPen>();
 
-/** The pen of a canvas, or of the first canvas in an element: what does the view show there? */
+/** The pen of a canvas, or of the first canvas in an element. */
 export function penOf(element: Element): RecordingPen {
   const canvas = element instanceof HTMLCanvasElement ? element : element.querySelector("canvas");
   if (!canvas) throw new Error("there is no canvas in this element");

@@ -11,12 +11,12 @@ import { queryClient } from "../api/queries";
 import type { Me } from "../api/types";
 import { cssVariables, theme } from "../app/theme";
 
-/** Say who is at the page; without a word it is a teacher. */
+/** Set the person at the page; the default is a teacher. */
 export const be = (role: Me["role"], rest: Partial<Me> = {}): void =>
   useMe.setState({ me: { id: role, role, name: role, bench: null, class_id: null, hand: false, ...rest } });
 
 /**
- * Mount a view as the page does, in a panel that is in sight unless told otherwise. Returns the queries of testing-library, a `user` who clicks and
+ * Mount a view as the page does, in a panel that is visible by default. Returns the queries of testing-library, a `user` who clicks and
  * types, and `show`, which hides the panel or shows it again.
  */
 export function mount(view: ReactNode, { visible = true } = {}) {
@@ -34,6 +34,6 @@ export function mount(view: ReactNode, { visible = true } = {}) {
   return { user, ...shown, show: (isVisible: boolean) => shown.rerender(page(isVisible)) };
 }
 
-/** A text by its words, for queries: a space stands for any white space, as the one between a number and its unit. */
+/** A text by its words, for queries: a space matches any white space, such as the no-break space before a unit. */
 export const words = (text: string): RegExp =>
   new RegExp(`^${text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&").replace(/ /g, "\\s")}$`);
