@@ -13,7 +13,7 @@ NODE_STAMP    := web/node_modules/.package-lock.json
 PAGE          := web/dist/index.html
 # Folders are listed with their files, so that a deleted file makes its target stale too.
 KERNEL_SOURCE := $(shell find core scenarios -name __pycache__ -prune -o -print)
-PAGE_SOURCE   := $(shell find web -name node_modules -prune -o -name dist -prune -o -name e2e -prune -o \
+PAGE_SOURCE   := $(shell find web -name node_modules -prune -o -name dist -prune -o -name e2e -prune -o -name testing -prune -o \
                    -mindepth 1 -not -name '*.test.ts*' -not -name '*.tsbuildinfo' -print)
 
 .PHONY: run classroom setup first-kernels test test-all flakes mutations check fix dev bench load class-load soak page-speed image audit codegen digests lock clean help
@@ -72,9 +72,10 @@ audit: $(PYTHON_STAMP) $(NODE_STAMP) ## List all packages into sbom/, and ask th
 	@.venv/bin/python scripts/audit.py python sbom
 	@.venv/bin/python scripts/audit.py page sbom
 
-codegen: $(PYTHON_STAMP) $(NODE_STAMP)  ## Regenerate the page's types from the service's OpenAPI document
+codegen: $(PYTHON_STAMP) $(NODE_STAMP)  ## Regenerate the page's types from the service's OpenAPI document, and the answers its tests use
 	@.venv/bin/python -m server.openapi > web/openapi.json
 	@scripts/npm --prefix web run codegen
+	@.venv/bin/python scripts/record_answers.py
 
 digests: $(KERNEL_STAMP)  ## Renew the digests tests hold runs to (ARGS=--draw: with other benches)
 	@.venv/bin/python -m tests.scenarios.digests --renew $(ARGS)

@@ -11,6 +11,9 @@ import { type ReactNode, StrictMode } from "react";
 import { createRoot } from "react-dom/client";
 import { launch } from "../api/launch";
 import { queryClient } from "../api/queries";
+import { createStream } from "../stream/create-stream";
+import { openSocket } from "../stream/socket";
+import { setStream } from "../stream/stream";
 import { App } from "./app";
 import { NotLaunched } from "./ended";
 import { isPresenter, Presenter } from "./lecture/presenter";
@@ -22,6 +25,8 @@ Object.assign(window, { __webpack_nonce__: nonce });
 
 const root = document.getElementById("root");
 if (!root) throw new Error("the page has no #root");
+
+setStream(createStream(openSocket));
 
 const page = createRoot(root);
 launch().then(

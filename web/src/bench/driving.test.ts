@@ -1,8 +1,6 @@
-import { expect, test, vi } from "vitest";
+import { expect, test } from "vitest";
 import type { Company } from "../api/types";
 import { drivingWords } from "./driving";
-
-vi.mock("../stream/stream", () => ({ stream: {} }));
 
 const ADA = { id: "a", name: "Ada" };
 const TEACHER = { id: "teacher", name: "teacher" };

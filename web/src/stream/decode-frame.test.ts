@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
+import { encodeFrame } from "../testing/encode-frame";
 import { decodeFrame } from "./decode-frame";
-import { encodeFrame } from "./encode-frame.fixture";
 
 describe("decodeFrame", () => {
   it("reads headers, columns and newest values of every panel", () => {

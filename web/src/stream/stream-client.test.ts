@@ -1,23 +1,18 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { encodeFrame } from "./encode-frame.fixture";
+import { encodeFrame } from "../testing/encode-frame";
 import { reconnectDelay, StreamClient, type StreamHandlers } from "./stream-client";
+import type { Channel, ChannelEvents } from "./transport";
 
-/** A WebSocket that only remembers; the test plays the server. */
-class FakeSocket {
-  static readonly OPEN = 1;
-  static made: FakeSocket[] = [];
-  readyState = 0;
+/** A channel that only remembers; the test plays the server. */
+class FakeChannel implements Channel {
+  static made: FakeChannel[] = [];
+  isOpen = false;
   sent: string[] = [];
-  onopen: (() => void) | undefined;
-  onmessage: ((event: { data: unknown }) => void) | undefined;
-  onclose: ((event: { code: number }) => void) | undefined;
-  readonly url: string;
-  readonly protocol: string;
+  private readonly events: ChannelEvents;
 
-  constructor(url: string, protocol: string) {
-    this.url = url;
-    this.protocol = protocol;
-    FakeSocket.made.push(this);
+  constructor(_bench: string, events: ChannelEvents) {
+    this.events = events;
+    FakeChannel.made.push(this);
   }
 
   send(text: string) {
@@ -25,21 +20,21 @@ class FakeSocket {
   }
 
   close() {
-    this.readyState = 3;
+    this.isOpen = false;
   }
 
   accept() {
-    this.readyState = 1;
-    this.onopen?.();
+    this.isOpen = true;
+    this.events.onOpen();
   }
 
   say(message: object | ArrayBuffer) {
-    this.onmessage?.({ data: message instanceof ArrayBuffer ? message : JSON.stringify(message) });
+    this.events.onMessage(message instanceof ArrayBuffer ? message : JSON.stringify(message));
   }
 
   async drop(code: number) {
-    this.readyState = 3;
-    this.onclose?.({ code });
+    this.isOpen = false;
+    this.events.onClose(code);
     await vi.advanceTimersByTimeAsync(0);
   }
 }
@@ -47,14 +42,13 @@ class FakeSocket {
 describe("StreamClient", () => {
   let handlers: { [K in keyof StreamHandlers]: ReturnType<typeof vi.fn> };
   let client: StreamClient;
-  const last = () => FakeSocket.made[FakeSocket.made.length - 1];
-  const types = (socket: FakeSocket) => socket.sent.map((text) => (JSON.parse(text) as { type: string }).type);
+  const last = () => FakeChannel.made[FakeChannel.made.length - 1];
+  const types = (channel: FakeChannel) => channel.sent.map((text) => (JSON.parse(text) as { type: string }).type);
 
   beforeEach(() => {
     vi.useFakeTimers();
-    vi.stubGlobal("WebSocket", FakeSocket);
     vi.spyOn(Math, "random").mockReturnValue(0.5);
-    FakeSocket.made = [];
+    FakeChannel.made = [];
     handlers = {
       onMessage: vi.fn(),
       onOpen: vi.fn(),
@@ -62,19 +56,17 @@ describe("StreamClient", () => {
       onClose: vi.fn(),
       explain: vi.fn(async () => undefined),
     };
-    client = new StreamClient(handlers as unknown as StreamHandlers);
-    client.connect("ws://bench/stream");
+    client = new StreamClient(handlers as unknown as StreamHandlers, (bench, events) => new FakeChannel(bench, events));
+    client.connect("b1");
   });
 
   afterEach(() => {
     vi.useRealTimers();
-    vi.unstubAllGlobals();
     vi.restoreAllMocks();
   });
 
-  it("offers the wire version as its subprotocol and subscribes when it is open", () => {
+  it("subscribes when it is open", () => {
     client.feeds.open({ mode: "roll", signals: ["a"], window_ms: 1, width: 10 }, vi.fn());
-    expect(last().protocol).toEqual(["combbench.v2"]);
     expect(last().sent).toEqual([]);
     last().accept();
     expect(types(last())).toEqual(["subscribe"]);
@@ -92,9 +84,9 @@ describe("StreamClient", () => {
     const waits: number[] = [];
     for (let i = 0; i < 4; i += 1) {
       await last().drop(1006);
-      const before = FakeSocket.made.length;
+      const before = FakeChannel.made.length;
       let waited = 0;
-      while (FakeSocket.made.length === before) {
+      while (FakeChannel.made.length === before) {
         await vi.advanceTimersByTimeAsync(100);
         waited += 100;
       }
@@ -105,14 +97,14 @@ describe("StreamClient", () => {
     last().say({ type: "hello" });
     await last().drop(1001);
     await vi.advanceTimersByTimeAsync(500);
-    expect(FakeSocket.made).toHaveLength(6);
+    expect(FakeChannel.made).toHaveLength(6);
   });
 
   it("does not try again when that cannot help", async () => {
     last().accept();
     await last().drop(4404);
     await vi.advanceTimersByTimeAsync(60_000);
-    expect(FakeSocket.made).toHaveLength(1);
+    expect(FakeChannel.made).toHaveLength(1);
     expect(handlers.onClose).toHaveBeenCalledWith(
       expect.objectContaining({ title: "This bench is gone" }),
       4404,

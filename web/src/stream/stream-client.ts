@@ -1,11 +1,11 @@
 import { ApiError } from "../api/client";
 import type { components } from "../api/schema";
-import { sessionProtocols } from "../api/session";
 import type { Command } from "../api/types";
 import { type CloseReason, closeReason } from "./close-reason";
 import { decodeFrame, type Frame } from "./decode-frame";
 import { Feeds } from "./feeds";
-import { type ClientMessage, type ServerMessage, SUBPROTOCOL } from "./wire";
+import type { Channel, Transport } from "./transport";
+import type { ClientMessage, ServerMessage } from "./wire";
 
 const REPLY_TIMEOUT_MS = 5000;
 
@@ -40,42 +40,44 @@ export class StreamClient {
   lastHeard = performance.now();
   private readonly handlers: StreamHandlers;
   private readonly replies = new Map<string, Pending>();
-  private socket: WebSocket | undefined;
-  private url = "";
+  private readonly transport: Transport;
+  private channel: Channel | undefined;
+  private bench = "";
   private attempt = 0;
   private nextId = 1;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(handlers: StreamHandlers) {
+  constructor(handlers: StreamHandlers, transport: Transport) {
     this.handlers = handlers;
+    this.transport = transport;
   }
 
   get isOpen(): boolean {
-    return this.socket?.readyState === WebSocket.OPEN;
+    return this.channel?.isOpen ?? false;
   }
 
-  connect(url: string): void {
+  connect(bench: string): void {
     this.disconnect();
-    this.url = url;
+    this.bench = bench;
     this.attempt = 0;
     this.open();
   }
 
   disconnect(): void {
     clearTimeout(this.timer);
-    const old = this.socket;
-    this.socket = undefined;
-    old?.close(1000);
+    const old = this.channel;
+    this.channel = undefined;
+    old?.close();
     this.failReplies("The page left this bench.");
   }
 
   retryNow(): void {
     clearTimeout(this.timer);
-    if (!this.socket && this.url) this.open();
+    if (!this.channel && this.bench) this.open();
   }
 
   send(message: ClientMessage): void {
-    if (this.isOpen) this.socket?.send(JSON.stringify(message));
+    if (this.isOpen) this.channel?.send(JSON.stringify(message));
   }
 
   /** Send a command; resolves with the tick at which it took effect. */
@@ -93,25 +95,25 @@ export class StreamClient {
   }
 
   private open(): void {
-    const socket = new WebSocket(this.url, [SUBPROTOCOL, ...sessionProtocols()]);
-    socket.binaryType = "arraybuffer";
-    this.socket = socket;
     let opened = false;
-    socket.onopen = () => {
-      opened = true;
-      this.lastHeard = performance.now();
-      this.handlers.onOpen();
-      this.feeds.reconnected();
-    };
-    socket.onmessage = (event) => this.receive(event.data as ArrayBuffer | string);
-    socket.onclose = async (event) => {
-      if (this.socket !== socket) return;
-      this.failReplies("The connection was lost before the answer came.");
-      const code = opened ? event.code : ((await this.handlers.explain()) ?? event.code);
-      if (this.socket !== socket) return;
-      this.socket = undefined;
-      this.closed(code);
-    };
+    const channel = this.transport(this.bench, {
+      onOpen: () => {
+        opened = true;
+        this.lastHeard = performance.now();
+        this.handlers.onOpen();
+        this.feeds.reconnected();
+      },
+      onMessage: (data) => this.receive(data),
+      onClose: async (code) => {
+        if (this.channel !== channel) return;
+        this.failReplies("The connection was lost before the answer came.");
+        const known = opened ? code : ((await this.handlers.explain()) ?? code);
+        if (this.channel !== channel) return;
+        this.channel = undefined;
+        this.closed(known);
+      },
+    });
+    this.channel = channel;
   }
 
   private closed(code: number): void {

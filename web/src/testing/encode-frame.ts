@@ -1,10 +1,12 @@
-import { WIRE_VERSION } from "./wire";
+import { WIRE_VERSION } from "../stream/wire";
 
 interface PanelFixture {
   panel: number;
   revision: number;
   startTick: number;
   endTick: number;
+  /** Tick of the trigger, if there was one. */
+  triggerTick?: number;
   flags: number;
   min: number[][];
   max: number[][];
@@ -40,7 +42,7 @@ export function encodeFrame(input: {
     view.setUint32(at + 4, p.min[0].length, true);
     view.setFloat64(at + 8, p.startTick, true);
     view.setFloat64(at + 16, p.endTick, true);
-    view.setFloat64(at + 24, Number.NaN, true);
+    view.setFloat64(at + 24, p.triggerTick ?? Number.NaN, true);
     view.setFloat64(at + 32, p.revision, true);
     view.setUint32(at + 40, p.flags, true);
     at += 48;

@@ -1,0 +1,48 @@
+import type { components } from "../api/schema";
+import type { Bench, BlockCard, LogEntry } from "../api/types";
+import type { Status } from "../stream/wire";
+
+type Schemas = components["schemas"];
+
+/** A frame of one panel. */
+export interface RecordedFrame {
+  signals: string[];
+  /** In base64. */
+  bytes: string;
+}
+
+/** A paused bench with an active fault: messages of its stream, and pictures of its scope and of its banks. */
+interface RecordedBench {
+  hello: { bench: Bench };
+  status: Status;
+  events: { events: LogEntry[] };
+  /** By plot: `scope`, or the name of a diagnoser. */
+  frames: Record<string, RecordedFrame>;
+}
+
+/** Answers of a service, by name. */
+interface RecordedAnswers {
+  catalog: { blocks: BlockCard[] };
+  scenarios: Schemas["ScenarioList"];
+  devices: Schemas["Devices"];
+  gallery: Schemas["Gallery"];
+  run: Schemas["Run"];
+  sweep: Schemas["SweepRun"];
+  class: Schemas["Members"] & { class: Schemas["Class"] };
+  sheet: Schemas["SheetView"];
+  explanation: Schemas["Account"];
+}
+
+const files = import.meta.glob<string>("./recorded/*.json", { query: "?raw", import: "default" });
+
+const read = async (name: string) => JSON.parse(await files[`./recorded/${name}.json`]());
+
+/** A bench of `scripts/record_answers.py`; each call gives a copy of its own. */
+export async function recordedBench(name: "first-look" | "seven-steps" | "gyroscope") {
+  const { hello, status, events, frames } = (await read(name)) as RecordedBench;
+  return { bench: hello.bench, status, events: events.events, frames };
+}
+
+/** An answer of `scripts/record_answers.py`; each call gives a copy of its own. */
+export const recordedAnswer = <Name extends keyof RecordedAnswers>(name: Name): Promise<RecordedAnswers[Name]> =>
+  read(name);
