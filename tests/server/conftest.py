@@ -94,6 +94,17 @@ class Stream:
             self.until(lambda _: False)
         return caught.value.rcvd
 
+    def advance_until(self, what: Callable[[Any], bool]) -> Any:
+        """Let time pass until a message that comes is as asked."""
+        assert self._live is not None
+        frames, messages = len(self.frames), len(self.messages)
+        while True:
+            self.settle()
+            found = [one for one in (*self.frames[frames:], *self.messages[messages:]) if what(one)]
+            if found:
+                return found[0]
+            self._live.advance(seconds=LOOK_S)
+
     def settle(self) -> None:
         """Take all that the server has to show and say; after that nothing is on its way."""
         assert self._live is not None
@@ -161,6 +172,12 @@ class Live:
             self.service.hub._show()
 
         self.on_loop(shown())
+
+    def wait(self, what: Callable[[], Any]) -> Any:
+        """Ask the server for its health until something holds that no message tells; return it."""
+        while not (found := what()):
+            self.http.get("/health/live")
+        return found
 
     def on_loop(self, work: Coroutine[Any, Any, Any]) -> Any:
         """Do something on the event loop of the server."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import time
 from typing import Any
 
 import numpy as np
@@ -108,10 +107,7 @@ def test_captures_are_of_the_bench_and_stay_when_the_sweep_changes_or_pages_come
         stream.send(type="subscribe", panel=1, **ASK)
         marks = captured(stream, 3)
     (kept,) = small.service.benches.find(bench).captures.sets()
-    end = time.monotonic() + 20.0
-    while kept.views:  # nobody looks any more, so nothing is looked for
-        assert time.monotonic() < end
-        time.sleep(0.01)
+    small.wait(lambda: not kept.views)  # no page looks any more, so nothing is looked for
     step(small, bench, 9000)
     with small.stream(bench) as stream, small.stream(bench) as other:
         single = {**ASK, "trigger": {**TRIGGER, "sweep": "single"}}

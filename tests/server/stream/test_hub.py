@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import Callable
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -16,6 +17,7 @@ from server.bench.session import Session
 from server.metrics import Metrics
 from server.settings import Settings
 from server.stream import client as client_module
+from server.stream import hub as hub_module
 from server.stream.client import Client
 from server.stream.codec import Frame, decode
 from server.stream.hub import Hub
@@ -31,9 +33,11 @@ class Line:
         self.is_free = True
         self.written: list[bytes] = []
         self.waiting = self.passed_on = 0
+        self.came = asyncio.Event()
 
     def write(self, data: bytes) -> None:
         self.written.append(data)
+        self.came.set()
 
     def messages(self) -> list[Any]:
         """Read what was written, frame by frame of RFC 6455."""
@@ -79,9 +83,17 @@ def on_loop(test: Callable[[], Any]) -> None:
     asyncio.run(test())
 
 
-def test_a_frame_comes_at_the_pace_of_frames_and_the_end_all_the_same() -> None:
+async def turns(count: int = 5) -> None:
+    """Let the loop turn some times."""
+    for _ in range(count):
+        await asyncio.sleep(0)
+
+
+def test_a_frame_comes_at_the_pace_of_frames_and_the_end_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(hub_module, "time", SimpleNamespace(monotonic=lambda: 100.0))
+
     async def play() -> None:
-        bench = Bench(frame_rate_hz=1.0)
+        bench = Bench(frame_rate_hz=50.0)
         _, line = bench.page()
         bench.session.slice(100)
         bench.hub.publish()
@@ -92,17 +104,14 @@ def test_a_frame_comes_at_the_pace_of_frames_and_the_end_all_the_same() -> None:
         bench.session.execute(parse({"kind": "pause"}), "test")
         bench.hub.publish()
         assert not line.written  # its time has not come, and no later round of the engine will say so
-        for _ in range(1200):
-            if line.written:
-                break
-            await asyncio.sleep(0.05)
+        line.came.clear()
+        await line.came.wait()
         said = line.messages()
         assert [m.head for m in said if isinstance(m, Frame)] == [bench.session.board.tick] == [137]
         assert [e["kind"] for m in said if isinstance(m, dict) and m["type"] == "events" for e in m["events"]] == [
             "pause"
         ]
-        bench.hub.publish()
-        await asyncio.sleep(0.1)
+        bench.hub._show()
         assert not line.frames()  # once is enough
 
     on_loop(play)
@@ -212,6 +221,35 @@ def test_words_are_not_taken_for_deeds() -> None:
     on_loop(play)
 
 
+def test_a_loop_that_stood_still_does_not_blame_its_pages(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a page acknowledged meanwhile waits to be read: it is let go only if it is still silent then."""
+    now, stood = [100.0], []
+
+    async def stand_still(_seconds: float) -> None:
+        now[0] += 2 * client_module.STALL_S
+        stood.append(client.closing)
+        if len(stood) == 1:
+            return
+        if len(stood) == 2:
+            client.acknowledge(1)
+            client.line.passed_on += 1
+            return
+        await asyncio.Event().wait()
+
+    monkeypatch.setattr(hub_module, "asyncio", SimpleNamespace(sleep=stand_still))
+    bench = Bench()
+    bench.hub.clock = lambda: now[0]
+    client, _ = bench.page()
+
+    async def play() -> None:
+        client._clock, client._taken_at, client._moved_at = bench.hub.clock, now[0], now[0]
+        client.offer(frame=True)
+        await asyncio.wait([asyncio.ensure_future(bench.hub.run())], timeout=0)
+
+    on_loop(play)
+    assert stood == [None, None, None]
+
+
 @pytest.mark.parametrize("hurt", ["_events", "_status", "_picture"])
 def test_one_broken_stream_does_not_harm_the_others(hurt: str, monkeypatch: pytest.MonkeyPatch) -> None:
     async def play() -> None:
@@ -239,9 +277,11 @@ def test_many_pages_are_served_with_breaks_and_each_once() -> None:
         assert sum(bool(line.written) for _, line in pages) == PAGES_AT_ONCE
         bench.session.slice(200)
         bench.hub.publish()
-        await asyncio.sleep(0)
+        await turns(1)
         assert sum(bool(line.written) for _, line in pages) == 2 * PAGES_AT_ONCE
-        await asyncio.sleep(0.1)
+        await turns()
+        bench.hub._show()
+        await turns()
         heads = {tuple(frame.head for frame in line.frames()) for _, line in pages}
         assert heads == {(100, 200)}
 
@@ -258,8 +298,7 @@ def test_a_bench_that_cannot_be_shown_does_not_end_the_pictures(monkeypatch: pyt
             bench.session.slice(100)
             bench.hub.publish()
         assert not line.written
-        await asyncio.sleep(0.1)
-        bench.hub.publish()
+        bench.hub._show()
         assert [frame.head for frame in line.frames()] == [100]
 
     on_loop(play)
