@@ -183,7 +183,7 @@ class Live:
         """Do something on the event loop of the server."""
         return asyncio.run_coroutine_threadsafe(work, self.service._loop).result(HANGS_S)
 
-    def ended(self, row_id: str) -> None:
+    def ended(self, row_id: str, seconds: float = 240.0) -> None:
         """Wait until a run, a campaign or a search is no longer under way."""
         tasks = self.service.queue._tasks
 
@@ -191,7 +191,7 @@ class Live:
             if row_id in tasks:
                 await asyncio.wait([tasks[row_id]])
 
-        asyncio.run_coroutine_threadsafe(over(), self.service._loop).result(240)
+        asyncio.run_coroutine_threadsafe(over(), self.service._loop).result(seconds)
 
     def command(self, bench_id: str, kind: str = "", **fields: Any) -> httpx.Response:
         """Give a command that runs the bench, by its kind, or one to the board."""
