@@ -119,6 +119,7 @@ def rows(data: Path) -> dict[str, Any]:
 LONG = {"scenario": "ch5-seven-step", "set": {"samples": 120_000}, "seeds": "1:4"}
 
 
+@pytest.mark.long
 def test_a_server_that_is_killed_between_two_seeds_goes_on_with_the_next(tmp_path: Path) -> None:
     data = tmp_path / "data"
     with forks(tmp_path / "log") as loaded:
@@ -141,13 +142,13 @@ def test_a_server_that_is_killed_between_two_seeds_goes_on_with_the_next(tmp_pat
 def test_a_run_that_is_cancelled_in_mid_tick_goes_on_from_there(tmp_path: Path) -> None:
     """What is in the table stays, no file does, and nobody waits for the seed under way."""
     with serving(tmp_path) as live:
-        run_id = live.http.post(RUNS, json={**LONG, "set": {"samples": 400_000}}).json()["id"]
+        run_id = live.http.post(RUNS, json={**LONG, "set": {"samples": 100_000}}).json()["id"]
         live.wait(lambda: rows(tmp_path))
         assert 0.0 < until_running(live, run_id)["progress"] < 1.0
         assert live.http.delete(f"{RUNS}/{run_id}").json()["state"] == "cancelled"
         before = rows(tmp_path)
         assert 1 <= len(before) < 4 and not (tmp_path / "runs" / run_id).exists()
-        found = wait(live, live.http.post(RUNS, json={**LONG, "set": {"samples": 400_000}}).json()["id"])
+        found = wait(live, live.http.post(RUNS, json={**LONG, "set": {"samples": 100_000}}).json()["id"])
         assert (found["id"], found["state"], found["progress"]) == (run_id, "done", 1.0)
         assert before.items() <= rows(tmp_path).items() and len(rows(tmp_path)) == 4
         assert live.http.get(f"{RUNS}/{run_id}/report").status_code == 200
