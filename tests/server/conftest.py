@@ -21,6 +21,7 @@ from server.serve import bind, make_server
 from server.settings import Settings
 from server.stream.codec import Frame, decode
 from server.stream.wire import SUBPROTOCOL
+from tests.server.forks import Forks, forks
 
 TOKEN = "a-token-for-the-tests-only"
 HANGS_S = 60.0
@@ -267,8 +268,15 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
 
 
 @pytest.fixture(scope="session")
-def on_the_wall(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
-    """One server by the clock of the machine, for the tests that `tests/wall_clock.txt` lists."""
+def loaded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Forks]:
+    """Servers as processes of their own: ``with loaded.serve(folder) as served``."""
+    with forks(tmp_path_factory.mktemp("forks") / "log") as program:
+        yield program
+
+
+@pytest.fixture(scope="session")
+def shared_on_the_wall(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
+    """One server by the clock of the machine."""
     with serving(tmp_path_factory.mktemp("wall"), clock="machine") as live:
         yield live
 
@@ -277,8 +285,20 @@ def on_the_wall(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
 def live(shared: Live) -> Iterator[Live]:
     """The shared server; benches a test has made are closed behind it."""
     yield shared
-    for bench in shared.http.get("/api/v1/benches").json()["benches"]:
-        shared.http.delete(f"/api/v1/benches/{bench['id']}")
+    close_benches(shared)
+
+
+@pytest.fixture
+def on_the_wall(shared_on_the_wall: Live) -> Iterator[Live]:
+    """The shared server by the clock of the machine, for the tests that `tests/wall_clock.txt` lists."""
+    yield shared_on_the_wall
+    close_benches(shared_on_the_wall)
+
+
+def close_benches(live: Live) -> None:
+    """Close all benches of a server."""
+    for bench in live.http.get("/api/v1/benches").json()["benches"]:
+        live.http.delete(f"/api/v1/benches/{bench['id']}")
 
 
 @pytest.fixture

@@ -86,7 +86,7 @@ def test_a_client_that_takes_no_answer_is_cut(live: Any, monkeypatch: pytest.Mon
         end, ours = time.monotonic() + 20, line.getsockname()
         while any(getattr(one, "client", None) == ours for one in live.server.server_state.connections.copy()):
             assert time.monotonic() < end, "its connection is kept"
-            time.sleep(0.05)
+            live.http.get(HEALTH)
 
 
 def test_requests_that_wait_for_no_answer_are_not_kept_by_the_thousand(live: Any) -> None:
@@ -117,5 +117,5 @@ def test_a_long_answer_and_a_kept_connection_are_not_cut(live: Any, monkeypatch:
     bench = live.bench("first-look", paused=True)
     assert live.command(bench["id"], "step", ticks=10_000).status_code == 200
     with live.stream(bench["id"]) as stream:
-        stream.drain(0.8)
+        time.sleep(0.6)
         assert stream.command("pause")["type"] == "reply"

@@ -111,7 +111,6 @@ def test_time_runs_at_its_scale(on_the_wall: Any, scale: float) -> None:
         if given_up_s == 0.0:
             assert status["achieved_scale"] == pytest.approx(scale, rel=0.05)
             assert not status["capped"]
-    live.http.delete(f"/api/v1/benches/{bench['id']}")
 
 
 def test_as_fast_as_possible_outruns_a_pace_and_still_takes_commands(on_the_wall: Any) -> None:
@@ -124,7 +123,6 @@ def test_as_fast_as_possible_outruns_a_pace_and_still_takes_commands(on_the_wall
     live.until(bench["id"], lambda status: status["achieved_scale"] == pytest.approx(0.002, rel=0.1))
     after = live.get(bench["id"])
     assert after["time_scale"] == 0.002 and after["state"] == "running"
-    live.http.delete(f"/api/v1/benches/{bench['id']}")
 
 
 def test_a_paused_bench_stands_still_and_steps_exactly(live: Any) -> None:

@@ -42,17 +42,20 @@ def test_there_are_five_and_none_has_outputs() -> None:
         assert not [cell for cell in code if cell.outputs or cell.execution_count], path.name
 
 
+@pytest.mark.long
 def test_the_first_run(tmp_path: Path) -> None:
     said = printed("first-run", tmp_path)
     found = re.search(r"told after (\d+) samples, right in (0\.\d+)", said)
     assert found is not None and 0 < int(found[1]) < 300 and float(found[2]) > 0.9
 
 
+@pytest.mark.long
 def test_a_controller_of_ones_own(tmp_path: Path) -> None:
     errors = errors_um(printed("own-controller", tmp_path))
     assert errors["mrac"] < errors["own"] < errors["open loop"]
 
 
+@pytest.mark.long
 def test_a_diagnoser_of_ones_own(tmp_path: Path) -> None:
     said = printed("own-diagnoser", tmp_path)
     right = {name: float(value) for name, value in re.findall(r"^(\w+) +(0\.\d+) right$", said, re.M)}
@@ -60,11 +63,13 @@ def test_a_diagnoser_of_ones_own(tmp_path: Path) -> None:
     assert len(re.findall(r"^\w+ +\d+ samples$", said, re.M)) == 2
 
 
+@pytest.mark.long
 def test_a_design_with_python_control(tmp_path: Path) -> None:
     errors = errors_um(printed("lqg", tmp_path))
     assert errors["LQG"] < 0.5 * errors["open loop"]
 
 
+@pytest.mark.long
 @pytest.mark.timeout(240)
 def test_a_campaign_over_rest(live: Any, tmp_path: Path) -> None:
     said = printed("campaign", tmp_path, COMBBENCH_ADDRESS=live.address, COMBBENCH_TOKEN=TOKEN)

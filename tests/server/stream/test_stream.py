@@ -142,7 +142,6 @@ def test_frames_come_at_the_frame_rate(on_the_wall: Any) -> None:
         before, end = len(stream.frames), time.monotonic() + 2.0
         stream.until(lambda _: time.monotonic() > end)
         assert 80 <= len(stream.frames) - before <= 126
-    on_the_wall.http.delete(f"/api/v1/benches/{bench['id']}")
 
 
 def test_a_stalled_page_is_let_go_and_the_others_see_nothing_of_it(live: Any) -> None:
@@ -191,7 +190,6 @@ def test_a_server_that_stood_still_does_not_blame_its_pages(on_the_wall: Any, mo
         stream.acks = True
         stream.until(lambda _: len(stream.frames) > 30)
         assert on_the_wall.service.hub.watchers(bench["id"]) == 1
-    on_the_wall.http.delete(f"/api/v1/benches/{bench['id']}")
 
 
 def deaf(live: Any) -> dict[str, Any]:
@@ -377,7 +375,6 @@ def test_from_a_command_to_its_effect_on_the_screen(on_the_wall: Any) -> None:
             stream.until(lambda m, w=wanted: not isinstance(m, dict) and m.panels[0].latest[0] == w)
             waits.append(time.monotonic() - began)
         assert sorted(waits)[18] < 0.15
-    on_the_wall.http.delete(f"/api/v1/benches/{bench['id']}")
 
 
 def test_closing_a_bench_closes_its_streams(live: Any) -> None:
