@@ -19,7 +19,7 @@ from server.cli import app
 from server.store.database import Database
 from server.store.models import ResultRow
 from tests.server.conftest import serving
-from tests.server.forks import forks
+from tests.server.forks import Forks
 from tests.server.runs.test_large_campaign import ended
 from tests.server.runs.test_listing import refused
 from tests.server.runs.test_runs import until_running, wait
@@ -120,23 +120,22 @@ LONG = {"scenario": "ch5-seven-step", "set": {"samples": 120_000}, "seeds": "1:4
 
 
 @pytest.mark.long
-def test_a_server_that_is_killed_between_two_seeds_goes_on_with_the_next(tmp_path: Path) -> None:
+def test_a_server_that_is_killed_between_two_seeds_goes_on_with_the_next(loaded: Forks, tmp_path: Path) -> None:
     data = tmp_path / "data"
-    with forks(tmp_path / "log") as loaded:
-        with loaded.serve(data, figures=False) as served:
-            run_id = served.http.post(RUNS, json=LONG).json()["id"]
-            while not rows(data):
-                pass
-            served.kill()
-        before = rows(data)
-        assert 1 <= len(before) < 4
-        with loaded.serve(data, figures=False) as served:
-            while (found := served.http.get(f"{RUNS}/{run_id}").json())["state"] != "done":
-                os.sched_yield()
-            summary = found["summary"]
-        after = rows(data)
+    with loaded.serve(data, figures=False) as served:
+        run_id = served.http.post(RUNS, json=LONG).json()["id"]
+        while not rows(data):
+            os.sched_yield()
+        served.kill()
+    before = rows(data)
+    assert 1 <= len(before) < 4
+    with loaded.serve(data, figures=False) as served:
+        while (found := served.http.get(f"{RUNS}/{run_id}").json())["state"] != "done":
+            os.sched_yield()
+    after = rows(data)
     assert before.items() <= after.items() and len(after) == 4
-    assert summary["digest"] == run_seeds(with_values(get("ch5-seven-step"), LONG["set"]), range(1, 5))["digest"]
+    expected = run_seeds(with_values(get("ch5-seven-step"), LONG["set"]), range(1, 5))
+    assert found["summary"]["digest"] == expected["digest"]
 
 
 def test_a_run_that_is_cancelled_in_mid_tick_goes_on_from_there(tmp_path: Path) -> None:
