@@ -66,12 +66,7 @@ CHECKS = [
     content_type_conformance,
     response_schema_conformance,
 ]
-EASY = settings(
-    deadline=None,
-    derandomize=True,
-    database=None,
-    suppress_health_check=list(HealthCheck),
-)
+EASY = settings(deadline=None, derandomize=True, database=None, suppress_health_check=list(HealthCheck))
 
 
 @pytest.fixture
