@@ -80,7 +80,7 @@ def forks(log: Path) -> Iterator[Forks]:
         try:
             yield Forks(program)
         finally:
-            program.communicate(timeout=20)
+            program.communicate(timeout=60)
 
 
 def main() -> None:

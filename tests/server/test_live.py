@@ -199,10 +199,3 @@ def test_a_reset_begins_the_scenario_again(live: Any) -> None:
     until_it_stands(live, bench["id"])
     expected = run(with_values(get("ch5-seven-step"), {"sensor.noise_um": 0.2}))
     assert live.http.get(f"/api/v1/benches/{bench['id']}/digest").json()["digest"] == expected.digest
-
-
-def test_deleted_benches_are_gone(live: Any) -> None:
-    bench = live.bench()
-    assert live.http.delete(f"/api/v1/benches/{bench['id']}").status_code == 204
-    assert live.http.get(f"/api/v1/benches/{bench['id']}").status_code == 404
-    assert live.command(bench["id"], "pause").status_code == 404

@@ -52,9 +52,9 @@ def ran(live: Any) -> Any:
 
 
 def test_a_branch_far_back_is_a_straight_run(live: Any, ran: str) -> None:
-    made = fork(live, ran, tick=FAR - 25_000, window_ticks=5000).json()
-    assert made["origin"] == {"bench": ran, "tick": FAR - 25_000, "window_ticks": 5000, "is_past": True}
-    assert (made["state"], made["tick"], made["controller"]) == ("paused", FAR - 25_000, "pid")
+    made = fork(live, ran, tick=FAR - 20_000, window_ticks=5000).json()
+    assert made["origin"] == {"bench": ran, "tick": FAR - 20_000, "window_ticks": 5000, "is_past": True}
+    assert (made["state"], made["tick"], made["controller"]) == ("paused", FAR - 20_000, "pid")
     forward(live, made["id"], FAR)
     assert digest(live, made["id"]) == digest(live, ran)
     mine, theirs = (trace(live, one, FAR - 12_000, FAR) for one in (made["id"], ran))

@@ -44,6 +44,7 @@ def process(folder: Path, *arguments: str, **more: str) -> Iterator[Any]:
         "COMBBENCH_TOKEN": TOKEN,
         "COMBBENCH_DATA": str(folder / "data"),
         "COMBBENCH_LOG_LEVEL": "DEBUG",
+        "COMBBENCH_FIGURES": "false",
         **more,
     }
     command = [sys.executable, "-m", "server.cli", "serve", "--port", "0", *arguments]

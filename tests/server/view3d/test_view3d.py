@@ -39,10 +39,12 @@ def join(live: Any, bench: dict[str, Any], **options: Any) -> Any:
     return connect(url, **{**given, **options})
 
 
-def arrive(socket_: Any, messages: int) -> None:
-    """Wait until so many messages have come, however long they take."""
+def arrive(socket_: Any, messages: int, live: Any = None) -> None:
+    """Take so many messages; a server lets time pass for each."""
     for _ in range(messages):
-        socket_.recv(timeout=30)
+        if live is not None:
+            live.advance(seconds=0.05)
+        socket_.recv(timeout=60)
 
 
 def test_the_page_is_visers_with_our_lines(live: Any) -> None:
@@ -61,10 +63,10 @@ def test_the_scene_moves_while_somebody_watches(live: Any) -> None:
     show = live.service.viewers.show_of(live.service.benches.get(bench["id"]))
     with join(live, bench) as page:
         assert page.subprotocol == VISER
-        arrive(page, 50)
+        arrive(page, 10, live)
         path = show._scene.path
         with join(live, bench) as second:
-            arrive(second, 10)
+            arrive(second, 5, live)
             assert show.watchers == 2 and show._scene.path == path
     live.wait(lambda: show._scene is None and not path.parent.exists())  # the scene is lit for nobody
 
@@ -128,7 +130,7 @@ def test_what_a_page_says_does_not_reach_the_scene(live: Any, caplog: pytest.Log
     with join(live, bench) as page:
         for said in (b"", b"\xff" * 300, "text", msgspec.msgpack.encode({"type": "ShareUrlRequest"})):
             page.send(said)
-            arrive(page, 10)
+            arrive(page, 3, live)
     assert not caplog.records
 
 
