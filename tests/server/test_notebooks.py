@@ -7,9 +7,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-import nbformat
 import pytest
-from nbclient import NotebookClient
 
 from tests.server.conftest import TOKEN
 
@@ -19,6 +17,9 @@ NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
 
 def printed(name: str, folder: Path, **environment: str) -> str:
     """Run a notebook and return all it prints."""
+    import nbformat
+    from nbclient import NotebookClient
+
     book = nbformat.read(ROOT / "docs" / "notebooks" / f"{name}.ipynb", as_version=4)
     usual = {"MPLBACKEND": "agg", "MPLCONFIGDIR": str(folder), "IPYTHONDIR": str(folder)}
     known = {**os.environ, **usual, "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "clients")]), **environment}
@@ -34,6 +35,8 @@ def errors_um(said: str) -> dict[str, float]:
 
 
 def test_there_are_five_and_none_has_outputs() -> None:
+    import nbformat
+
     assert [path.stem for path in NOTEBOOKS] == ["campaign", "first-run", "lqg", "own-controller", "own-diagnoser"]
     for path in NOTEBOOKS:
         book = nbformat.read(path, as_version=4)

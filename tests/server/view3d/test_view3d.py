@@ -7,6 +7,8 @@ import sys
 import tempfile
 import threading
 import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +49,26 @@ def arrive(socket_: Any, messages: int, live: Any = None) -> None:
         socket_.recv(timeout=60)
 
 
+@contextmanager
+def drawn(live: Any, bench: dict[str, Any]) -> Iterator[tuple[Any, Callable[[], Any]]]:
+    """Return a scene of a bench of its own, and what shows the bench in it."""
+    session = live.service.benches.get(bench["id"])
+    scene, observer = build_scene(session), observer_of(session)
+    try:
+        yield scene, lambda: scene.show(observer.pose())
+    finally:
+        scene.close()
+
+
+def listened(scene: Any) -> list[Any]:
+    """Return the messages that a scene sends from now on."""
+    sent: list[Any] = []
+    server = scene._server._websock_server
+    queue = server.queue_message
+    server.queue_message = lambda message: (sent.append(message), queue(message))
+    return sent
+
+
 def test_the_page_is_visers_with_our_lines(live: Any) -> None:
     bench = live.bench()
     assert bench["view3d"] == f"/benches/{bench['id']}/3d/"
@@ -74,20 +96,14 @@ def test_the_scene_moves_while_somebody_watches(live: Any) -> None:
 def test_a_paused_bench_sends_nothing(live: Any) -> None:
     bench = live.bench(paused=True)
     live.command(bench["id"], "step", ticks=100)
-    session = live.service.benches.get(bench["id"])
-    scene, observer, sent = build_scene(session), observer_of(session), []
-    try:
-        scene.show(observer.pose())
-        server = scene._server._websock_server
-        queue = server.queue_message
-        server.queue_message = lambda message: (sent.append(message), queue(message))
-        scene.show(observer.pose())
+    with drawn(live, bench) as (scene, show):
+        show()
+        sent = listened(scene)
+        show()
         assert not sent
         live.command(bench["id"], "step", ticks=10)
-        scene.show(observer.pose())
+        show()
         assert sent
-    finally:
-        scene.close()
 
 
 def listening() -> set[int]:
@@ -169,15 +185,13 @@ def test_nothing_stays_behind(live: Any) -> None:
 
 def test_faults_and_motion_reach_the_parts(live: Any) -> None:
     bench = live.bench(set={"events": []}, time_scale=0.002)
-    session = live.service.benches.get(bench["id"])
-    scene, observer = build_scene(session), observer_of(session)
+    with drawn(live, bench) as (scene, show):
 
-    def shown() -> float:
-        live.advance(seconds=0.05)
-        scene.show(observer.pose())
-        return float(scene._shuttle.position[0])
+        def shown() -> float:
+            live.advance(seconds=0.05)
+            show()
+            return float(scene._shuttle.position[0])
 
-    try:
         shown()
         assert not scene._added and not scene._film.visible
         color, film = tuple(scene._beams[0].color), scene._film.opacity
@@ -191,8 +205,6 @@ def test_faults_and_motion_reach_the_parts(live: Any) -> None:
         live.command(bench["id"], heal="all")
         shown()
         assert not scene._added and not scene._film.visible and tuple(scene._beams[0].color) == color
-    finally:
-        scene.close()
 
 
 def pose_of(live: Any, bench: dict[str, Any]) -> tuple[Any, Any]:
@@ -249,39 +261,28 @@ def test_the_estimate_is_what_the_winner_predicted(live: Any) -> None:
 def test_the_picture_of_a_pose_is_light(live: Any) -> None:
     """A frame of a plant in the plane: nodes are moved, not rebuilt, and few values go out."""
     bench = live.bench("ch3-case3-adhesion", paused=True)
-    session = live.service.benches.get(bench["id"])
     live.command(bench["id"], "step", ticks=10)
-    scene, observer, sent = build_scene(session), observer_of(session), []
-    try:
-        scene.show(observer.pose())
-        server = scene._server._websock_server
-        queue = server.queue_message
-        server.queue_message = lambda message: (sent.append(message), queue(message))
+    with drawn(live, bench) as (scene, show):
+        show()
+        sent = listened(scene)
         for _ in range(5):
             live.command(bench["id"], "step", ticks=7)
             sent.clear()
-            scene.show(observer.pose())
-            print(len(sent), sum(np.size(v) for m in sent for v in vars(m).get("updates", {}).values()))
-            assert 0 < len(sent) <= MOST_MESSAGES
-            assert sum(np.size(v) for m in sent for v in vars(m).get("updates", {}).values()) < MOST_VALUES
-    finally:
-        scene.close()
+            show()
+            values = sum(np.size(v) for m in sent for v in vars(m).get("updates", {}).values())
+            assert 0 < len(sent) <= MOST_MESSAGES and values < MOST_VALUES, (len(sent), values)
 
 
 @pytest.mark.long
 def test_the_picture_of_a_pose_takes_a_quarter_of_a_frame(live: Any) -> None:
-    bench = live.bench("ch3-case3-adhesion", paused=True)
-    session = live.service.benches.get(bench["id"])
+    bench, spent = live.bench("ch3-case3-adhesion", paused=True), []
     live.command(bench["id"], "step", ticks=10)
-    scene, observer, spent = build_scene(session), observer_of(session), []
-    try:
+    with drawn(live, bench) as (_, show):
         for _ in range(60):
             live.command(bench["id"], "step", ticks=7)
             start = time.thread_time()
-            scene.show(observer.pose())
+            show()
             spent.append(time.thread_time() - start)
-    finally:
-        scene.close()
     assert sorted(spent)[30] < 4e-3
 
 
