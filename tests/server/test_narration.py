@@ -129,6 +129,7 @@ def test_a_teacher_hears_all_of_the_bench_of_a_student(live: Any) -> None:
     ada = join(live, group, "Ada")
     live.http.post(f"/api/v1/classes/{group['id']}/blind", json={})
     ada.bench = ada.ask("GET", "/api/v1/me").json()["bench"]
+    live.command(ada.bench, "time_scale", value=0.1)
     live.until(ada.bench, lambda bench: bench["tick"] > 4000)
     answer = ada.ask("GET", f"/api/v1/benches/{ada.bench}/narration")
     assert answer.status_code == 200 and answer.json()["sentences"] == []
