@@ -1,7 +1,7 @@
 """Serves by forking, one server for each line read: all is loaded once, so that a test can start and kill many.
 
-A line is a JSON object: settings of the server, and ``largest_file`` in bytes if the disk is to refuse more. Each
-server prints its process id, then what every server prints.
+A line is a JSON object: settings of the server, ``largest_file`` in bytes if the disk is to refuse more, and ``log``, a
+file for its log. Each server prints its process id, then what every server prints.
 """
 
 from __future__ import annotations
@@ -36,9 +36,8 @@ class Forks:
         self._program.stdin.write(json.dumps({"data": str(data), **more}) + "\n")
         self._program.stdin.flush()
         pid = int(self._program.stdout.readline())
-        address = self._program.stdout.readline().removeprefix("CombBench is at ").partition("/?")[0]
-        assert address.startswith("http"), "the server did not start; its log says why"
-        served = Served(pid, address)
+        served = Served(pid, self._program.stdout.readline().removeprefix("CombBench is at ").strip())
+        assert served.address.startswith("http"), "the server did not start; its log says why"
         try:
             yield served
         finally:
@@ -49,15 +48,15 @@ class Forks:
 class Served:
     """One server."""
 
-    def __init__(self, pid: int, address: str) -> None:
-        self.pid, self.address = pid, address
+    def __init__(self, pid: int, link: str) -> None:
+        self.pid, self.link, self.address = pid, link, link.partition("/?")[0]
         headers = {"Authorization": f"Bearer {TOKEN}"}
-        self.http = httpx.Client(base_url=address, headers=headers, timeout=120, trust_env=False)
+        self.http = httpx.Client(base_url=self.address, headers=headers, timeout=120, trust_env=False)
 
-    def kill(self) -> None:
-        """Kill it as a power cut would."""
+    def kill(self, how: int = signal.SIGKILL) -> None:
+        """Kill it as a power cut would, or let it end by another signal; return once it is gone."""
         try:
-            os.kill(self.pid, signal.SIGKILL)
+            os.kill(self.pid, how)
         except ProcessLookupError:
             return
         while Path(f"/proc/{self.pid}").exists():
@@ -81,7 +80,7 @@ def forks(log: Path) -> Iterator[Forks]:
         try:
             yield Forks(program)
         finally:
-            program.communicate(timeout=20)
+            program.communicate(timeout=60)
 
 
 def main() -> None:
@@ -103,6 +102,9 @@ def main() -> None:
         os.setsid()
         print(os.getpid(), flush=True)
         given = json.loads(line)
+        os.umask(0o022)  # what it keeps is to be private for people with the usual mask, too
+        if log := given.pop("log", None):
+            os.dup2(os.open(log, os.O_WRONLY | os.O_CREAT), 2)
         largest = given.pop("largest_file", None)
         if largest is not None:
             resource.setrlimit(resource.RLIMIT_FSIZE, (largest, largest))

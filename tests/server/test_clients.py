@@ -116,6 +116,7 @@ end
 """
 
 
+@pytest.mark.long
 @pytest.mark.skipif(shutil.which("octave-cli") is None, reason="this machine has no Octave")
 def test_the_client_of_matlab_in_octave(live: Any, tmp_path: Path) -> None:
     program = tmp_path / "lab.m"

@@ -119,17 +119,14 @@ def test_a_device_drawn_from_the_process_is_the_same_for_the_same_seed(live):
     assert 0.7 * spread["p01"] < drawn["stiffness_n_m"]["value"] < 1.4 * spread["p99"]
 
 
-@pytest.mark.parametrize(
-    ("name", "has"),
-    [
+def test_a_transfer_function_has_the_figures_that_mean_something_without_units(live):
+    for name, has in (
         ("double-integrator", {}),
         ("unstable-first-order", {"static_gain_um_per_v": -5.0}),
         ("second-order-gain", {"f0_hz": 1 / (2 * math.pi), "static_gain_um_per_v": 1.0}),
-    ],
-)
-def test_a_transfer_function_has_the_figures_that_mean_something_without_units(live, name, has):
-    found = {key: entry["value"] for key, entry in figures(live, device={"id": name}).items()}
-    assert found == pytest.approx(has)
+    ):
+        found = {key: entry["value"] for key, entry in figures(live, device={"id": name}).items()}
+        assert found == pytest.approx(has), name
 
 
 def test_a_gyroscope_has_figures_of_both_axes(live):
@@ -175,53 +172,53 @@ def test_devices_are_drawn_in_their_environment(live):
         assert drawn[name]["p50"] == pytest.approx(nominal[name]["value"], rel=0.02), name
 
 
-@pytest.mark.parametrize(
-    ("what", "body", "field", "words"),
-    [
-        ("evaluate", {"device": {"id": "none-such"}}, "device.id", "unknown"),
-        ("evaluate", {"device": {"id": "lcr-350", "geometry": {"fingers": 0}}}, "device.geometry.fingers", ">= 1"),
-        (
-            "evaluate",
-            {"device": {"id": "lcr-350", "geometry": {"beam_bias_um": 1.0}}},
-            "device.geometry",
-            "nothing is left of the beams",
-        ),
-        (
-            "evaluate",
-            {"device": {"id": "lcr-350", "geometry": {"overlap_um": 61.0}}},
-            "device.geometry",
-            "overlap_um must be <= finger_length_um",
-        ),
-        (
-            "evaluate",
-            {"device": {"id": "lcr-350", "geometry": {"comb_bias_um": -1.0}}},
-            "device.geometry",
-            "the fingers touch",
-        ),
-        ("evaluate", {"device": {}, "environment": {"pressure_pa": -1}}, "environment.pressure_pa", ">= 0.01"),
-        ("evaluate", {"gadget": {}}, "gadget", "unknown field"),
-        ("evaluate", {"device": {"id": [1]}}, "device.id", "unknown"),
-        ("evaluate", {"device": {"stiffness_n_m": 1e300}}, "device.stiffness_n_m", "<= 1000000000"),
-        ("bode", {"device": {"id": "double-integrator"}}, "device.id", "without mass or stiffness"),
-        ("bode", {"device": {"id": "second-order-gain"}}, "device.id", "without mass or stiffness"),
-        ("bode", {"device": {"id": "gyro-c"}}, "device.id", "two axes"),
-        ("bode", {"device": {"id": "gyro-lcr-350"}}, "device.id", "two axes"),
-        ("spread", {"device": {"id": "ch3"}}, "device.id", "no drawing"),
-        ("spread", {"device": {"id": "gyro-lcr-350"}}, "device.id", "no drawing of a resonator"),
-        (
-            "evaluate",
-            {"device": {"id": "lcr-350", "drawn_gyroscope": {"sense_fingers": 88}}},
-            "device",
-            "88 fingers along y take 698 um of an arm of 690 um",
-        ),
-        ("bode", {"points": 100_000}, "points", "2000"),
-    ],
-)
-def test_what_cannot_be_built_is_refused_in_one_line(live, what, body, field, words):
-    answer = live.http.post(f"/api/v1/devices/{what}", json=body)
-    assert answer.status_code == 422, answer.text
-    error = answer.json()["error"]
-    assert error["field"] == field and words in error["message"], error
+REFUSED = [
+    ("evaluate", {"device": {"id": "none-such"}}, "device.id", "unknown"),
+    ("evaluate", {"device": {"id": "lcr-350", "geometry": {"fingers": 0}}}, "device.geometry.fingers", ">= 1"),
+    (
+        "evaluate",
+        {"device": {"id": "lcr-350", "geometry": {"beam_bias_um": 1.0}}},
+        "device.geometry",
+        "nothing is left of the beams",
+    ),
+    (
+        "evaluate",
+        {"device": {"id": "lcr-350", "geometry": {"overlap_um": 61.0}}},
+        "device.geometry",
+        "overlap_um must be <= finger_length_um",
+    ),
+    (
+        "evaluate",
+        {"device": {"id": "lcr-350", "geometry": {"comb_bias_um": -1.0}}},
+        "device.geometry",
+        "the fingers touch",
+    ),
+    ("evaluate", {"device": {}, "environment": {"pressure_pa": -1}}, "environment.pressure_pa", ">= 0.01"),
+    ("evaluate", {"gadget": {}}, "gadget", "unknown field"),
+    ("evaluate", {"device": {"id": [1]}}, "device.id", "unknown"),
+    ("evaluate", {"device": {"stiffness_n_m": 1e300}}, "device.stiffness_n_m", "<= 1000000000"),
+    ("bode", {"device": {"id": "double-integrator"}}, "device.id", "without mass or stiffness"),
+    ("bode", {"device": {"id": "second-order-gain"}}, "device.id", "without mass or stiffness"),
+    ("bode", {"device": {"id": "gyro-c"}}, "device.id", "two axes"),
+    ("bode", {"device": {"id": "gyro-lcr-350"}}, "device.id", "two axes"),
+    ("spread", {"device": {"id": "ch3"}}, "device.id", "no drawing"),
+    ("spread", {"device": {"id": "gyro-lcr-350"}}, "device.id", "no drawing of a resonator"),
+    (
+        "evaluate",
+        {"device": {"id": "lcr-350", "drawn_gyroscope": {"sense_fingers": 88}}},
+        "device",
+        "88 fingers along y take 698 um of an arm of 690 um",
+    ),
+    ("bode", {"points": 100_000}, "points", "2000"),
+]
+
+
+def test_what_cannot_be_built_is_refused_in_one_line(live):
+    for what, body, field, words in REFUSED:
+        answer = live.http.post(f"/api/v1/devices/{what}", json=body)
+        assert answer.status_code == 422, answer.text
+        error = answer.json()["error"]
+        assert error["field"] == field and words in error["message"], error
 
 
 def test_a_device_says_which_plants_suit_it_and_the_bench_agrees(live):

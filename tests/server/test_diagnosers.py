@@ -157,27 +157,20 @@ def test_a_seldom_bank_and_that_of_a_twin_are_explained(live):
             assert model["posterior"] == pytest.approx(model["recorded"], abs=2e-4)
 
 
-@pytest.mark.parametrize(
-    ("name", "tick", "status", "field", "word"),
-    [
-        ("kalmann", None, 422, "name", "unknown diagnoser"),
-        ("consistency", 10, 422, "name", "sample by sample"),
-        ("kalman", 5000, 422, "tick", "not kept"),
-        ("kalman", -1, 422, "tick", ""),
-    ],
-)
-def test_what_cannot_be_explained_is_refused(live, name, tick, status, field, word):
-    path, _ = bench(live, 50, diagnosers={"kalman": {"kind": "mmae"}, "consistency": {"kind": "consistency"}})
-    answer = live.http.get(f"{path}/diagnosers/{name}/explain", params={} if tick is None else {"tick": tick})
-    assert answer.status_code == status, answer.text
-    error = answer.json()["error"]
-    assert error["field"].endswith(field) and word in error["message"]
-
-
-def test_a_bench_that_has_not_begun_explains_nothing(live):
-    path, _ = bench(live, diagnosers={"kalman": {"kind": "mmae"}})
-    answer = live.http.get(f"{path}/diagnosers/kalman/explain")
-    assert answer.status_code == 422 and answer.json()["error"]["field"] == "tick"
+def test_what_cannot_be_explained_is_refused(live):
+    both = {"kalman": {"kind": "mmae"}, "consistency": {"kind": "consistency"}}
+    (path, _), (fresh, _) = bench(live, 50, diagnosers=both), bench(live, diagnosers=both)
+    for where, name, params, field, word in (
+        (path, "kalmann", {}, "name", "unknown diagnoser"),
+        (path, "consistency", {"tick": 10}, "name", "sample by sample"),
+        (path, "kalman", {"tick": 5000}, "tick", "not kept"),
+        (path, "kalman", {"tick": -1}, "tick", ""),
+        (fresh, "kalman", {}, "tick", ""),  # it has not begun
+    ):
+        answer = live.http.get(f"{where}/diagnosers/{name}/explain", params=params)
+        assert answer.status_code == 422, answer.text
+        error = answer.json()["error"]
+        assert error["field"].endswith(field) and word in error["message"]
 
 
 def response(m=1.0, k=1.0, b=1.0, f=2000.0, volts=10.0):

@@ -40,6 +40,7 @@ def test_the_rest_tutorial(live: Any, monkeypatch: pytest.MonkeyPatch) -> None:
         assert said is None or re.fullmatch(pattern, printed.getvalue()), f"{block}\nprinted\n{printed.getvalue()}"
 
 
+@pytest.mark.long
 @pytest.mark.timeout(300)
 def test_the_monte_carlo_example(tmp_path: Path) -> None:
     text = (ROOT / "docs" / "monte_carlo_roc.py").read_text()

@@ -65,12 +65,7 @@ def region(live, scenario, **query):
 
 
 def tripped(live, x, v):
-    plant = {
-        **SLAVED["plant"],
-        "initial_displacement_um": x,
-        "initial_velocity_um_ms": v,
-        "thermal_noise": False,
-    }
+    plant = {**SLAVED["plant"], "initial_displacement_um": x, "initial_velocity_um_ms": v, "thermal_noise": False}
     device = {**SLAVED["device"], "damping_ns_m": 1e-12}
     still = {"kind": "constant", "amplitude_v": 0.0}
     bench = live.bench({**SLAVED, "device": device, "plant": plant, "reference": still}, paused=True)

@@ -3,26 +3,45 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import os
 import sys
-import time
 from pathlib import Path
 
 import pytest
 
 from scenarios import kernels
+from server import kernels as module
 from server.kernels import Kernels
 
 COMPILER = """#!{python} -S
-import os, sys, time
+import os, signal, sys
 if os.fork() == 0:
-    time.sleep(60)
+    signal.pause()
 open({pid!r}, "w").write(str(os.getpid()))
 for done in range(1, 4):
     print(f"\\rCompiling kernels: {{done}} of 4", end="", flush=True)
-    time.sleep(0.05)
 {end}
 """
+
+
+class Heard(logging.Handler):
+    """Waits for a line of the log."""
+
+    def __init__(self, words: str) -> None:
+        super().__init__()
+        self._words, self.heard = words, asyncio.Event()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        if self._words in record.getMessage():
+            self.heard.set()
+
+    async def __aenter__(self) -> None:
+        module.log.addHandler(self)
+
+    async def __aexit__(self, *_: object) -> None:
+        await asyncio.wait_for(self.heard.wait(), 60)
+        module.log.removeHandler(self)
 
 
 @pytest.fixture
@@ -48,41 +67,33 @@ def runs(group: int) -> bool:
     return True
 
 
-async def until(condition, seconds: float = 20.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end
-        await asyncio.sleep(0.02)
-
-
-def test_progress_is_kept_and_no_process_outlives_the_server(compiler) -> None:
-    pid = compiler("time.sleep(60)")
+def test_progress_is_kept_and_no_process_outlives_the_server(compiler, caplog) -> None:
+    pid = compiler("signal.pause()")
+    caplog.set_level(logging.INFO)
 
     async def serve() -> int:
         loaded = Kernels()
-        await loaded.start()
-        assert loaded.are_loaded
-        await until(lambda: loaded.done == 3)
-        assert loaded.total == 4
+        async with Heard("compiled 3 of 4"):
+            await loaded.start()
+            assert loaded.are_loaded
+        assert (loaded.done, loaded.total) == (3, 4)
         group = int(pid.read_text())
         assert runs(group)
         await loaded.stop()
         return group
 
     group = asyncio.run(serve())
-    end = time.monotonic() + 20
     while runs(group):
-        assert time.monotonic() < end
-        time.sleep(0.02)
+        os.sched_yield()
 
 
-def test_kernels_that_cannot_be_compiled_ahead_are_a_warning(compiler, caplog) -> None:
+def test_kernels_that_cannot_be_compiled_ahead_are_a_warning(compiler) -> None:
     compiler("os.kill(0, 15)")
 
     async def serve() -> None:
         loaded = Kernels()
-        await loaded.start()
-        await until(lambda: "cannot be" in caplog.text or "could not be" in caplog.text)
+        async with Heard("could not be compiled ahead"):
+            await loaded.start()
         await loaded.stop()
 
     asyncio.run(serve())
@@ -95,7 +106,7 @@ def test_nothing_is_compiled_that_is_kept_already(compiler, tmp_path: Path) -> N
     async def serve() -> None:
         loaded = Kernels()
         await loaded.start()
-        await asyncio.sleep(0.3)
+        await loaded.compiled()
         await loaded.stop()
 
     asyncio.run(serve())

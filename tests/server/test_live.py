@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from itertools import product
 from typing import Any
 
 import pytest
@@ -15,53 +16,41 @@ from scenarios.run import run
 from scenarios.schema import Scenario
 
 
-def wait_until_paused(live: Any, bench_id: str, seconds: float = 30.0) -> dict[str, Any]:
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        found: dict[str, Any] = live.get(bench_id)
-        if found["state"] != "running":
-            return found
-        time.sleep(0.05)
-    raise TimeoutError("it runs on")
+def until_it_stands(live: Any, bench_id: str) -> dict[str, Any]:
+    """Let time pass until a bench no longer runs."""
+    live.until(bench_id, lambda status: status["state"] != "running")
+    found: dict[str, Any] = live.get(bench_id)
+    return found
 
 
 def test_live_with_watchers_and_headless_give_the_same_bits(live: Any) -> None:
     """Three watchers, one that stalls, a snapshot in the middle: the digest is that of the headless run."""
     expected = run(get("ch5-seven-step"))
     bench = live.bench(time_scale=0.1, paused=True)
-    stop = threading.Event()
+    key, names = bench["id"], [signal["name"] for signal in bench["signals"]][:12]
+    with ExitStack() as stack:
+        watchers = [stack.enter_context(live.stream(key)) for _ in range(4)]
+        watchers[3].acks = False
+        for stream, panel in product(watchers, range(6)):
+            stream.send(type="subscribe", panel=panel, signals=names, window_ms=4.0, width=800)
 
-    def watch(acks: bool) -> None:
-        with live.stream(bench["id"]) as stream:
-            stream.acks = acks
-            names = [signal["name"] for signal in bench["signals"]][:12]
-            for panel in range(6):
-                stream.send(type="subscribe", panel=panel, signals=names, window_ms=4.0, width=800)
-            while not stop.is_set():
-                try:
-                    stream.step(0.2)
-                except TimeoutError:
-                    continue
+        def play(until: int) -> None:
+            live.command(key, "start")
+            while live.get(key)["tick"] < until:
+                live.advance(seconds=0.2)
+                for stream in watchers:
+                    stream.settle()
 
-    watchers = [threading.Thread(target=watch, args=(number < 3,)) for number in range(4)]
-    for watcher in watchers:
-        watcher.start()
-    while live.get(bench["id"])["watchers"] < 4:
-        time.sleep(0.02)
-    live.command(bench["id"], "start")
-    while live.get(bench["id"])["tick"] < 3000:
-        time.sleep(0.01)
-    snapshot = live.http.post(f"/api/v1/benches/{bench['id']}/snapshots").json()
-    assert wait_until_paused(live, bench["id"])["tick"] == 9000
-    first = live.http.get(f"/api/v1/benches/{bench['id']}/digest").json()
-    restored = live.http.post(f"/api/v1/benches/{bench['id']}/snapshots/{snapshot['id']}/restore").json()
-    assert restored["tick"] == snapshot["tick"] >= 3000 and restored["state"] == "paused"
-    live.command(bench["id"], "start")
-    assert wait_until_paused(live, bench["id"])["tick"] == 9000
-    second = live.http.get(f"/api/v1/benches/{bench['id']}/digest").json()
-    stop.set()
-    for watcher in watchers:
-        watcher.join()
+        play(3000)
+        snapshot = live.http.post(f"/api/v1/benches/{key}/snapshots").json()
+        play(9000)
+        assert live.get(key)["tick"] == 9000
+        first = live.http.get(f"/api/v1/benches/{key}/digest").json()
+        restored = live.http.post(f"/api/v1/benches/{key}/snapshots/{snapshot['id']}/restore").json()
+        assert restored["tick"] == snapshot["tick"] >= 3000 and restored["state"] == "paused"
+        play(9000)
+        second = live.http.get(f"/api/v1/benches/{key}/digest").json()
+        assert len(watchers[0].frames) > 2 == len(watchers[3].frames)
     assert first == second == {"tick": 9000, "digest": expected.digest}
 
 
@@ -74,7 +63,7 @@ def test_what_happened_live_is_saved_and_run_headless_with_the_same_bits(live: A
         {"heal": "all"},
         {"kind": "pause"},
     ):
-        time.sleep(0.1)
+        live.advance(seconds=0.1)
         assert live.command(bench["id"], **command).status_code == 200
     answer = live.http.get(f"/api/v1/benches/{bench['id']}/scenario")
     assert answer.headers["content-type"].startswith("text/plain")
@@ -86,7 +75,7 @@ def test_what_happened_live_is_saved_and_run_headless_with_the_same_bits(live: A
 
 def test_two_forks_meet_the_same_noise(live: Any) -> None:
     bench = live.bench(time_scale=0.05)
-    time.sleep(0.3)
+    live.advance(seconds=0.3)
     forks = []
     snapshot = live.http.post(f"/api/v1/benches/{bench['id']}/snapshots").json()["id"]
     for _ in range(2):
@@ -103,8 +92,10 @@ def test_two_forks_meet_the_same_noise(live: Any) -> None:
     assert ends[0]["digest"] == run(with_values(get("ch5-seven-step"), {"samples": 8000})).digest
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scale", [1e-4, 0.002, 0.05, 1.0])
-def test_time_runs_at_its_scale(live: Any, scale: float) -> None:
+def test_time_runs_at_its_scale(on_the_wall: Any, scale: float) -> None:
+    live = on_the_wall
     bench = live.bench(set={"samples": 10_000_000, "events": [], "sample_rate_khz": 100}, time_scale=scale)
     with live.stream(bench["id"]) as stream:
         first = stream.until_type("status")
@@ -122,7 +113,8 @@ def test_time_runs_at_its_scale(live: Any, scale: float) -> None:
             assert not status["capped"]
 
 
-def test_as_fast_as_possible_outruns_a_pace_and_still_takes_commands(live: Any) -> None:
+def test_as_fast_as_possible_outruns_a_pace_and_still_takes_commands(on_the_wall: Any) -> None:
+    live = on_the_wall
     bench = live.bench(set={"samples": 100_000_000, "events": []}, time_scale=None)
     live.until(bench["id"], lambda status: status["achieved_scale"] > 10 * 0.002)
     assert live.command(bench["id"], fault="added_mass", severity=0.05).status_code == 200
@@ -140,8 +132,7 @@ def test_a_paused_bench_stands_still_and_steps_exactly(live: Any) -> None:
     assert live.get(bench["id"])["tick"] == 1
     live.command(bench["id"], "step_period")
     assert live.get(bench["id"])["tick"] == 26
-    time.sleep(0.1)
-    assert live.get(bench["id"])["tick"] == 26
+    assert live.advance(seconds=1.0)[bench["id"]] == 26
 
 
 SLOW = {"reference": {"kind": "sine", "amplitude_v": 5.0, "frequency_hz": 1.0}}
@@ -153,8 +144,7 @@ def test_a_long_step_holds_up_no_other_bench(live: Any) -> None:
     bench = live.bench("ch3-case3-adhesion", set=SLOW, paused=True)
     with ThreadPoolExecutor(1) as pool:
         asked = pool.submit(live.command, bench["id"], "step_period")
-        while live.get(bench["id"])["tick"] == 0:
-            time.sleep(0.01)
+        live.wait(lambda: live.get(bench["id"])["tick"])
         for severity in (0.01, 0.02, 0.03):
             assert live.command(other["id"], fault="added_mass", severity=severity).status_code == 200
         assert not asked.done()
@@ -176,7 +166,7 @@ def test_the_page_that_steps_can_pause_the_step(live: Any) -> None:
     assert event["tick"] < 100_000
     said = live.http.get(f"/api/v1/benches/{bench['id']}/events").json()["events"]
     assert said[-2]["text"] == f"stepped {event['tick']} of 100000 ticks"
-    time.sleep(0.05)
+    live.advance(seconds=0.5)
     after = live.get(bench["id"])
     assert (after["tick"], after["state"]) == (event["tick"], "paused")
 
@@ -184,7 +174,7 @@ def test_the_page_that_steps_can_pause_the_step(live: Any) -> None:
 def test_a_trip_stops_one_bench_and_says_why(live: Any) -> None:
     other = live.bench()
     bench = live.bench(set={"events": [], "guard": {"travel_um": 0.5}}, time_scale=0.05)
-    stopped = wait_until_paused(live, bench["id"])
+    stopped = until_it_stands(live, bench["id"])
     assert stopped["state"] == "tripped"
     assert "travel" in stopped["trip"]["reason"]
     refused = live.command(bench["id"], "start")
@@ -202,17 +192,10 @@ def test_a_trip_stops_one_bench_and_says_why(live: Any) -> None:
 
 def test_a_reset_begins_the_scenario_again(live: Any) -> None:
     bench = live.bench(time_scale=0.05)
-    time.sleep(0.2)
+    live.advance(seconds=0.2)
     entry = live.command(bench["id"], "reset", values={"sensor.noise_um": 0.2}).json()["entry"]
     assert entry["tick"] == 0 and entry["kind"] == "reset"
     assert "0.2" in live.http.get(f"/api/v1/benches/{bench['id']}/scenario").text
-    wait_until_paused(live, bench["id"])
+    until_it_stands(live, bench["id"])
     expected = run(with_values(get("ch5-seven-step"), {"sensor.noise_um": 0.2}))
     assert live.http.get(f"/api/v1/benches/{bench['id']}/digest").json()["digest"] == expected.digest
-
-
-def test_deleted_benches_are_gone(live: Any) -> None:
-    bench = live.bench()
-    assert live.http.delete(f"/api/v1/benches/{bench['id']}").status_code == 204
-    assert live.http.get(f"/api/v1/benches/{bench['id']}").status_code == 404
-    assert live.command(bench["id"], "pause").status_code == 404

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import time
 from typing import Any
 
 import pytest
 
-from tests.server.test_bad_input import check, runs_on
+from tests.server.test_bad_input import check, failing, runs_on
 
 JSON = {"Content-Type": "application/json"}
 
@@ -39,15 +38,17 @@ DEEP: list[tuple[str, str, Any]] = [
 ]
 
 
-@pytest.mark.parametrize(("what", "route", "body"), DEEP, ids=[row[0] for row in DEEP])
-def test_a_document_nested_too_deeply(live: Any, what: str, route: str, body: Any) -> None:
+def test_a_document_nested_too_deeply(live: Any) -> None:
     bench = live.bench()
-    answer = live.http.post(route, json=body)
-    check(answer, 422 if answer.status_code == 422 else 400, None, "nested too deeply", "at most 50 levels")
+    with failing() as case:
+        for what, route, body in DEEP:
+            with case(what):
+                answer = live.http.post(route, json=body)
+                check(answer, 422 if answer.status_code == 422 else 400, None, "nested too deeply", "at most 50 levels")
     runs_on(live, bench)
 
 
-@pytest.mark.parametrize("levels", [60, 500, 900])
+@pytest.mark.parametrize("levels", [60, 900])
 def test_a_command_nested_too_deeply(live: Any, levels: int) -> None:
     bench = live.bench()
     commands = f"/api/v1/benches/{bench['id']}/commands"
@@ -73,28 +74,24 @@ def test_the_deepest_document_goes_beyond_the_first_check(live: Any) -> None:
     check(answer, 422, "unknown", "device.a")
 
 
-@pytest.mark.parametrize("key", ["a." * 300_000 + "a", '"a".' * 150_000 + "a"], ids=["bare", "quoted"])
-def test_a_key_of_very_many_parts_takes_no_time(live: Any, key: str) -> None:
-    began = time.monotonic()
-    check(live.http.post("/api/v1/scenarios/check", json={"scenario": f"{key} = 1"}), 422, "too_deep", "50 levels")
-    assert time.monotonic() - began < 5.0
+def test_a_key_of_very_many_parts_takes_no_time(live: Any) -> None:
+    """The budget of each test in processor time is its measure."""
+    for key in ("a." * 300_000 + "a", '"a".' * 150_000 + "a"):
+        check(live.http.post("/api/v1/scenarios/check", json={"scenario": f"{key} = 1"}), 422, "too_deep", "50 levels")
 
 
-@pytest.mark.parametrize(
-    ("layout", "status", "words"),
-    [
+def test_a_layout_that_could_not_be_read_back_is_not_kept(live: Any) -> None:
+    bench = live.bench()
+    recordings = f"/api/v1/benches/{bench['id']}/recordings"
+    for layout, status, words in (
         (nested(300), 400, ["nested too deeply"]),
         (nested(60), 400, ["nested too deeply"]),
         ({"text": "x" * 300_000}, 422, ["layout", "200000"]),
-    ],
-    ids=["300 deep", "60 deep", "large"],
-)
-def test_a_layout_that_could_not_be_read_back_is_not_kept(
-    live: Any, layout: Any, status: int, words: list[str]
-) -> None:
-    bench = live.bench()
-    recordings = f"/api/v1/benches/{bench['id']}/recordings"
-    check(live.http.post(recordings, json={"name": "x", "ticks": 10, "layout": layout}), status, None, *words)
+    ):
+        check(live.http.post(recordings, json={"name": "x", "ticks": 10, "layout": layout}), status, None, *words)
+    half = (r'{"layout": {"a": "\ud800"}}', r'{"layout": {"\udc00": 1}}')
+    for text in half:
+        check(live.http.post(recordings, content=text, headers=JSON), 400, "malformed", "letter")
     assert live.http.get(recordings).json()["recordings"] == []
     runs_on(live, bench)
 
@@ -106,14 +103,6 @@ def test_a_layout_is_read_back_as_it_was(live: Any) -> None:
     made = live.http.post(f"/api/v1/benches/{bench['id']}/recordings", json=body)
     assert made.status_code == 201
     assert live.http.get(f"/api/v1/recordings/{made.json()['id']}").json()["layout"] == layout
-
-
-@pytest.mark.parametrize("text", [r'{"layout": {"a": "\ud800"}}', r'{"layout": {"\udc00": 1}}'])
-def test_half_a_letter_is_not_kept(live: Any, text: str) -> None:
-    bench = live.bench()
-    recordings = f"/api/v1/benches/{bench['id']}/recordings"
-    check(live.http.post(recordings, content=text, headers=JSON), 400, "malformed", "letter")
-    assert live.http.get(recordings).json()["recordings"] == []
 
 
 def test_half_a_letter_in_a_message_is_answered(live: Any) -> None:

@@ -7,9 +7,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-import nbformat
 import pytest
-from nbclient import NotebookClient
 
 from tests.server.conftest import TOKEN
 
@@ -19,6 +17,9 @@ NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
 
 def printed(name: str, folder: Path, **environment: str) -> str:
     """Run a notebook and return all it prints."""
+    import nbformat
+    from nbclient import NotebookClient
+
     book = nbformat.read(ROOT / "docs" / "notebooks" / f"{name}.ipynb", as_version=4)
     usual = {"MPLBACKEND": "agg", "MPLCONFIGDIR": str(folder), "IPYTHONDIR": str(folder)}
     known = {**os.environ, **usual, "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "clients")]), **environment}
@@ -34,6 +35,8 @@ def errors_um(said: str) -> dict[str, float]:
 
 
 def test_there_are_five_and_none_has_outputs() -> None:
+    import nbformat
+
     assert [path.stem for path in NOTEBOOKS] == ["campaign", "first-run", "lqg", "own-controller", "own-diagnoser"]
     for path in NOTEBOOKS:
         book = nbformat.read(path, as_version=4)
@@ -42,17 +45,20 @@ def test_there_are_five_and_none_has_outputs() -> None:
         assert not [cell for cell in code if cell.outputs or cell.execution_count], path.name
 
 
+@pytest.mark.long
 def test_the_first_run(tmp_path: Path) -> None:
     said = printed("first-run", tmp_path)
     found = re.search(r"told after (\d+) samples, right in (0\.\d+)", said)
     assert found is not None and 0 < int(found[1]) < 300 and float(found[2]) > 0.9
 
 
+@pytest.mark.long
 def test_a_controller_of_ones_own(tmp_path: Path) -> None:
     errors = errors_um(printed("own-controller", tmp_path))
     assert errors["mrac"] < errors["own"] < errors["open loop"]
 
 
+@pytest.mark.long
 def test_a_diagnoser_of_ones_own(tmp_path: Path) -> None:
     said = printed("own-diagnoser", tmp_path)
     right = {name: float(value) for name, value in re.findall(r"^(\w+) +(0\.\d+) right$", said, re.M)}
@@ -60,11 +66,13 @@ def test_a_diagnoser_of_ones_own(tmp_path: Path) -> None:
     assert len(re.findall(r"^\w+ +\d+ samples$", said, re.M)) == 2
 
 
+@pytest.mark.long
 def test_a_design_with_python_control(tmp_path: Path) -> None:
     errors = errors_um(printed("lqg", tmp_path))
     assert errors["LQG"] < 0.5 * errors["open loop"]
 
 
+@pytest.mark.long
 @pytest.mark.timeout(240)
 def test_a_campaign_over_rest(live: Any, tmp_path: Path) -> None:
     said = printed("campaign", tmp_path, COMBBENCH_ADDRESS=live.address, COMBBENCH_TOKEN=TOKEN)

@@ -10,7 +10,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import pytest
 from typer.testing import CliRunner
 
 from core.board import program
@@ -22,6 +21,7 @@ from scenarios.schema import Scenario
 from server.cli import app
 from tests.core.own.texts import PI, ROOT, odd
 from tests.server.people.group import join, open_class
+from tests.server.runs.test_runs import wait
 
 LOOK = get("first-look").document
 NAMED = {"units": {"pi": {"source": PI}}}
@@ -31,13 +31,6 @@ WALLED = PI + "\n# behind the wall\n"
 def document(**more: Any) -> dict[str, Any]:
     """Return the first look with a PI, five milliseconds long."""
     return {**copy.deepcopy(LOOK), **NAMED, "duration_ms": 5.0, **more}
-
-
-def finished(live: Any, run_id: str) -> dict[str, Any]:
-    while True:
-        found: dict[str, Any] = live.http.get(f"/api/v1/runs/{run_id}").json()
-        if found["state"] in ("done", "failed"):
-            return found
 
 
 def test_a_file_gives_the_same_digest_by_command_line_and_rest_and_live(live: Any, tmp_path: Path) -> None:
@@ -56,9 +49,7 @@ def test_a_file_gives_the_same_digest_by_command_line_and_rest_and_live(live: An
     whole = document(controller={"kind": "pi"})
     made = live.http.post("/api/v1/runs", json={"scenario": whole})
     assert made.status_code in (200, 201, 202), made.text
-    assert (
-        finished(live, made.json()["id"])["summary"]["digest"] == by_hand["digest"] == run(Scenario.load(whole)).digest
-    )
+    assert wait(live, made.json()["id"])["summary"]["digest"] == by_hand["digest"] == run(Scenario.load(whole)).digest
     bench = live.bench(whole)
     live.until(bench["id"], lambda now: now["state"] == "paused" and now["tick"] >= 500)
     assert live.http.get(f"/api/v1/benches/{bench['id']}/digest").json()["digest"] == by_hand["digest"]
@@ -88,25 +79,21 @@ def test_a_wrong_unit_is_refused_with_its_place_and_nothing_is_made(live: Any) -
     assert live.http.get("/api/v1/benches").json() == before
 
 
-@pytest.mark.parametrize("door", ["reset", "stream", "benches", "links"])
-def test_a_student_brings_no_unit_by_any_door(live: Any, door: str) -> None:
+def test_a_student_brings_no_unit_by_any_door(live: Any) -> None:
     group = open_class(live)
     try:
         student = join(live, group, "Ada")
         values = {"units.pi.source": PI}
-        if door == "stream":
-            with student.stream() as stream:
-                reply = stream.command("reset", values=values)
-                assert "error" in reply and "units" in json.dumps(reply), reply
-                return
-        asked = {
-            "reset": (f"/api/v1/benches/{student.bench}/commands", {"kind": "reset", "values": values}),
-            "benches": ("/api/v1/benches", {"scenario": document()}),
-            "links": ("/api/v1/links", {"scenario": document()}),
-        }
-        path, body = asked[door]
-        answer = student.ask("POST", path, json=body)
-        assert answer.status_code in (403, 422), answer.text
+        for path, body in (
+            (f"/api/v1/benches/{student.bench}/commands", {"kind": "reset", "values": values}),
+            ("/api/v1/benches", {"scenario": document()}),
+            ("/api/v1/links", {"scenario": document()}),
+        ):
+            answer = student.ask("POST", path, json=body)
+            assert answer.status_code in (403, 422), answer.text
+        with student.stream() as stream:
+            reply = stream.command("reset", values=values)
+            assert "error" in reply and "units" in json.dumps(reply), reply
         assert "pi.voltage" not in json.dumps(student.ask("GET", f"/api/v1/benches/{student.bench}").json())
     finally:
         live.http.delete(f"/api/v1/classes/{group['id']}")
@@ -158,7 +145,7 @@ def test_everyone_may_bring_units_behind_the_wall_and_by_every_door(serve: Any) 
             assert live.get(member["bench"])["controller"] == "pi"
             asked = document(controller={"kind": "pi"}, units={"pi": {"source": WALLED}})
             made = live.http.post("/api/v1/runs", json={"scenario": asked})
-            assert finished(live, made.json()["id"])["summary"]["digest"] == alone
+            assert wait(live, made.json()["id"])["summary"]["digest"] == alone
             with live.anonymous(headers={"Origin": live.address}) as nobody:
                 assert nobody.post("/api/v1/benches", json={"scenario": document()}).status_code == 401
             wrong = {"kind": "reset", "values": {"units.pi.source": odd("step", "import os")}}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import gzip
 from pathlib import Path
 from typing import Any
@@ -46,11 +47,11 @@ def test_the_page_is_at_the_root(dist: Path) -> None:
     assert b"the page" in body
 
 
-@pytest.mark.parametrize("path", ["/bench/abc", "/some/path/inside", "//evil.example"])
-def test_a_path_that_is_nothing_leads_to_the_page(dist: Path, path: str) -> None:
+def test_a_path_that_is_nothing_leads_to_the_page(dist: Path) -> None:
     """All addresses in the page are relative, so it works at the root alone."""
-    assert get(Page(dist), path)[:2] == (303, {"location": "/", "content-length": "0"})
-    assert get(Page(dist), path, query=b"page=runs")[1]["location"] == "/?page=runs"
+    for path in ("/bench/abc", "/some/path/inside", "//evil.example"):
+        assert get(Page(dist), path)[:2] == (303, {"location": "/", "content-length": "0"})
+        assert get(Page(dist), path, query=b"page=runs")[1]["location"] == "/?page=runs"
 
 
 def test_assets_with_a_hash_in_their_name_are_kept_by_the_browser(dist: Path) -> None:
@@ -59,40 +60,34 @@ def test_assets_with_a_hash_in_their_name_are_kept_by_the_browser(dist: Path) ->
     assert get(Page(dist), "/favicon.svg")[1]["cache-control"] == "no-cache"
 
 
-@pytest.mark.parametrize(
-    ("accepts", "is_compressed"),
-    [
+def test_who_takes_gzip_gets_what_the_build_has_compressed(dist: Path) -> None:
+    (dist / "assets" / "app-1a2b.js.gz").write_bytes(gzip.compress(b"let x"))
+    for accepts, is_compressed in (
         ("gzip, deflate, br", True),
         ("br;q=1.0, GZIP;q=0.5", True),
         ("", False),
         ("gzip;q=0, br", False),
         ("x-gzip", False),
-    ],
-)
-def test_who_takes_gzip_gets_what_the_build_has_compressed(dist: Path, accepts: str, is_compressed: bool) -> None:
-    (dist / "assets" / "app-1a2b.js.gz").write_bytes(gzip.compress(b"let x"))
-    status, headers, body = get(Page(dist), "/assets/app-1a2b.js", accepts=accepts)
-    assert status == 200 and headers["content-type"].startswith("text/javascript") and "immutable" in str(headers)
-    assert headers.get("content-encoding") == ("gzip" if is_compressed else None)
-    assert (gzip.decompress(body) if is_compressed else body) == b"let x"
-    assert headers["vary"] == "Accept-Encoding"
-    assert get(Page(dist), "/favicon.svg", accepts=accepts)[2] == b"<svg/>"  # which the build has not compressed
+    ):
+        status, headers, body = get(Page(dist), "/assets/app-1a2b.js", accepts=accepts)
+        assert status == 200 and headers["content-type"].startswith("text/javascript") and "immutable" in str(headers)
+        assert headers.get("content-encoding") == ("gzip" if is_compressed else None)
+        assert (gzip.decompress(body) if is_compressed else body) == b"let x"
+        assert headers["vary"] == "Accept-Encoding"
+        assert get(Page(dist), "/favicon.svg", accepts=accepts)[2] == b"<svg/>"  # which the build has not compressed
 
 
-@pytest.mark.parametrize("path", ["/api/v1/nothing", "/assets/nothing.js", "/benches/x/y", "/health/x"])
-def test_what_is_not_there_is_not_the_page(dist: Path, path: str) -> None:
-    with pytest.raises(HTTPException) as caught:
-        get(Page(dist), path)
-    assert caught.value.status_code == 404
+def test_what_is_not_there_is_not_the_page(dist: Path) -> None:
+    for path in ("/api/v1/nothing", "/assets/nothing.js", "/benches/x/y", "/health/x"):
+        with pytest.raises(HTTPException) as caught:
+            get(Page(dist), path)
+        assert caught.value.status_code == 404
 
 
-@pytest.mark.parametrize("path", ["/../secret.txt", "/assets/../../secret.txt", "//secret.txt", "/..%2fsecret.txt"])
-def test_nothing_outside_the_build_is_served(dist: Path, path: str) -> None:
-    try:
-        _, _, body = get(Page(dist), path)
-    except HTTPException:
-        return
-    assert b"secret" not in body
+def test_nothing_outside_the_build_is_served(dist: Path) -> None:
+    for path in ("/../secret.txt", "/assets/../../secret.txt", "//secret.txt", "/..%2fsecret.txt"):
+        with contextlib.suppress(HTTPException):
+            assert b"secret" not in get(Page(dist), path)[2], path
 
 
 def test_without_a_build_it_says_what_to_do(tmp_path: Path) -> None:

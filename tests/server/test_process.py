@@ -6,13 +6,13 @@ import asyncio
 import contextlib
 import gc
 import io
+import json
 import os
 import signal
 import socket
 import sqlite3
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -22,12 +22,15 @@ import httpx
 import pyarrow.parquet as pq
 import pytest
 import uvicorn
+from typer.testing import CliRunner
 from websockets.exceptions import ConnectionClosed
 
+from server import cli, logs
 from server.app import create_app
 from server.serve import make_server
 from server.settings import Settings
 from server.stream.wire import SUBPROTOCOL
+from tests.server.forks import Forks
 
 ROOT = Path(__file__).resolve().parents[2]
 TOKEN = "a-canary-token-for-the-logs"
@@ -41,6 +44,7 @@ def process(folder: Path, *arguments: str, **more: str) -> Iterator[Any]:
         "COMBBENCH_TOKEN": TOKEN,
         "COMBBENCH_DATA": str(folder / "data"),
         "COMBBENCH_LOG_LEVEL": "DEBUG",
+        "COMBBENCH_FIGURES": "false",
         **more,
     }
     command = [sys.executable, "-m", "server.cli", "serve", "--port", "0", *arguments]
@@ -106,40 +110,33 @@ def test_a_full_disk_behind_the_printed_address_is_no_reason_not_to_serve(
     assert "cannot be printed: No space left on device" in caplog.text
 
 
-def test_the_printed_link_lets_in_whatever_the_token(tmp_path: Path) -> None:
+def test_the_printed_link_lets_in_whatever_the_token(loaded: Forks, tmp_path: Path) -> None:
     token = "aaaaaaaaaaaaaaaa&b+c#d%41 e"
-    with process(tmp_path, COMBBENCH_TOKEN=token) as running:
-        link = running.address.removeprefix("CombBench is at ")
+    with loaded.serve(tmp_path / "data", token=token, log=str(tmp_path / "log"), log_level="DEBUG") as served:
         with httpx.Client(trust_env=False, timeout=120) as page:
-            assert page.get(link).status_code == 303
-            assert page.get(link.partition("/?")[0] + "/api/v1/benches").status_code == 200
-    assert token not in (tmp_path / "stderr").read_text()
+            assert page.get(served.link).status_code == 303
+            assert page.get(f"{served.address}/api/v1/benches").status_code == 200
+    assert token not in (tmp_path / "log").read_text()
 
 
-def test_a_damaged_token_file_does_not_keep_it_from_starting(tmp_path: Path) -> None:
+def test_a_damaged_token_file_does_not_keep_it_from_starting(loaded: Forks, tmp_path: Path) -> None:
     (tmp_path / "data").mkdir()
     (tmp_path / "data" / "token").write_bytes(b"\xff\xfe")
-    with process(tmp_path, COMBBENCH_TOKEN="") as running:
+    with loaded.serve(tmp_path / "data", token=None, log=str(tmp_path / "log")) as served:
         kept = (tmp_path / "data" / "token").read_text().strip()
-        assert running.address.endswith(f"/?token={kept}") and len(kept) >= 43
-    assert "Traceback" not in (tmp_path / "stderr").read_text()
+        assert served.link.endswith(f"/?token={kept}") and len(kept) >= 43
+    assert "Traceback" not in (tmp_path / "log").read_text()
 
 
-def test_what_it_keeps_is_for_its_own_user_alone(tmp_path: Path) -> None:
-    before = os.umask(0o022)
-    try:
-        with process(tmp_path) as running, client(running.address) as http:
-            bench = http.post("/api/v1/benches", json={"scenario": "first-look"}).json()["id"]
-            http.post(f"/api/v1/benches/{bench}/recordings")
-            run = http.post("/api/v1/runs", json={"scenario": "first-look"}).json()["id"]
-            end = time.monotonic() + 60
-            while http.get(f"/api/v1/runs/{run}").json()["state"] != "done":
-                assert time.monotonic() < end
-                time.sleep(0.1)
-            data = tmp_path / "data"
-            kept = {str(path.relative_to(data)): path.stat().st_mode & 0o777 for path in [data, *data.rglob("*")]}
-    finally:
-        os.umask(before)
+def test_what_it_keeps_is_for_its_own_user_alone(loaded: Forks, tmp_path: Path) -> None:
+    data = tmp_path / "data"
+    with loaded.serve(data, figures=False) as served:
+        bench = served.http.post("/api/v1/benches", json={"scenario": "first-look"}).json()["id"]
+        served.http.post(f"/api/v1/benches/{bench}/recordings")
+        run = served.http.post("/api/v1/runs", json={"scenario": "first-look", "set": {"samples": 300}}).json()["id"]
+        while served.http.get(f"/api/v1/runs/{run}").json()["state"] != "done":
+            os.sched_yield()
+        kept = {str(path.relative_to(data)): path.stat().st_mode & 0o777 for path in [data, *data.rglob("*")]}
     assert {"combbench.sqlite3", "combbench.sqlite3-wal", "combbench.sqlite3-shm", "recordings", "runs"} <= set(kept)
     assert any(name.endswith(".arrows") for name in kept) and f"runs/{run}/run.parquet" in kept
     assert {name: mode for name, mode in kept.items() if mode not in (0o700, 0o600)} == {}
@@ -167,7 +164,8 @@ def test_it_says_where_it_is_and_says_goodbye(tmp_path: Path) -> None:
                 subprotocols=[SUBPROTOCOL],  # type: ignore[list-item]
                 proxy=None,
             )
-            time.sleep(1.0)
+            while json.loads(stream.recv(timeout=60)).get("tick", 0) < 1500:
+                pass
             running.send_signal(signal.SIGTERM)
             last: list[str] = []
             with pytest.raises(ConnectionClosed) as caught:
@@ -188,78 +186,71 @@ def test_it_says_where_it_is_and_says_goodbye(tmp_path: Path) -> None:
     assert "Traceback" not in said
 
 
-def test_a_kill_loses_nothing_that_was_written(tmp_path: Path) -> None:
+def test_a_kill_loses_nothing_that_was_written(loaded: Forks, tmp_path: Path) -> None:
     """Every half second is written, so a kill costs no more than that on a machine that keeps up."""
-    with process(tmp_path) as running, client(running.address) as http:
-        bench = http.post("/api/v1/benches", json={"scenario": "first-look", "time_scale": 0.02}).json()
-        recording = http.post(f"/api/v1/benches/{bench['id']}/recordings").json()
-        growing = tmp_path / "data" / "recordings" / f"{recording['id']}.arrows"
+    with loaded.serve(tmp_path, figures=False, run_workers=0) as served:
+        bench = served.http.post("/api/v1/benches", json={"scenario": "first-look", "time_scale": 0.02}).json()
+        recording = served.http.post(f"/api/v1/benches/{bench['id']}/recordings").json()
+        growing = tmp_path / "recordings" / f"{recording['id']}.arrows"
         sizes = {growing.stat().st_size}
-        end = time.monotonic() + 30
         while len(sizes) < 4:
-            assert time.monotonic() < end, "the recording does not grow"
-            time.sleep(0.05)
+            served.http.get("/health/live")
             sizes.add(growing.stat().st_size)
-        running.kill()
-        running.wait(5)
-    with process(tmp_path) as running, client(running.address) as http:
-        found = http.get(f"/api/v1/recordings/{recording['id']}").json()
+        served.kill()
+    with loaded.serve(tmp_path, figures=False, run_workers=0) as served:
+        found = served.http.get(f"/api/v1/recordings/{recording['id']}").json()
         assert found["state"] == "aborted"
-        trace = http.get(f"/api/v1/recordings/{recording['id']}/trace")
+        trace = served.http.get(f"/api/v1/recordings/{recording['id']}/trace")
     ticks = pq.read_table(io.BytesIO(trace.content))["tick"].to_pylist()
     assert len(ticks) == found["ticks"] > 500
     assert ticks == list(range(found["start_tick"], found["start_tick"] + found["ticks"]))
 
 
-@pytest.mark.parametrize(
-    ("arguments", "environment", "words"),
-    [
-        (["--host", "0.0.0.0"], {"COMBBENCH_TOKEN": ""}, ["0.0.0.0", "token"]),
-        (["--host", "0.0.0.0"], {"COMBBENCH_TOKEN": "short"}, ["16 characters"]),
-        ([], {"COMBBENCH_TOKEN": "caf\u00e9-caf\u00e9-caf\u00e9-caf\u00e9"}, ["token", "header"]),
-        ([], {"COMBBENCH_MAX_BENCHES": "none"}, ["max_benches", "COMBBENCH_MAX_BENCHES"]),
-        ([], {"COMBBENCH_DATA": "/proc/nowhere"}, ["/proc/nowhere", "data"]),
-    ],
-)
-def test_it_does_not_start_with_wrong_settings(
-    tmp_path: Path, arguments: list[str], environment: dict[str, str], words: list[str]
-) -> None:
-    with process(tmp_path, *arguments, **environment) as running:
-        assert running.wait(20) == 2
-        assert running.address == ""
-    said = (tmp_path / "stderr").read_text()
-    assert all(word in said for word in words), said
-    assert "Traceback" not in said and len(said.strip().splitlines()) == 1
+def test_it_does_not_start_with_wrong_settings(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Each is told in one line. In `test_a_port_that_is_taken_is_told_in_one_line` a process says so."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(logs, "configure", lambda _: None)
+    wrong: list[tuple[list[str], dict[str, str], list[str]]] = [
+        (["--host", "0.0.0.0"], {"TOKEN": ""}, ["0.0.0.0", "token"]),
+        (["--host", "0.0.0.0"], {"TOKEN": "short"}, ["16 characters"]),
+        ([], {"TOKEN": "caf\u00e9-caf\u00e9-caf\u00e9-caf\u00e9"}, ["token", "header"]),
+        ([], {"MAX_BENCHES": "none"}, ["max_benches", "COMBBENCH_MAX_BENCHES"]),
+        ([], {"DATA": "/proc/nowhere"}, ["/proc/nowhere", "data"]),
+    ]
+    for arguments, environment, words in wrong:
+        told = {"COMBBENCH_TOKEN": TOKEN, **{f"COMBBENCH_{name}": value for name, value in environment.items()}}
+        done = CliRunner().invoke(cli.app, ["serve", "--port", "0", *arguments], env=told)
+        assert done.exit_code == 2 and done.stdout == "", done.output
+        assert all(word in done.stderr for word in words) and len(done.stderr.strip().splitlines()) == 1, done.stderr
 
 
 def test_a_port_that_is_taken_is_told_in_one_line(tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = str(taken.getsockname()[1])
         with process(tmp_path, "--port", port) as running:
-            assert running.wait(20) == 2
+            assert running.wait(60) == 2
     said = (tmp_path / "stderr").read_text()
     assert f"127.0.0.1:{port}" in said and len(said.strip().splitlines()) == 1
 
 
-def test_a_data_folder_serves_one_server_until_that_has_ended(tmp_path: Path) -> None:
+def test_a_data_folder_serves_one_server_until_that_has_ended(loaded: Forks, tmp_path: Path) -> None:
     """The second one touches nothing: the recording of the first goes on. A killed one leaves the folder free."""
-    second = tmp_path / "second"
-    second.mkdir()
-    with process(tmp_path) as running, client(running.address) as http:
-        bench = http.post("/api/v1/benches", json={"scenario": "first-look"}).json()
-        recording = http.post(f"/api/v1/benches/{bench['id']}/recordings").json()
-        with process(second, "--data", str(tmp_path / "data")) as other:
-            assert other.wait(20) == 2
-        said = (second / "stderr").read_text()
-        assert f"{tmp_path / 'data'} is in use by process {running.pid} on {socket.gethostname()}" in said
+    data = tmp_path / "data"
+    with loaded.serve(data, figures=False, run_workers=0) as served:
+        bench = served.http.post("/api/v1/benches", json={"scenario": "first-look"}).json()
+        recording = served.http.post(f"/api/v1/benches/{bench['id']}/recordings").json()
+        with process(tmp_path, "--data", str(data)) as other:
+            assert other.wait(60) == 2
+        said = (tmp_path / "stderr").read_text()
+        assert f"{data} is in use by process {served.pid} on {socket.gethostname()}" in said
         assert len(said.strip().splitlines()) == 1
-        assert http.get(f"/api/v1/recordings/{recording['id']}").json()["state"] == "recording"
-        running.kill()
-        running.wait(5)
-    with process(tmp_path) as running:
-        assert running.address
+        assert served.http.get(f"/api/v1/recordings/{recording['id']}").json()["state"] == "recording"
+        served.kill()
+    with loaded.serve(data, figures=False, run_workers=0) as served:
+        assert served.link
 
 
+@pytest.mark.long
 def test_it_serves_with_its_standard_output_closed(tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
@@ -275,9 +266,9 @@ def test_it_serves_with_its_standard_output_closed(tmp_path: Path) -> None:
                 with contextlib.suppress(httpx.TransportError):
                     assert page.get("/health/live").status_code == 200
                     break
-                time.sleep(0.1)
+                os.sched_yield()
         running.terminate()
-        assert running.wait(20) == 0
+        assert running.wait(60) == 0
     finally:
         if running.poll() is None:
             running.kill()

@@ -17,7 +17,7 @@ from server.cli import app
 from tests.core.own.test_own_units import COPIED, source_of
 from tests.core.own.texts import PI, odd
 from tests.server.people.group import join, open_class
-from tests.server.test_own_units import finished
+from tests.server.runs.test_runs import wait
 
 DOOR = "/api/v1/units"
 
@@ -53,20 +53,17 @@ def test_a_checked_unit_comes_with_all_the_page_shows(live: Any) -> None:
     assert found["unit"]["hash"] == unit("pi", PI).hash
 
 
-@pytest.mark.parametrize(
-    ("text", "line", "column", "words"),
-    [
+def test_a_mistake_comes_with_its_place(live: Any) -> None:
+    for text, line, column, words in (
         ("import os\n", 1, 1, "only math is imported"),
         ("x = = 1\n", 1, 5, "no Python syntax"),
         ("", 1, 1, "declares no unit"),
         ("x = 1\n" * 20_000, 1, 1, "characters long"),
-    ],
-)
-def test_a_mistake_comes_with_its_place(live: Any, text: str, line: int, column: int, words: str) -> None:
-    found = check(live, text)
-    assert found["unit"] is None
-    assert (found["error"]["line"], words in found["error"]["message"]) == (line, True), found
-    assert found["error"]["column"] == column
+    ):
+        found = check(live, text)
+        error = found["error"]
+        assert found["unit"] is None and words in error["message"], found
+        assert (error["line"], error["column"]) == (line, column), found
 
 
 def test_the_place_is_that_of_the_mistake(live: Any) -> None:
@@ -76,10 +73,10 @@ def test_the_place_is_that_of_the_mistake(live: Any) -> None:
     assert (error["line"], error["column"]) == (line, 23) and "truth" in error["message"]
 
 
-@pytest.mark.parametrize("name", ["", "Pi", "a-b", "../x", "p" * 33])
-def test_a_name_is_one_of_small_letters(live: Any, name: str) -> None:
-    answer = live.http.post(DOOR, json={"name": name, "source": PI})
-    assert answer.status_code == 422 and answer.json()["error"]["field"] == "name"
+def test_a_name_is_one_of_small_letters(live: Any) -> None:
+    for name in ("", "Pi", "a-b", "../x", "p" * 33):
+        answer = live.http.post(DOOR, json={"name": name, "source": PI})
+        assert answer.status_code == 422 and answer.json()["error"]["field"] == "name", name
 
 
 def test_texts_that_were_checked_are_let_go() -> None:
@@ -125,7 +122,7 @@ def test_what_a_server_keeps_is_on_every_new_bench_and_in_runs_that_name_it(serv
         named = {**short, "controller.kind": "my_pi"}
         run = live.http.post("/api/v1/runs", json={"scenario": "first-look", "set": named})
         assert run.status_code == 202, run.text
-        digests = [finished(live, one["id"])["summary"]["digest"] for one in (plain, run.json())]
+        digests = [wait(live, one["id"])["summary"]["digest"] for one in (plain, run.json())]
         told = ["run", "first-look", "--set", "duration_ms=5", "--json"]
         by_hand = [CliRunner().invoke(app, told), CliRunner().invoke(app, [*told, "--unit", str(file), *WITH_PI])]
         assert digests == [json.loads(one.stdout)["digest"] for one in by_hand]
@@ -155,26 +152,17 @@ def test_a_student_has_the_units_of_the_server_and_brings_no_other(serve: Any, t
 WITH_PI = ("--set", "controller.kind=my_pi")
 
 
-@pytest.mark.parametrize(
-    ("name", "source", "status", "field"),
-    [
-        ("pid", PI, 409, "name"),
-        ("my_pi", odd("step", "import os"), 422, "source.line"),
-        ("my_pi", PI.replace("p.dt_ms = context.dt_ms", "p.dt_ms = 1e400 - 1e400"), 422, ""),
-        ("Pi", PI, 422, "name"),
-    ],
-)
-def test_what_cannot_be_kept_is_not_written(
-    serve: Any, tmp_path: Path, name: str, source: str, status: int, field: str
-) -> None:
+def test_what_cannot_be_kept_is_not_written_and_a_server_keeps_so_many_units(serve: Any, tmp_path: Path) -> None:
     with serve(folder=tmp_path) as live:
-        refused = live.http.put(f"{DOOR}/{name}", json={"source": source})
-        assert refused.status_code == status and refused.json()["error"]["field"].startswith(field), refused.text
-        assert not [*tmp_path.glob("units/*")]
-
-
-def test_a_server_keeps_so_many_units(serve: Any, tmp_path: Path) -> None:
-    with serve(folder=tmp_path) as live:
+        for name, source, status, field in (
+            ("pid", PI, 409, "name"),
+            ("my_pi", odd("step", "import os"), 422, "source.line"),
+            ("my_pi", PI.replace("p.dt_ms = context.dt_ms", "p.dt_ms = 1e400 - 1e400"), 422, ""),
+            ("Pi", PI, 422, "name"),
+        ):
+            refused = live.http.put(f"{DOOR}/{name}", json={"source": source})
+            assert refused.status_code == status and refused.json()["error"]["field"].startswith(field), refused.text
+            assert not [*tmp_path.glob("units/*")]
         for number in range(8):
             assert live.http.put(f"{DOOR}/pi_{number}", json={"source": PI}).status_code == 200
         full = live.http.put(f"{DOOR}/one_more", json={"source": PI})

@@ -60,12 +60,7 @@ def test_what_the_board_notes_is_in_the_order_it_happened() -> None:
     assert event.seq == bench.events.last == 7
     do(bench, fault="damping", severity=0.5, at_sample=80)
     do(bench, kind="pause")
-    assert told(bench) == [
-        *BEGUN,
-        (20, "inject"),
-        (30, "refused"),
-        *[(50, "switch"), (50, "scheduled"), (50, "pause")],
-    ]
+    assert told(bench) == [*BEGUN, (20, "inject"), (30, "refused"), *[(50, "switch"), (50, "scheduled"), (50, "pause")]]
     with pytest.raises(InputError):
         do(bench, switch="mrac")
     assert bench.events.last == 9

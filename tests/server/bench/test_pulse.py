@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -103,12 +104,12 @@ def test_of_several_threads_one_at_work_is_enough() -> None:
         assert not any(pulse.is_blocked for pulse in felt(waits, works))
 
 
-@pytest.mark.parametrize("package", ["numba.core.compiler_lock", "pyarrow.parquet", "importlib._bootstrap"])
-def test_a_thread_for_which_another_works_is_at_work(package: str) -> None:
-    names = {"__name__": package}
-    exec("def work(over): over.wait()", names)
-    with at(names["work"]) as thread:  # type: ignore[arg-type]
-        assert not any(pulse.is_blocked for pulse in felt(thread))
+def test_a_thread_for_which_another_works_is_at_work() -> None:
+    for package in ("numba.core.compiler_lock", "pyarrow.parquet", "importlib._bootstrap"):
+        names: dict[str, Any] = {"__name__": package}
+        exec("def work(over): over.wait()", names)
+        with at(names["work"]) as thread:
+            assert not any(pulse.is_blocked for pulse in felt(thread)), package
 
 
 def test_a_system_that_does_not_tell_blocks_nothing() -> None:

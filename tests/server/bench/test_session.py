@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
 
@@ -136,20 +137,17 @@ def test_who_waits_for_a_step_hears_how_it_ended(how: str) -> None:
     kept = bench.snapshots.take("here", "test", 8)
     asked = step(bench, ticks=5000)
     bench.slice(None)
-    if how == "reset":
-        bench.reset(bench.scenario, build(bench.scenario), "test")
-    elif how == "restore":
-        bench.restore(kept.id, "test")
-    elif how == "close":
-        bench.close()
-    elif how == "fail":
-        bench.fail(RuntimeError("broken on purpose"))
-    elif how == "start":
-        bench.execute(parse({"kind": "start"}), "test")
-    else:
-        bench.execute(parse({"set": {"guard.travel_um": 1e-3}}), "test")
-        while bench.is_running:
-            bench.slice(None)
+    acts: dict[str, Callable[[], Any]] = {
+        "reset": lambda: bench.reset(bench.scenario, build(bench.scenario), "test"),
+        "restore": lambda: bench.restore(kept.id, "test"),
+        "close": bench.close,
+        "fail": lambda: bench.fail(RuntimeError("broken on purpose")),
+        "start": lambda: bench.execute(parse({"kind": "start"}), "test"),
+        "trip": lambda: bench.execute(parse({"set": {"guard.travel_um": 1e-3}}), "test"),
+    }
+    acts[how]()
+    while how == "trip" and bench.is_running:
+        bench.slice(None)
     assert asked.result(0).text == f"stepped {asked.result(0).text.split()[1]} of 5000 ticks"
     assert bench.is_running == (how == "start")
 

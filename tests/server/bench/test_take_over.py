@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
@@ -25,6 +26,13 @@ class Stuck(Work):
         self.let_go.wait()
         self.went_on = True
         return False
+
+
+def ended(crew: Any) -> None:
+    """Wait for the end of all threads of a crew."""
+    for thread in list(crew.threads):
+        thread.join(30)
+    assert crew.threads == []
 
 
 @pytest.fixture
@@ -49,7 +57,7 @@ def test_a_bench_that_hangs_is_given_up_and_the_others_go_on(engine: Engine) -> 
     until(lambda: good.tick > ticks)
     assert engine.running == [good] and engine.is_alive
     stuck.let_go.set()
-    until(lambda: before.threads == [])
+    ended(before)
     assert not stuck.went_on, "who is left behind runs no further line"
 
 
@@ -72,7 +80,7 @@ def test_a_job_that_hangs_is_answered_and_the_next_is_done(engine: Engine) -> No
     with pytest.raises(ApiError, match="given it up"):
         hung.result(30)
     let_go.set()
-    until(lambda: before.threads == [])
+    ended(before)
     assert after == []
 
 
@@ -83,30 +91,33 @@ def test_a_thread_that_dies_answers_its_job_and_another_takes_its_place(engine: 
     with pytest.raises(SystemExit):
         engine.submit(die).result(30)
     before = engine.crew
-    until(lambda: not before.main.is_alive())
+    before.main.join(30)
     assert not engine.is_alive and before.held == []
     waiting = engine.submit(lambda: 42)
     lost: list[Workload] = []
     engine.take_over(lost.extend)
     assert lost == []
     assert waiting.result(30) == 42
-    until(lambda: before.threads == [])
+    ended(before)
 
 
 def test_what_ends_a_helper_ends_the_thread_that_waits_for_it(engine: Engine) -> None:
-    deadly = threading.Event()
+    deadly, helps = threading.Event(), threading.Event()
 
     class Dies(Work):
         def slice(self, target: int | None) -> bool:
             if deadly.is_set() and threading.current_thread() is not engine.crew.main:
+                helps.set()
                 raise SystemExit
+            if deadly.is_set():  # so that the other is left to a helper
+                helps.wait(30)
             return super().slice(target)
 
     for number in range(2):
-        engine.submit(engine.add, Dies(str(number), 1e6, engine.clock, 1e-3)).result(30)
+        engine.submit(engine.add, Dies(str(number), 1e6, engine.clock)).result(30)
     deadly.set()
-    until(lambda: not engine.crew.main.is_alive())
-    assert engine.crew.held == []
+    engine.crew.main.join(30)
+    assert not engine.crew.main.is_alive() and engine.crew.held == []
 
 
 def test_what_is_urgent_comes_before_every_other_slice_and_job(engine: Engine) -> None:
@@ -153,7 +164,7 @@ def test_while_something_urgent_waits_no_slice_begins(engine: Engine) -> None:
     assert found == [0]
 
 
-def test_the_end_does_not_wait_for_what_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_end_does_not_wait_for_what_hangs() -> None:
     engine = Engine(Metrics(), lambda: None)
     engine.start()
     stuck = Stuck(engine)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -198,12 +199,20 @@ def test_what_a_helper_has_in_hand_is_waited_for_when_the_thread_has_ended(yard:
     assert yard.engine.taken_over == 1 and yard.heard.lost == []
 
 
+class Slow(Work):
+    """A bench whose slices last."""
+
+    def slice(self, target: int | None) -> bool:
+        time.sleep(0.02)
+        return super().slice(target)
+
+
 def test_an_engine_that_cannot_keep_up_never_trips() -> None:
     engine, heard = Engine(Metrics(), lambda: None), Heard()
     dog = Watchdog(engine, heard)
     engine.start()
     dog.start()
-    works = [Work(str(n), 1e7, engine.clock, 0.02) for n in range(4)]
+    works = [Slow(str(n), 1e7, engine.clock) for n in range(4)]
     for work in works:
         engine.submit(engine.add, work).result(5)
     until(lambda: min(work.rounds for work in works) > 20)

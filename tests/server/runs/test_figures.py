@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import errno
 import os
-import time
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -25,14 +25,16 @@ def few(monkeypatch: pytest.MonkeyPatch, *more: Any) -> None:
         monkeypatch.setattr(f"{module}.library", lambda: chosen)
 
 
-def settled(live: Any, seconds: float = 90.0) -> dict[str, Any]:
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        found: dict[str, Any] = live.http.get("/api/v1/gallery").json()
-        if not found["figures"]["is_making"]:
-            return found
-        time.sleep(0.1)
-    raise TimeoutError(found["figures"])
+def settled(live: Any) -> dict[str, Any]:
+    """Return the gallery once no figure is being made."""
+
+    async def made() -> None:
+        await asyncio.wait([live.service.figures._task])
+
+    asyncio.run_coroutine_threadsafe(made(), live.service._loop).result(120)
+    found: dict[str, Any] = live.http.get("/api/v1/gallery").json()
+    assert not found["figures"]["is_making"]
+    return found
 
 
 def test_figures_are_made_once_and_survive_a_restart(

@@ -10,6 +10,7 @@ import pytest
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
+from tests.server.runs.test_large_campaign import ended
 from tests.server.runs.test_runs import long_run, wait
 
 RUNS = "/api/v1/runs"
@@ -113,8 +114,7 @@ def test_campaigns_have_names_and_are_removed(live: Any) -> None:
     for query, is_there in (("text=noise", True), ("text=other", False), ("scenario=ch5-seven-step", True)):
         listed = [one["id"] for one in live.http.get(f"{sweeps}?{query}").json()["sweeps"]]
         assert (found["id"] in listed) == is_there
-    while live.http.get(f"{sweeps}/{found['id']}").json()["state"] in ("queued", "running"):
-        pass
+    assert ended(live, found["id"])["state"] == "done"
     assert live.http.patch(f"{sweeps}/{found['id']}", json={"label": "renamed"}).json()["label"] == "renamed"
     assert live.http.post(f"{sweeps}/remove", json={"ids": [found["id"]]}).json() == {"removed": 1}
     refused(live.http.get(f"{sweeps}/{found['id']}"), 404, "not_found")

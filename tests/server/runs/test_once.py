@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-import time
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,7 @@ from server.cli import app
 from server.store.database import Database
 from server.store.models import ResultRow
 from tests.server.conftest import serving
-from tests.server.forks import forks
+from tests.server.forks import Forks
 from tests.server.runs.test_large_campaign import ended
 from tests.server.runs.test_listing import refused
 from tests.server.runs.test_runs import until_running, wait
@@ -116,43 +116,38 @@ def rows(data: Path) -> dict[str, Any]:
         database.close()
 
 
-def until(what: Callable[[], bool], seconds: float = 60.0) -> None:
-    end = time.monotonic() + seconds
-    while not what():
-        assert time.monotonic() < end
-        time.sleep(0.02)
-
-
 LONG = {"scenario": "ch5-seven-step", "set": {"samples": 120_000}, "seeds": "1:4"}
 
 
-def test_a_server_that_is_killed_between_two_seeds_goes_on_with_the_next(tmp_path: Path) -> None:
+@pytest.mark.long
+def test_a_server_that_is_killed_between_two_seeds_goes_on_with_the_next(loaded: Forks, tmp_path: Path) -> None:
     data = tmp_path / "data"
-    with forks(tmp_path / "log") as loaded:
-        with loaded.serve(data, figures=False) as served:
-            run_id = served.http.post(RUNS, json=LONG).json()["id"]
-            until(lambda: len(rows(data)) >= 1)
-            served.kill()
-        before = rows(data)
-        assert 1 <= len(before) < 4
-        with loaded.serve(data, figures=False) as served:
-            until(lambda: served.http.get(f"{RUNS}/{run_id}").json()["state"] == "done")
-            summary = served.http.get(f"{RUNS}/{run_id}").json()["summary"]
-        after = rows(data)
+    with loaded.serve(data, figures=False) as served:
+        run_id = served.http.post(RUNS, json=LONG).json()["id"]
+        while not rows(data):
+            os.sched_yield()
+        served.kill()
+    before = rows(data)
+    assert 1 <= len(before) < 4
+    with loaded.serve(data, figures=False) as served:
+        while (found := served.http.get(f"{RUNS}/{run_id}").json())["state"] != "done":
+            os.sched_yield()
+    after = rows(data)
     assert before.items() <= after.items() and len(after) == 4
-    assert summary["digest"] == run_seeds(with_values(get("ch5-seven-step"), LONG["set"]), range(1, 5))["digest"]
+    expected = run_seeds(with_values(get("ch5-seven-step"), LONG["set"]), range(1, 5))
+    assert found["summary"]["digest"] == expected["digest"]
 
 
 def test_a_run_that_is_cancelled_in_mid_tick_goes_on_from_there(tmp_path: Path) -> None:
     """What is in the table stays, no file does, and nobody waits for the seed under way."""
     with serving(tmp_path) as live:
-        run_id = live.http.post(RUNS, json={**LONG, "set": {"samples": 400_000}}).json()["id"]
-        until(lambda: len(rows(tmp_path)) >= 1)
+        run_id = live.http.post(RUNS, json={**LONG, "set": {"samples": 100_000}}).json()["id"]
+        live.wait(lambda: rows(tmp_path))
         assert 0.0 < until_running(live, run_id)["progress"] < 1.0
         assert live.http.delete(f"{RUNS}/{run_id}").json()["state"] == "cancelled"
         before = rows(tmp_path)
         assert 1 <= len(before) < 4 and not (tmp_path / "runs" / run_id).exists()
-        found = wait(live, live.http.post(RUNS, json={**LONG, "set": {"samples": 400_000}}).json()["id"])
+        found = wait(live, live.http.post(RUNS, json={**LONG, "set": {"samples": 100_000}}).json()["id"])
         assert (found["id"], found["state"], found["progress"]) == (run_id, "done", 1.0)
         assert before.items() <= rows(tmp_path).items() and len(rows(tmp_path)) == 4
         assert live.http.get(f"{RUNS}/{run_id}/report").status_code == 200
@@ -163,7 +158,7 @@ def test_a_short_run_does_not_wait_for_a_long_campaign(serve: Any) -> None:
     with serve(max_queued_runs=2) as live:
         sweep = {"schema": 1, "id": "long", "scenario": "ch5-seven-step", "seeds": "1:50000"}
         long = live.http.post(SWEEPS, json={"sweep": sweep}).json()["id"]
-        until(lambda: live.http.get(f"{SWEEPS}/{long}").json()["done"] > 0)
+        live.wait(lambda: live.http.get(f"{SWEEPS}/{long}").json()["done"])
         ask(live, "1:1")
         assert live.http.get(f"{SWEEPS}/{long}").json()["state"] == "running"
         for seed in (1, 2):

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+import pytest
 from typer.testing import CliRunner
 
 from scenarios.campaign.campaign import Campaign
@@ -19,7 +20,8 @@ NAME, SEED = "ch5-seven-step", 23
 VALUES = {"samples": 5000, "events.5.set": {"reference.amplitude_v": 9.0}}
 
 
-def test_one_digest_from_command_line_rest_live_pool_and_cluster(live: Any, tmp_path: Path) -> None:
+def digests(live: Any) -> dict[str, str]:
+    """Return the digest by each way that needs this machine alone."""
     found: dict[str, str] = {}
     changes = ["--set", "samples=5000", "--set", 'events.5.set={"reference.amplitude_v"=9.0}']
     told = CliRunner().invoke(app, ["run", NAME, "--seed", str(SEED), *changes, "--json"])
@@ -35,13 +37,29 @@ def test_one_digest_from_command_line_rest_live_pool_and_cluster(live: Any, tmp_
     assert seen["tick"] == 5000
     found["live"] = seen["digest"]
 
+    paced = live.bench(NAME, set=VALUES, seed=SEED)
+    live.advance(bench=paced["id"], ticks=5000)
+    found["paced"] = live.http.get(f"/api/v1/benches/{paced['id']}/digest").json()["digest"]
+    return found
+
+
+def is_one(found: dict[str, str]) -> bool:
+    return len(set(found.values())) == 1 and all(len(one) == 64 for one in found.values())
+
+
+def test_one_digest_from_command_line_rest_and_live(live: Any) -> None:
+    found = digests(live)
+    assert is_one(found), found
+
+
+@pytest.mark.long
+def test_one_digest_from_pool_and_cluster_too(live: Any, tmp_path: Path) -> None:
+    found, pool, cluster = digests(live), Memory(), Memory()
     sweep = Sweep({"schema": 1, "scenario": NAME, "set": VALUES, "seeds": {"first": SEED, "count": 1}})
-    pool = Memory()
     assert Campaign(sweep, pool, workers=1).run()
-    found["pool"] = next(iter(pool.found.values())).digest
-    cluster = Memory()
     with Cluster(tmp_path) as dask:
         dask.start_worker()
         assert Campaign(sweep, cluster, scheduler=dask.address).run()
-    found["cluster"] = next(iter(cluster.found.values())).digest
-    assert len(set(found.values())) == 1 and all(len(one) == 64 for one in found.values()), found
+    for name, memory in (("pool", pool), ("cluster", cluster)):
+        found[name] = next(iter(memory.found.values())).digest
+    assert is_one(found), found

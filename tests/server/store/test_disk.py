@@ -21,12 +21,13 @@ def broken_off(live: Any, bench: dict[str, Any], recording_id: str) -> dict[str,
     """The recording once it has broken off, after the alarm was seen on the stream and the bench went on."""
     with live.stream(bench["id"]) as stream:
         stream.send(type="subscribe", panel=1, signals=["plant.displacement"], window_ms=1.0)
-        event = stream.until_event(kind="recording_failed", timeout=30)
-        assert "the disk failed" in event["text"]
+        while not (failed := [event for event in stream.events if event["kind"] == "recording_failed"]):
+            live.advance(seconds=0.1)
+            stream.step()
+        assert "the disk failed" in failed[0]["text"]
         tick = live.get(bench["id"])["tick"]
-        stream.frames.clear()
-        stream.until_frame(1)
-        until(lambda: live.get(bench["id"])["tick"] > tick)
+        live.advance(seconds=0.1)
+        stream.until(lambda message: not isinstance(message, dict) and message.head > tick)
     assert live.get(bench["id"])["recording"] == []
     return dict(until(lambda: (one := said(live, recording_id))["state"] != "recording" and one))
 
@@ -49,7 +50,9 @@ def test_a_recording_ends_while_there_is_room_to_make_it_whole(serve: Any, monke
     with serve(disk_reserve_bytes=200_000_000) as live:
         bench = live.bench("first-look", time_scale=0.02)
         started = live.http.post(recordings(bench)).json()
-        until(lambda: live.service.recordings.path(started["id"]).with_suffix(".arrows").stat().st_size > 100_000)
+        part = live.service.recordings.path(started["id"]).with_suffix(".arrows")
+        while part.stat().st_size < 100_000:
+            live.advance(seconds=0.1)
         now[0] = 1.5e8
         found = broken_off(live, bench, started["id"])
         assert found["state"] == "cut_short" and "150 MB are free" in found["reason"]
@@ -72,7 +75,7 @@ def test_what_a_full_disk_could_not_take_is_closed_later(serve: Any, monkeypatch
     with serve() as live:
         bench = live.bench("first-look", time_scale=0.02)
         started = live.http.post(recordings(bench)).json()
-        until(lambda: live.get(bench["id"])["tick"] > 1000)
+        live.advance(bench=bench["id"], ticks=1000)
         database, transact = live.service.database, live.service.database.transact
         is_full = True
 
@@ -95,6 +98,7 @@ def test_what_a_full_disk_could_not_take_is_closed_later(serve: Any, monkeypatch
         is_whole(live, after)
 
 
+@pytest.mark.long
 def test_a_disk_that_takes_no_more(tmp_path: Path) -> None:
     """A real limit of the kernel: no file of the server may grow beyond 3 MB."""
     from tests.server.conftest import Live
@@ -106,6 +110,10 @@ def test_a_disk_that_takes_no_more(tmp_path: Path) -> None:
             def __init__(self) -> None:
                 self.http, self.address = served.http, served.address
 
+            def advance(self, *_: Any, **_more: Any) -> dict[str, int]:
+                """Its time passes by itself."""
+                return {}
+
         live = Far()
         bench = live.bench("first-look", time_scale=0.02)
         started = live.http.post(recordings(bench)).json()
@@ -113,7 +121,7 @@ def test_a_disk_that_takes_no_more(tmp_path: Path) -> None:
         assert found["state"] == "cut_short" and "File too large" in found["reason"]
         is_whole(live, found)
         run = live.http.post("/api/v1/runs", json={"scenario": "ch5-seven-step", "set": {"samples": 30_000}}).json()
-        ended = until(lambda: (one := live.http.get(f"/api/v1/runs/{run['id']}").json())["finished"] and one, 60)
+        ended = until(lambda: (one := live.http.get(f"/api/v1/runs/{run['id']}").json())["finished"] and one)
         assert ended["state"] == "failed" and ended["error"]["code"] == "no_space", ended
         assert live.get(bench["id"])["state"] == "running"
         again = live.http.post(recordings(bench), json={"past_ticks": 100, "ticks": 0}).json()

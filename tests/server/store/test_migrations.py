@@ -11,6 +11,7 @@ import pytest
 from alembic import command
 from sqlalchemy import MetaData, inspect, text
 
+from core.errors import InputError
 from server.store.base import Base
 from server.store.database import Database, alembic_config, make_engine
 from server.store.models import RecordingRow, RequestRow, ResultRow
@@ -147,7 +148,7 @@ def test_runs_and_campaigns_come_into_one_table_and_lead_back(place: Any) -> Non
     database.close()
 
 
-@pytest.mark.parametrize("kind", ["sqlite", "postgresql"])
+@pytest.mark.parametrize("kind", ["sqlite", pytest.param("postgresql", marks=pytest.mark.long)])
 def test_a_data_folder_of_the_sixth_version_opens(
     kind: str, request: pytest.FixtureRequest, serve: Any, tmp_path: Path
 ) -> None:
@@ -195,6 +196,7 @@ def test_it_says_whether_it_can_be_written(tmp_path: Path) -> None:
     database.close()
 
 
+@pytest.mark.long
 def test_it_says_whether_postgresql_can_be_written(postgres_server: str) -> None:
     database = Database(postgres_server + "/postgres")
     assert asyncio.run(database.is_writable())
@@ -204,9 +206,7 @@ def test_it_says_whether_postgresql_can_be_written(postgres_server: str) -> None
     gone.close()
 
 
-@pytest.mark.parametrize("address", ["mysql://a@b/c", "nonsense"])
-def test_another_database_is_refused(address: str) -> None:
-    from core.errors import InputError
-
-    with pytest.raises(InputError, match="database"):
-        Database(address)
+def test_another_database_is_refused() -> None:
+    for address in ("mysql://a@b/c", "nonsense"):
+        with pytest.raises(InputError, match="database"):
+            Database(address)

@@ -6,7 +6,6 @@ import json
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +15,7 @@ from core.errors import InputError
 from server.store.database import Database
 from server.store.models import RequestRow, ResultRow
 from server.store.results import Results
+from tests.server.runs.test_large_campaign import ended as campaign_ended
 from tests.server.runs.test_runs import wait
 from tests.server.store.postgres import ROOT, new_database
 from tests.server.store.test_taking import ended, recordings, stepped
@@ -36,6 +36,7 @@ def test_results_are_put_once(place: Any) -> None:
     database.close()
 
 
+@pytest.mark.long
 def test_a_database_serves_one_server_at_a_time(postgres_server: str, tmp_path: Path) -> None:
     address = new_database(postgres_server, "claimed")
     first, second = Database(address), Database(address)
@@ -52,6 +53,7 @@ def test_a_database_serves_one_server_at_a_time(postgres_server: str, tmp_path: 
     second.close()
 
 
+@pytest.mark.long
 def test_the_service_keeps_all_of_it_in_postgresql(serve: Any, postgres_server: str, tmp_path: Path) -> None:
     address = new_database(postgres_server, "service")
     with serve(database_url=address, folder=tmp_path) as live:
@@ -60,10 +62,7 @@ def test_the_service_keeps_all_of_it_in_postgresql(serve: Any, postgres_server: 
         done = wait(live, live.http.post("/api/v1/runs", json=body).json()["id"])
         assert done["state"] == "done"
         sweep = live.http.post("/api/v1/sweeps", json={"sweep": SWEEP}).json()
-        end = time.monotonic() + 60
-        while (found := live.http.get(f"/api/v1/sweeps/{sweep['id']}").json())["state"] in ("queued", "running"):
-            assert time.monotonic() < end
-            time.sleep(0.1)
+        found = campaign_ended(live, sweep["id"])
         assert (found["state"], found["done"]) == ("done", 4)
         assert live.http.patch(f"/api/v1/sweeps/{sweep['id']}", json={"label": "a % sign"}).status_code == 200
         for query, count in (("text=%25", 1), ("text=_", 0), ("scenario=ch5-seven-step&state=done", 1)):
@@ -87,6 +86,7 @@ def test_the_service_keeps_all_of_it_in_postgresql(serve: Any, postgres_server: 
     database.close()
 
 
+@pytest.mark.long
 def test_the_command_line_puts_a_campaign_into_postgresql(postgres_server: str, tmp_path: Path) -> None:
     address = new_database(postgres_server, "campaign")
     (tmp_path / "small.toml").write_text(

@@ -20,6 +20,7 @@ from server.store.models import RequestRow
 from tests.server.store.postgres import new_database
 
 ROUNDS = 20
+pytestmark = pytest.mark.long
 
 
 def row(name: str, state: str = "queued", **values: object) -> RequestRow:

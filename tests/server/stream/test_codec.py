@@ -46,12 +46,7 @@ def test_a_frame_decodes_to_what_was_encoded(
     frame = decode(joined(number, running, Moment(head, 0.01, 12.5), shown))
     assert (frame.frame, frame.running, frame.head, frame.dt_ms, frame.cut_s) == (number, running, head, 0.01, 12.5)
     for found, meant in zip(frame.panels, given_panels, strict=True):
-        assert (found.panel, found.start, found.end, found.flags) == (
-            meant.panel,
-            meant.start,
-            meant.end,
-            meant.flags,
-        )
+        assert (found.panel, found.start, found.end, found.flags) == (meant.panel, meant.start, meant.end, meant.flags)
         assert found.revision == meant.revision
         np.testing.assert_equal(found.trigger, meant.trigger)
         np.testing.assert_array_equal(found.columns, meant.columns)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import functools
 import json
 from collections.abc import Callable
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -16,6 +18,7 @@ from server.bench.session import Session
 from server.metrics import Metrics
 from server.settings import Settings
 from server.stream import client as client_module
+from server.stream import hub as hub_module
 from server.stream.client import Client
 from server.stream.codec import Frame, decode
 from server.stream.hub import Hub
@@ -31,9 +34,11 @@ class Line:
         self.is_free = True
         self.written: list[bytes] = []
         self.waiting = self.passed_on = 0
+        self.came = asyncio.Event()
 
     def write(self, data: bytes) -> None:
         self.written.append(data)
+        self.came.set()
 
     def messages(self) -> list[Any]:
         """Read what was written, frame by frame of RFC 6455."""
@@ -75,191 +80,205 @@ class Bench:
         return client, line
 
 
-def on_loop(test: Callable[[], Any]) -> None:
-    asyncio.run(test())
+def on_loop(test: Callable[..., Any]) -> Callable[..., None]:
+    """Run a test on a loop of its own."""
+
+    @functools.wraps(test)
+    def run(**given: Any) -> None:
+        asyncio.run(test(**given))
+
+    return run
 
 
-def test_a_frame_comes_at_the_pace_of_frames_and_the_end_all_the_same() -> None:
-    async def play() -> None:
-        bench = Bench(frame_rate_hz=1.0)
-        _, line = bench.page()
-        bench.session.slice(100)
-        bench.hub.publish()
-        assert [frame.head for frame in line.frames()] == [100]
-        bench.session.slice(120)
-        bench.hub.publish()
-        bench.session.slice(137)
-        bench.session.execute(parse({"kind": "pause"}), "test")
-        bench.hub.publish()
-        assert not line.written  # its time has not come, and no later round of the engine will say so
-        for _ in range(1200):
-            if line.written:
-                break
-            await asyncio.sleep(0.05)
-        said = line.messages()
-        assert [m.head for m in said if isinstance(m, Frame)] == [bench.session.board.tick] == [137]
-        assert [e["kind"] for m in said if isinstance(m, dict) and m["type"] == "events" for e in m["events"]] == [
-            "pause"
-        ]
-        bench.hub.publish()
-        await asyncio.sleep(0.1)
-        assert not line.frames()  # once is enough
-
-    on_loop(play)
+async def turns(count: int = 5) -> None:
+    """Let the loop turn some times."""
+    for _ in range(count):
+        await asyncio.sleep(0)
 
 
-def test_all_that_is_due_goes_out_in_one_write() -> None:
-    async def play() -> None:
-        bench = Bench()
-        _, line = bench.page()
+@on_loop
+async def test_a_frame_comes_at_the_pace_of_frames_and_the_end_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(hub_module, "time", SimpleNamespace(monotonic=lambda: 100.0))
+    bench = Bench(frame_rate_hz=50.0)
+    _, line = bench.page()
+    bench.session.slice(100)
+    bench.hub.publish()
+    assert [frame.head for frame in line.frames()] == [100]
+    bench.session.slice(120)
+    bench.hub.publish()
+    bench.session.slice(137)
+    bench.session.execute(parse({"kind": "pause"}), "test")
+    bench.hub.publish()
+    assert not line.written  # its time has not come, and no later round of the engine will say so
+    line.came.clear()
+    await line.came.wait()
+    said = line.messages()
+    assert [m.head for m in said if isinstance(m, Frame)] == [bench.session.board.tick] == [137]
+    assert [e["kind"] for m in said if isinstance(m, dict) and m["type"] == "events" for e in m["events"]] == ["pause"]
+    bench.hub._show()
+    assert not line.frames()  # once is enough
+
+
+@on_loop
+async def test_all_that_is_due_goes_out_in_one_write() -> None:
+    bench = Bench()
+    _, line = bench.page()
+    bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
+    bench.session.slice(100)
+    bench.hub.publish()
+    assert len(line.written) == 1
+    kinds = [message["type"] if isinstance(message, dict) else "frame" for message in line.messages()]
+    assert kinds == ["events", "narration", "status", "frame"]
+
+
+@on_loop
+async def test_what_many_pages_see_is_made_once() -> None:
+    bench = Bench()
+    pages = [bench.page() for _ in range(3)]
+    other, _ = bench.page(width=50)
+    assert len({id(client.panels[1].view) for client, _ in pages}) == 1
+    assert other.panels[1].view is not pages[0][0].panels[1].view
+    bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
+    bench.session.slice(100)
+    bench.hub.publish()
+    assert len({bytes(line.written[0]) for _, line in pages}) == 1
+    room = bench.hub.room(bench.session)
+    news = room.news
+    assert news.events(0) is news.events(0)
+    assert news.status(0, 0) is news.status(0, 0)
+    assert news.status(0, 3) != news.status(0, 0)
+
+
+@on_loop
+async def test_parameters_are_told_when_they_have_changed() -> None:
+    bench = Bench()
+    client, line = bench.page()
+
+    def told() -> list[bool]:
+        client.offer(status=True)
+        return [m["parameters"] is not None for m in line.messages() if m["type"] == "status"]
+
+    assert [told(), told()] == [[True], [False]]
+    bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
+    assert told() == [False]  # an event, but nothing of the scenario
+    bench.session.execute(parse({"set": {"reference.amplitude_v": 3.0}}), "test")
+    assert [told(), told()] == [[True], [False]]
+
+
+@on_loop
+async def test_many_events_bring_the_status_now_and_then() -> None:
+    bench = Bench()
+    _, line = bench.page()
+    room = bench.hub.room(bench.session)
+    said: list[Any] = []
+    for number in range(100):
         bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
-        bench.session.slice(100)
-        bench.hub.publish()
-        assert len(line.written) == 1
-        kinds = [message["type"] if isinstance(message, dict) else "frame" for message in line.messages()]
-        assert kinds == ["events", "narration", "status", "frame"]
-
-    on_loop(play)
-
-
-def test_what_many_pages_see_is_made_once() -> None:
-    async def play() -> None:
-        bench = Bench()
-        pages = [bench.page() for _ in range(3)]
-        other, _ = bench.page(width=50)
-        assert len({id(client.panels[1].view) for client, _ in pages}) == 1
-        assert other.panels[1].view is not pages[0][0].panels[1].view
-        bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
-        bench.session.slice(100)
-        bench.hub.publish()
-        assert len({bytes(line.written[0]) for _, line in pages}) == 1
-        room = bench.hub.room(bench.session)
-        news = room.news
-        assert news.events(0) is news.events(0)
-        assert news.status(0, 0) is news.status(0, 0)
-        assert news.status(0, 3) != news.status(0, 0)
-
-    on_loop(play)
+        list(room.publish(1e6 + 0.01 * number))
+        said += [message for message in line.messages() if isinstance(message, dict)]
+    seen = [event["seq"] for m in said if m["type"] == "events" for event in m["events"]]
+    assert len(seen) == 100 and seen == list(range(seen[0], seen[0] + 100))
+    statuses = sum(m["type"] == "status" for m in said)
+    assert 100 * 0.01 / STATUS_S <= statuses + 1 <= 100 * 0.01 / STATUS_S + 2
 
 
-def test_parameters_are_told_when_they_have_changed() -> None:
-    async def play() -> None:
-        bench = Bench()
-        client, line = bench.page()
-
-        def told() -> list[bool]:
-            client.offer(status=True)
-            return [m["parameters"] is not None for m in line.messages() if m["type"] == "status"]
-
-        assert [told(), told()] == [[True], [False]]
-        bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
-        assert told() == [False]  # an event, but nothing of the scenario
-        bench.session.execute(parse({"set": {"reference.amplitude_v": 3.0}}), "test")
-        assert [told(), told()] == [[True], [False]]
-
-    on_loop(play)
+@on_loop
+async def test_a_full_line_is_left_alone_until_it_has_drained() -> None:
+    bench = Bench()
+    client, line = bench.page()
+    line.is_free = False
+    bench.session.slice(137)
+    bench.session.execute(parse({"kind": "pause"}), "test")
+    bench.hub.publish()
+    assert not line.written
+    line.is_free = True
+    client.flush()
+    assert [frame.head for frame in line.frames()] == [137]
 
 
-def test_many_events_bring_the_status_now_and_then() -> None:
-    async def play() -> None:
-        bench = Bench()
-        _, line = bench.page()
-        room = bench.hub.room(bench.session)
-        said: list[Any] = []
-        for number in range(100):
-            bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
-            list(room.publish(1e6 + 0.01 * number))
-            said += [message for message in line.messages() if isinstance(message, dict)]
-        seen = [event["seq"] for m in said if m["type"] == "events" for event in m["events"]]
-        assert len(seen) == 100 and seen == list(range(seen[0], seen[0] + 100))
-        statuses = sum(m["type"] == "status" for m in said)
-        assert 100 * 0.01 / STATUS_S <= statuses + 1 <= 100 * 0.01 / STATUS_S + 2
-
-    on_loop(play)
-
-
-def test_a_full_line_is_left_alone_until_it_has_drained() -> None:
-    async def play() -> None:
-        bench = Bench()
-        client, line = bench.page()
-        line.is_free = False
-        bench.session.slice(137)
-        bench.session.execute(parse({"kind": "pause"}), "test")
-        bench.hub.publish()
-        assert not line.written
-        line.is_free = True
-        client.flush()
-        assert [frame.head for frame in line.frames()] == [137]
-
-    on_loop(play)
-
-
-def test_words_are_not_taken_for_deeds() -> None:
+@on_loop
+async def test_words_are_not_taken_for_deeds() -> None:
     """A page that acknowledges all there is, while nothing leaves for it, is let go like one that says nothing."""
+    bench = Bench()
+    client, line = bench.page()
+    bench.session.slice(100)
+    bench.hub.publish()
+    line.waiting, now = 10_000, client._moved_at
+    for step in range(60):
+        client.acknowledge(10)
+        assert client.stalled(now + 0.1 * step) == (0.1 * step > client_module.STALL_S)
+    line.passed_on += 1
+    assert not client.stalled(now + 6.1)
 
-    async def play() -> None:
-        bench = Bench()
-        client, line = bench.page()
-        bench.session.slice(100)
-        bench.hub.publish()
-        line.waiting, now = 10_000, client._moved_at
-        for step in range(60):
-            client.acknowledge(10)
-            assert client.stalled(now + 0.1 * step) == (0.1 * step > client_module.STALL_S)
-        line.passed_on += 1
-        assert not client.stalled(now + 6.1)
 
-    on_loop(play)
+@on_loop
+async def test_a_loop_that_was_blocked_blames_no_page(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a page acknowledged meanwhile waits to be read: it is let go only if it is still silent then."""
+    now, stood = [100.0], []
+
+    async def stand_still(_seconds: float) -> None:
+        now[0] += 2 * client_module.STALL_S
+        stood.append(client.closing)
+        if len(stood) == 1:
+            return
+        if len(stood) == 2:
+            client.acknowledge(1)
+            client.line.passed_on += 1
+            return
+        await asyncio.Event().wait()
+
+    monkeypatch.setattr(hub_module, "asyncio", SimpleNamespace(sleep=stand_still))
+    bench = Bench()
+    bench.hub.clock = lambda: now[0]
+    client, _ = bench.page()
+
+    client._clock, client._taken_at, client._moved_at = bench.hub.clock, now[0], now[0]
+    client.offer(frame=True)
+    await asyncio.wait([asyncio.ensure_future(bench.hub.run())], timeout=0)
+    assert stood == [None, None, None]
 
 
 @pytest.mark.parametrize("hurt", ["_events", "_status", "_picture"])
-def test_one_broken_stream_does_not_harm_the_others(hurt: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    async def play() -> None:
-        bench = Bench()
-        bad, _ = bench.page()
-        _, line = bench.page()
-        monkeypatch.setattr(bad, hurt, lambda: 1 / 0)
-        bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
-        bench.session.slice(100)
-        bench.hub.publish()
-        assert bad.closing is not None and bad.closing[0] == 1011
-        assert len(line.frames()) == 1
-
-    on_loop(play)
+@on_loop
+async def test_one_broken_stream_does_not_harm_the_others(hurt: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = Bench()
+    bad, _ = bench.page()
+    _, line = bench.page()
+    monkeypatch.setattr(bad, hurt, lambda: 1 / 0)
+    bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
+    bench.session.slice(100)
+    bench.hub.publish()
+    assert bad.closing is not None and bad.closing[0] == 1011
+    assert len(line.frames()) == 1
 
 
-def test_many_pages_are_served_with_breaks_and_each_once() -> None:
+@on_loop
+async def test_many_pages_are_served_with_breaks_and_each_once() -> None:
     """The loop may do other things meanwhile; the next picture begins when all have this one."""
+    bench = Bench()
+    pages = [bench.page() for _ in range(3 * PAGES_AT_ONCE)]
+    bench.session.slice(100)
+    bench.hub.publish()
+    assert sum(bool(line.written) for _, line in pages) == PAGES_AT_ONCE
+    bench.session.slice(200)
+    bench.hub.publish()
+    await turns(1)
+    assert sum(bool(line.written) for _, line in pages) == 2 * PAGES_AT_ONCE
+    await turns()
+    bench.hub._show()
+    await turns()
+    heads = {tuple(frame.head for frame in line.frames()) for _, line in pages}
+    assert heads == {(100, 200)}
 
-    async def play() -> None:
-        bench = Bench()
-        pages = [bench.page() for _ in range(3 * PAGES_AT_ONCE)]
+
+@on_loop
+async def test_a_bench_that_cannot_be_shown_does_not_end_the_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = Bench()
+    _, line = bench.page()
+    room = bench.hub.room(bench.session)
+    with monkeypatch.context() as patched:
+        patched.setattr(room.cuts, "refresh", lambda: 1 / 0)
         bench.session.slice(100)
         bench.hub.publish()
-        assert sum(bool(line.written) for _, line in pages) == PAGES_AT_ONCE
-        bench.session.slice(200)
-        bench.hub.publish()
-        await asyncio.sleep(0)
-        assert sum(bool(line.written) for _, line in pages) == 2 * PAGES_AT_ONCE
-        await asyncio.sleep(0.1)
-        heads = {tuple(frame.head for frame in line.frames()) for _, line in pages}
-        assert heads == {(100, 200)}
-
-    on_loop(play)
-
-
-def test_a_bench_that_cannot_be_shown_does_not_end_the_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    async def play() -> None:
-        bench = Bench()
-        _, line = bench.page()
-        room = bench.hub.room(bench.session)
-        with monkeypatch.context() as patched:
-            patched.setattr(room.cuts, "refresh", lambda: 1 / 0)
-            bench.session.slice(100)
-            bench.hub.publish()
-        assert not line.written
-        await asyncio.sleep(0.1)
-        bench.hub.publish()
-        assert [frame.head for frame in line.frames()] == [100]
-
-    on_loop(play)
+    assert not line.written
+    bench.hub._show()
+    assert [frame.head for frame in line.frames()] == [100]

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -27,85 +28,51 @@ class Samples:
         return self.values[None, start:stop]
 
 
-def walk(values: Any, edge: str, level: float, hysteresis: float) -> list[int]:
-    """The definition of a crossing, one sample after the other."""
+def walk(values: Any, edge: str, level: float, hysteresis: float, upper: float = 0.0) -> list[int]:
+    """The definition of a crossing and of entering or leaving a window, one sample after the other."""
+    heights: dict[str, Callable[[float], float]] = {
+        "rising": lambda value: value - level,
+        "falling": lambda value: level - value,
+        "enters": lambda value: min(value - level, upper - value),  # how far it is within, less than 0 outside
+        "leaves": lambda value: -min(value - level, upper - value),
+    }
     found = []
-    for rising in (True, False):
-        if edge not in ("either", "rising" if rising else "falling"):
-            continue
-        sign = 1.0 if rising else -1.0
+    for height in (heights[one] for one in (("rising", "falling") if edge == "either" else (edge,))):
         ready = False
-        for tick, value in enumerate(np.asarray(values, np.float32)):
-            height = sign * (np.float64(value) - level)
-            if height >= 0.0:
+        for tick, value in enumerate(np.float64(np.asarray(values, np.float32))):
+            if height(value) >= 0.0:
                 if ready:
                     found.append(tick)
                 ready = False
-            elif height < -hysteresis:
+            elif height(value) < -hysteresis:
                 ready = True
     return sorted(set(found))
-
-
-def walk_window(values: Any, edge: str, level: float, upper: float, hysteresis: float) -> list[int]:
-    """The definition of entering and leaving a window, one sample after the other."""
-    found, ready = [], False
-    for tick, value in enumerate(np.float64(np.asarray(values, np.float32))):
-        inside = min(value - level, upper - value)  # how far it is within, less than 0 outside
-        height = inside if edge == "enters" else -inside
-        if height >= 0.0:
-            if ready:
-                found.append(tick)
-            ready = False
-        elif height < -hysteresis:
-            ready = True
-    return found
 
 
 signals = st.lists(st.sampled_from([-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, float("nan")]), max_size=60)
 
 
-@given(
-    signals,
-    st.sampled_from(["rising", "falling", "either"]),
-    st.sampled_from([-0.5, 0.0, 0.5]),
-    st.sampled_from([0.0, 0.4, 1.0]),
-    st.lists(st.integers(1, 20), max_size=20),
-    st.integers(1, 9),
-)
+LEVELS = st.sampled_from([(-0.5, 0.5), (0.0, 0.5), (-1.0, 1.0), (0.5, 1.0)])
+EDGES = st.sampled_from(["rising", "falling", "either", "enters", "leaves"])
+PIECES = st.lists(st.integers(1, 20), max_size=20)
+
+
+@settings(max_examples=60)
+@given(signals, EDGES, LEVELS, st.sampled_from([0.0, 0.2, 0.4, 1.0]), PIECES, st.integers(1, 9))
 def test_every_crossing_is_found_once_however_the_data_arrives(
-    values: list[float], edge: Any, level: float, hysteresis: float, pieces: list[int], block: int
-) -> None:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(module, "BLOCK", block)
-        history = Samples(values)
-        trigger = Trigger(0, edge, level, hysteresis, 0)
-        found: list[int] = []
-        arrived = 0
-        for piece in [*pieces, len(values)]:
-            arrived = history.end_tick = min(arrived + piece, len(values))
-            found += trigger.scan(history)
-    assert found == walk(values, edge, level, hysteresis)
-
-
-@given(
-    signals,
-    st.sampled_from(["enters", "leaves"]),
-    st.sampled_from([(-0.5, 0.5), (0.0, 0.5), (-1.0, 1.0)]),
-    st.sampled_from([0.0, 0.2, 0.4]),
-    st.lists(st.integers(1, 20), max_size=20),
-    st.integers(1, 9),
-)
-def test_a_window_is_entered_and_left_however_the_data_arrives(
     values: list[float], edge: Any, window: tuple[float, float], hysteresis: float, pieces: list[int], block: int
 ) -> None:
+    level, upper = window
+    if edge in ("enters", "leaves"):
+        hysteresis = min(hysteresis, 0.4 * (upper - level))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module, "BLOCK", block)
         history, found, arrived = Samples(values), [], 0
-        trigger = Trigger(0, edge, window[0], hysteresis, 0, window[1])
+        trigger = Trigger(0, edge, level, hysteresis, 0, upper if edge in ("enters", "leaves") else None)
         for piece in [*pieces, len(values)]:
             arrived = history.end_tick = min(arrived + piece, len(values))
             found += trigger.scan(history)
-    assert found == walk_window(values, edge, *window, hysteresis)
+    assert found == walk(values, edge, level, hysteresis, upper)
 
 
 def test_one_tick_outside_the_window_is_enough() -> None:

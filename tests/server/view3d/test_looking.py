@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -94,27 +92,25 @@ def test_a_gyroscope_is_shown_as_it_was(live: Any) -> None:
     assert observer.pose(10**9).when == ""
 
 
-def moments(page: Any, enough: Callable[[list[str]], bool], seconds: float = 30.0) -> list[str]:
-    """Take what a scene sends until it has said enough about the moment it shows; return what it said."""
+def moments(page: Any, enough: Callable[[list[str]], bool], seen: Callable[[Any], bool] = lambda _: False) -> list[str]:
+    """Take what a scene sends until it has said enough about the moment it shows, or a message is seen."""
     said: list[str] = []
-    end = time.monotonic() + seconds
     while not enough(said):
-        data = page.recv(timeout=max(0.01, end - time.monotonic()))
+        data = page.recv(timeout=60)
         packed = zstandard.ZstdDecompressor().decompress(data[16 : 16 + int.from_bytes(data[8:16], "little")])
         for message in msgspec.msgpack.decode(packed)["messages"]:
             told = message.get("props") or message.get("updates") or {}
             if message.get("name") == "/when" and "text" in told:
                 said.append(told["text"].replace("\u00a0", " "))
+            if seen(message):
+                return said
     return said
 
 
-def quiet(page: Any) -> list[str]:
-    """Take what comes until nothing comes for a while."""
-    said: list[str] = []
-    with contextlib.suppress(TimeoutError):
-        while True:
-            said += moments(page, bool, 1.0)
-    return said
+def until_moved(live: Any, session: Any, page: Any) -> list[str]:
+    """Move the shuttle by a step of the bench; return what came of the moment until that was seen."""
+    assert live.command(session.id, "step", ticks=7).status_code == 200
+    return moments(page, lambda _: False, lambda message: message.get("name") == "/shuttle" and "position" in message)
 
 
 def test_only_the_page_that_looks_is_moved_and_it_comes_back(live: Any) -> None:
@@ -123,7 +119,7 @@ def test_only_the_page_that_looks_is_moved_and_it_comes_back(live: Any) -> None:
     assert session.dt_ms == 0.02
     with join(live, {"id": session.id}) as page, join(live, {"id": session.id}) as other:
         assert moments(page, bool) == moments(other, bool) == [""]
-        quiet(page), quiet(other)
+        assert until_moved(live, session, page) == []
         shared = show._scene._shown
         look(page, 250)
         moments(page, lambda said: said[-1:] == ["at 5.000 ms"])
@@ -131,16 +127,14 @@ def test_only_the_page_that_looks_is_moved_and_it_comes_back(live: Any) -> None:
         assert looked.tick == 250
         assert own._shuttle.position[0] == pytest.approx(own._shown.displacement_um / UM_PER_UNIT, rel=1e-5)
         assert own._shown.displacement_um != shared.displacement_um
-        assert quiet(other) == []
         assert show._scene._shown == shared and shared.when == ""
+        assert until_moved(live, session, other) == []
+        shared = show._scene._shown
         look(page, None)
         assert moments(page, bool) == [""]
         assert own._shown == shared
         assert show.watchers == 2 and len(show._own) == 1
-    end = time.monotonic() + 20
-    while show._own or show._scene is not None:
-        assert time.monotonic() < end, "a scene stays lit for nobody"
-        time.sleep(0.05)
+    live.wait(lambda: not show._own and show._scene is None)  # no scene stays lit for nobody
 
 
 def test_a_tick_that_the_history_has_not_leaves_the_page_with_now(live: Any) -> None:
@@ -149,7 +143,7 @@ def test_a_tick_that_the_history_has_not_leaves_the_page_with_now(live: Any) -> 
     with join(live, {"id": session.id}) as page:
         moments(page, bool)
         look(page, 10**12)
-        assert set(quiet(page)) <= {""}
+        assert set(until_moved(live, session, page)) <= {""}
         for said in ({"type": "look", "tick": "x"}, {"type": "look"}, {"type": "look", "tick": 1, "more": 2}):
             page.send(msgspec.msgpack.encode(said))
         page.send(b"\x81" * 40)

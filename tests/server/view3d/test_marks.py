@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -16,11 +17,15 @@ from server.view3d.marks import Marks, marks, words
 from server.view3d.pose import Active
 
 LAYOUT = Layout(Geometry())
-FAULTS: dict[str, Any] = registry.blocks("faults")
+
+
+@cache
+def faults() -> dict[str, Any]:
+    return dict(registry.blocks("faults"))
 
 
 def active(name: str, severity: float = 0.0, **more: Any) -> Active:
-    block = FAULTS[name]
+    block = faults()[name]
     severity = severity or block.suggested
     return Active(block, block.Params(severity=severity, **more), severity)
 
@@ -29,28 +34,29 @@ def shown(name: str, severity: float = 0.0, **more: Any) -> Marks:
     return marks([active(name, severity, **more)], LAYOUT)
 
 
-@pytest.mark.parametrize("name", FAULTS)
-def test_every_fault_says_what_it_is_within_the_picture(name: str) -> None:
-    found = shown(name)
-    ((x, y, _), lines), *rest = found.labels.items()
-    assert not rest and lines[0].startswith(FAULTS[name].title)
-    assert abs(x) <= LAYOUT.half_length_um and abs(y) <= LAYOUT.half_width_um
-    for solid in found.solids:
-        reach = np.abs(solid.mesh.vertices[:, :2] * UM_PER_UNIT).max(0)
-        assert (reach <= (LAYOUT.half_length_um, LAYOUT.half_width_um)).all()
+def test_every_fault_says_what_it_is_within_the_picture() -> None:
+    for name, block in faults().items():
+        found = shown(name)
+        ((x, y, _), lines), *rest = found.labels.items()
+        assert not rest and lines[0].startswith(block.title), name
+        assert abs(x) <= LAYOUT.half_length_um and abs(y) <= LAYOUT.half_width_um, name
+        for solid in found.solids:
+            reach = np.abs(solid.mesh.vertices[:, :2] * UM_PER_UNIT).max(0)
+            assert (reach <= (LAYOUT.half_length_um, LAYOUT.half_width_um)).all(), name
 
 
-@pytest.mark.parametrize("part", ["plate", "beams", "sensor", "what no part is called"])
-def test_a_fault_nobody_has_drawn_is_a_label_at_its_part(part: str) -> None:
-    class Unheard(Fault):
-        title, shows, name = "Unheard of", part, "unheard_of"
+def test_a_fault_nobody_has_drawn_is_a_label_at_its_part() -> None:
+    for part in ("plate", "beams", "sensor", "what no part is called"):
 
-        class Ports(BlockPorts):
-            severity: float = output("nm", "how bad")
+        class Unheard(Fault):
+            title, shows, name = "Unheard of", part, "unheard_of"
 
-    found = marks([Active(Unheard, FaultParams(severity=3.0), 3.0)], LAYOUT)
-    assert list(found.labels.values()) == [["Unheard of 3\u00a0nm"]]
-    assert not found.solids and found.beams == [0.0, 0.0]
+            class Ports(BlockPorts):
+                severity: float = output("nm", "how bad")
+
+        found = marks([Active(Unheard, FaultParams(severity=3.0), 3.0)], LAYOUT)
+        assert list(found.labels.values()) == [["Unheard of 3\u00a0nm"]]
+        assert not found.solids and found.beams == [0.0, 0.0]
 
 
 def test_severities_have_their_unit_as_people_write_it() -> None:
@@ -105,7 +111,7 @@ def test_a_broken_truss_lies_apart_once_it_is_through() -> None:
     sizes = [np.ptp(found.solids[0].mesh.vertices, axis=0)[0] for found in (end, whole)]
     assert 2.5 < sizes[1] / sizes[0] < 3.0
     assert end.damage is not None and end.damage.lost_ends == (2,)
-    cracked = marks([Active(FAULTS["broken_truss"], active("broken_truss").params, 0.4)], LAYOUT)
+    cracked = marks([Active(faults()["broken_truss"], active("broken_truss").params, 0.4)], LAYOUT)
     assert cracked.share == pytest.approx(0.4)
 
 

@@ -7,17 +7,24 @@ import sys
 import tempfile
 import threading
 import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import httpx
 import msgspec
+import numpy as np
 import psutil
 import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
+from server.view3d.viewers import build_scene, observer_of
+
 VISER = "viser-v1.1.1"
+MOST_MESSAGES, MOST_VALUES = 40, 40_000
+"""Of a frame: the parts of a scene that move, and the numbers that place them."""
 
 
 def join(live: Any, bench: dict[str, Any], **options: Any) -> Any:
@@ -34,21 +41,32 @@ def join(live: Any, bench: dict[str, Any], **options: Any) -> Any:
     return connect(url, **{**given, **options})
 
 
-def count(socket_: Any, seconds: float) -> int:
-    end, messages = time.monotonic() + seconds, 0
-    while (left := end - time.monotonic()) > 0:
-        try:
-            socket_.recv(timeout=left)
-        except TimeoutError:
-            break
-        messages += 1
-    return messages
-
-
-def arrive(socket_: Any, messages: int) -> None:
-    """Wait until so many messages have come, however long they take."""
+def arrive(socket_: Any, messages: int, live: Any = None) -> None:
+    """Take so many messages; a server lets time pass for each."""
     for _ in range(messages):
-        socket_.recv(timeout=30)
+        if live is not None:
+            live.advance(seconds=0.05)
+        socket_.recv(timeout=60)
+
+
+@contextmanager
+def drawn(live: Any, bench: dict[str, Any]) -> Iterator[tuple[Any, Callable[[], Any]]]:
+    """Return a scene of a bench of its own, and what shows the bench in it."""
+    session = live.service.benches.get(bench["id"])
+    scene, observer = build_scene(session), observer_of(session)
+    try:
+        yield scene, lambda: scene.show(observer.pose())
+    finally:
+        scene.close()
+
+
+def listened(scene: Any) -> list[Any]:
+    """Return the messages that a scene sends from now on."""
+    sent: list[Any] = []
+    server = scene._server._websock_server
+    queue = server.queue_message
+    server.queue_message = lambda message: (sent.append(message), queue(message))
+    return sent
 
 
 def test_the_page_is_visers_with_our_lines(live: Any) -> None:
@@ -67,23 +85,25 @@ def test_the_scene_moves_while_somebody_watches(live: Any) -> None:
     show = live.service.viewers.show_of(live.service.benches.get(bench["id"]))
     with join(live, bench) as page:
         assert page.subprotocol == VISER
-        arrive(page, 50)
+        arrive(page, 10, live)
         path = show._scene.path
         with join(live, bench) as second:
-            arrive(second, 10)
+            arrive(second, 5, live)
             assert show.watchers == 2 and show._scene.path == path
-    end = time.monotonic() + 20
-    while show._scene is not None or path.parent.exists():
-        assert time.monotonic() < end, "the scene stays lit for nobody"
-        time.sleep(0.05)
+    live.wait(lambda: show._scene is None and not path.parent.exists())  # the scene is lit for nobody
 
 
 def test_a_paused_bench_sends_nothing(live: Any) -> None:
     bench = live.bench(paused=True)
     live.command(bench["id"], "step", ticks=100)
-    with join(live, bench) as page:
-        count(page, 1.5)
-        assert count(page, 1.0) <= 1
+    with drawn(live, bench) as (scene, show):
+        show()
+        sent = listened(scene)
+        show()
+        assert not sent
+        live.command(bench["id"], "step", ticks=10)
+        show()
+        assert sent
 
 
 def listening() -> set[int]:
@@ -95,7 +115,7 @@ def listening() -> set[int]:
 def test_the_scene_is_on_no_port_and_its_socket_is_for_this_user_alone(live: Any) -> None:
     bench, before = live.bench(), listening()
     with join(live, bench) as page:
-        count(page, 0.3)
+        arrive(page, 1)
         assert listening() <= before
         path = live.service.viewers.show_of(live.service.benches.get(bench["id"]))._scene.path
         assert path.is_socket()
@@ -126,7 +146,7 @@ def test_what_a_page_says_does_not_reach_the_scene(live: Any, caplog: pytest.Log
     with join(live, bench) as page:
         for said in (b"", b"\xff" * 300, "text", msgspec.msgpack.encode({"type": "ShareUrlRequest"})):
             page.send(said)
-            arrive(page, 10)
+            arrive(page, 3, live)
     assert not caplog.records
 
 
@@ -141,10 +161,10 @@ def test_a_page_of_another_viser_is_told_to_reload(live: Any, offered: list[str]
 def test_closing_the_bench_closes_its_scene(live: Any) -> None:
     bench = live.bench()
     with join(live, bench) as page:
-        count(page, 0.3)
+        arrive(page, 1)
         live.http.delete(f"/api/v1/benches/{bench['id']}")
         with pytest.raises(ConnectionClosed):
-            count(page, 10)
+            arrive(page, 10**6)
     with join(live, bench) as page, pytest.raises(ConnectionClosed) as caught:
         page.recv(timeout=5)
     assert caught.value.rcvd is not None and caught.value.rcvd.code == 4404
@@ -152,48 +172,44 @@ def test_closing_the_bench_closes_its_scene(live: Any) -> None:
 
 def test_nothing_stays_behind(live: Any) -> None:
     bench = live.bench()
-    with join(live, bench) as page:
-        count(page, 0.2)
-    time.sleep(1.0)
-    before = threading.active_count()
-    for _ in range(3):
+    show = live.service.viewers.show_of(live.service.benches.get(bench["id"]))
+    threads = []
+    for _ in range(4):
         with join(live, bench) as page:
-            count(page, 0.2)
-    time.sleep(1.5)
-    assert threading.active_count() <= before + 1
+            arrive(page, 1)
+        live.wait(lambda: show._scene is None)
+        live.wait(lambda: not any(thread.name.startswith("websockets") for thread in threading.enumerate()))
+        threads.append(threading.active_count())
+    live.wait(lambda: threading.active_count() <= threads[0] + 1)
 
 
 def test_faults_and_motion_reach_the_parts(live: Any) -> None:
     bench = live.bench(set={"events": []}, time_scale=0.002)
-    session = live.service.benches.get(bench["id"])
-    with join(live, bench) as page:
-        count(page, 0.5)
-        scene = live.service.viewers.show_of(session)._scene
+    with drawn(live, bench) as (scene, show):
+
+        def shown() -> float:
+            live.advance(seconds=0.05)
+            show()
+            return float(scene._shuttle.position[0])
+
+        shown()
         assert not scene._added and not scene._film.visible
         color, film = tuple(scene._beams[0].color), scene._film.opacity
         for fault in ("added_mass", "stiffness", "damping"):
             live.command(bench["id"], fault=fault, severity=0.2)
-        seen = set()
-        end = time.monotonic() + 5
-        while time.monotonic() < end and not (len(scene._marks.labels) == 3 and len(seen) > 5):
-            count(page, 0.1)
-            seen.add(float(scene._shuttle.position[0]))
+        assert len({shown() for _ in range(8)}) > 5
+        assert len(scene._marks.labels) == 3
         assert {node.name for node in scene._added} >= {"/shuttle/added-mass", "/labels/0"}
         assert scene._film.visible and scene._film.opacity != film
         assert tuple(scene._beams[0].color) == tuple(scene._beams[1].color) != color
-        assert len(seen) > 5
         live.command(bench["id"], heal="all")
-        while time.monotonic() < end and scene._added:
-            count(page, 0.1)
+        shown()
         assert not scene._added and not scene._film.visible and tuple(scene._beams[0].color) == color
 
 
 def pose_of(live: Any, bench: dict[str, Any]) -> tuple[Any, Any]:
-    from server.view3d.pose import Observer
-    from server.view3d.viewers import layout_of
-
     session = live.service.benches.get(bench["id"])
-    return session, Observer(session, layout_of(session)).pose()
+    return session, observer_of(session).pose()
 
 
 def test_a_shuttle_in_the_plane_shifts_turns_and_warns(live: Any) -> None:
@@ -243,22 +259,30 @@ def test_the_estimate_is_what_the_winner_predicted(live: Any) -> None:
 
 
 def test_the_picture_of_a_pose_is_light(live: Any) -> None:
-    """A frame of a plant in the plane: nodes moved, not rebuilt, and well below a frame's time of 16.7 ms."""
-    from server.view3d.pose import Observer
-    from server.view3d.viewers import build_scene, layout_of
-
+    """A frame of a plant in the plane: nodes are moved, not rebuilt, and few values go out."""
     bench = live.bench("ch3-case3-adhesion", paused=True)
-    session = live.service.benches.get(bench["id"])
     live.command(bench["id"], "step", ticks=10)
-    scene, observer, spent = build_scene(session), Observer(session, layout_of(session)), []
-    try:
+    with drawn(live, bench) as (scene, show):
+        show()
+        sent = listened(scene)
+        for _ in range(5):
+            live.command(bench["id"], "step", ticks=7)
+            sent.clear()
+            show()
+            values = sum(np.size(v) for m in sent for v in vars(m).get("updates", {}).values())
+            assert 0 < len(sent) <= MOST_MESSAGES and values < MOST_VALUES, (len(sent), values)
+
+
+@pytest.mark.long
+def test_the_picture_of_a_pose_takes_a_quarter_of_a_frame(live: Any) -> None:
+    bench, spent = live.bench("ch3-case3-adhesion", paused=True), []
+    live.command(bench["id"], "step", ticks=10)
+    with drawn(live, bench) as (_, show):
         for _ in range(60):
             live.command(bench["id"], "step", ticks=7)
             start = time.thread_time()
-            scene.show(observer.pose())
+            show()
             spent.append(time.thread_time() - start)
-    finally:
-        scene.close()
     assert sorted(spent)[30] < 4e-3
 
 
