@@ -174,7 +174,7 @@ def serve(settings: Settings) -> None:
             listeners.append(stack.enter_context(bind(settings.model_copy(update={"host": LOOPBACK, "port": port}))))
         try:
             keep_private(settings.data)
-            held = lock(settings.data, "data")
+            stack.enter_context(lock(settings.data, "data"))
             from server.app import create_app  # this import loads everything; wrong settings are reported before it
 
             app = create_app(settings)
@@ -192,6 +192,5 @@ def serve(settings: Settings) -> None:
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, lambda *_: None)
         server.run(sockets=listeners)
-        held.close()
     if not server.started:
         raise InputError("the service did not start; the lines above say why", "serve")

@@ -148,7 +148,8 @@ def _single(name: str, wanted: complex, nominal: Oscillator, hz: float) -> float
     elif name == "damping":
         factor = wanted.imag / now.imag if now.imag else 0.0
     elif name == "mass":
-        factor = (nominal.stiffness - wanted.real) / (nominal.mass * omega**2) if omega else 0.0
+        inertia = nominal.mass * omega**2  # 0 also where the square of a tiny frequency underflows
+        factor = (nominal.stiffness - wanted.real) / inertia if inertia else 0.0
     else:
         factor = (wanted.real + nominal.mass * omega**2) / nominal.stiffness
     if not factor > 0.0:

@@ -63,3 +63,10 @@ def test_aliases_need_tones_and_a_list(live):
         live.http.post(f"{url(bench, 'regions')}/aliases", json={}),
     ]
     assert [answer.json()["error"]["field"] for answer in answers] == ["tones", "hypotheses.0.mass", "name"]
+
+
+def test_a_frequency_whose_square_underflows_is_answered(live):
+    bench = live.bench(WATCHED, paused=True)
+    body = {"hypotheses": BANK["hypotheses"], "tones": [{"amplitude_v": 10.0, "frequency_hz": 1e-200}]}
+    answer = live.http.post(f"{url(bench)}/aliases", json=body)
+    assert answer.status_code in (200, 422), answer.text
