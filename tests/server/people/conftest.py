@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.server.conftest import Live, serving
+from tests.server.forks import forks
 from tests.server.people.group import open_class
 
 
@@ -31,3 +35,26 @@ def group(live: Live) -> Iterator[dict[str, Any]]:
     made = open_class(live)
     yield made
     live.http.delete(f"/api/v1/classes/{made['id']}")
+
+
+@pytest.fixture
+def servers(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[list[Any]]:
+    """Two servers, one after the other: the second has the folder as the first leaves it.
+
+    The first is stopped, or killed, or the folder is copied while it serves: a kill would leave the same.
+    """
+    folder, copy = tmp_path / "data", tmp_path / "copy"
+
+    @contextmanager
+    def copied() -> Iterator[Live]:
+        with serving(folder, clock="manual") as live:
+            yield live
+            shutil.copytree(folder, copy)
+
+    if request.param == "killed":
+        with forks(tmp_path / "log") as loaded:
+            yield [loaded.serve(folder, clock="manual", figures=False) for _ in "12"]
+    elif request.param == "left":
+        yield [copied(), serving(copy, clock="manual")]
+    else:
+        yield [serving(folder, clock="manual") for _ in "12"]
