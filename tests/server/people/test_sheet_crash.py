@@ -102,6 +102,7 @@ def test_a_step_goes_on_where_it_was_after_a_kill(servers: Servers) -> None:
 
     with second as live:
         ada = Somebody(live, ada.secret, ada.bench)
+        assert ada.me()["bench"] == ada.bench  # it has come back
         assert ada.ask("GET", sheet).json()["sections"][0]["step"] == before
         assert step(ada, 30)["held_share"] == 0.75  # the third window began before the crash
         assert step(ada, 49)["earned"] == 0.0 and step(ada, 1)["earned"] == 1.0
