@@ -23,10 +23,10 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
 
 
 @pytest.fixture
-def live(live: Live) -> Live:
-    """The shared server, at which nobody has tried a code yet."""
+def live(live: Live) -> Iterator[Live]:
+    """The shared server; it forgets afterwards how often codes were tried."""
+    yield live
     live.service.joining._tries._buckets.clear()
-    return live
 
 
 @pytest.fixture
