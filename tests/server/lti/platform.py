@@ -11,6 +11,7 @@ import json
 import sys
 import threading
 import time
+from functools import cache
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 from urllib.parse import parse_qs, parse_qsl, urlencode, urlsplit
@@ -25,6 +26,12 @@ GRADES = "https://purl.imsglobal.org/spec/lti-ags/claim/endpoint"
 SCORE = "https://purl.imsglobal.org/spec/lti-ags/scope/score"
 MEMBERSHIP = "http://purl.imsglobal.org/vocab/lis/v2/membership#"
 KID = "key of the platform"
+
+
+@cache
+def key_of(name: str) -> rsa.RSAPrivateKey:
+    """Return a key, made once for each name: that takes a while."""
+    return rsa.generate_private_key(public_exponent=65537, key_size=2048)
 
 
 class Platform:
@@ -44,11 +51,14 @@ class Platform:
 
     def __init__(self, client_id: str = "combbench", port: int = 0, tool: str = "", sheet: str = "first-look") -> None:
         self.client_id, self.tool, self.sheet = client_id, tool, sheet
-        self.key = rsa.generate_private_key(public_exponent=65537, key_size=2048)
+        self.key = key_of(client_id)
         self.scores: list[dict[str, Any]] = []
         self.tokens: list[dict[str, str]] = []
         self.refusals = 0
         """How many scores are refused before one is taken."""
+        self.is_free = threading.Event()
+        """Scores are answered only while it is set."""
+        self.is_free.set()
         handler = type("Handler", (Handler,), {"platform": self})
         self._server = ThreadingHTTPServer(("127.0.0.1", port), handler)
         self.url = f"http://127.0.0.1:{self._server.server_port}"
@@ -154,6 +164,7 @@ class Handler(BaseHTTPRequestHandler):
             self.platform.tokens.append({name: values[0] for name, values in parse_qs(body).items()})
             self._answer(json.dumps({"access_token": "for scores", "token_type": "Bearer", "expires_in": 3600}))
         elif path == "/items/1/scores" and self.headers["Authorization"] == "Bearer for scores":
+            self.platform.is_free.wait(60)
             if self.platform.refusals > 0:
                 self.platform.refusals -= 1
                 self._answer("{}", status=503)

@@ -1,4 +1,4 @@
-"""Somebody who works at a sheet by REST: drives the bench, answers from closed forms, and looks at the points."""
+"""A student works at a sheet by REST: drives the bench, answers from closed forms, and looks at the points."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import math
 from typing import Any
 
 from tests.server.conftest import Live
-from tests.server.people.group import Somebody
+from tests.server.people.group import Somebody, the_teacher
 
 API = "/api/v1"
 
 
 class AtSheet:
-    """A person at a sheet, on the bench it begins with, which stands so that each tick is asked for."""
+    """A person at a sheet, on its bench, which runs by steps alone."""
 
     def __init__(self, live: Live, sheet: str, person: Somebody | None = None) -> None:
         self.live, self.sheet = live, sheet
-        self.person = person or Somebody(live, live.app.state.identity.token)
+        self.person = person or the_teacher(live)
         self.view: dict[str, Any] = self.ask("POST", f"/sheets/{sheet}/begin")
         self.bench = self.view["bench"]
         self.do(kind="pause")
@@ -70,15 +70,11 @@ class AtSheet:
         """Run until a step is done, at most for so much device time, and return it."""
         for _ in range(50):
             self.run(ms / 50)
-            step = self.wait(name)
+            step = self.step(name)
             if step["earned"]:
                 assert step["earned"] == step["points"]
                 return step
         raise AssertionError(f"{name} is not done: {self.step(name)}")
-
-    def wait(self, name: str) -> dict[str, Any]:
-        """Return a step; what the engine has found is told to the event loop in its own time."""
-        return self.step(name)
 
     def condition(self, name: str, label: str) -> float:
         """Return what a step has measured, as it is shown."""
@@ -90,8 +86,7 @@ class AtSheet:
         """Mass, stiffness, damping and static gain of this bench."""
         document = self.about["parameters"]
         body = {"device": document["device"], "environment": document.get("environment", {})}
-        teacher = Somebody(self.live, self.live.app.state.identity.token)
-        found: dict[str, float] = teacher.ask("POST", f"{API}/devices/evaluate", json=body).json()["metrics"]
+        found: dict[str, float] = self.live.http.post(f"{API}/devices/evaluate", json=body).json()["metrics"]
         return {name.removeprefix("device."): value for name, value in found.items()}
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 from core.board.commands import parse_command
@@ -15,6 +14,7 @@ from scenarios.sheets.look import limits_of
 from scenarios.sheets.progress import Progress
 from scenarios.sheets.sheet import Hold
 from server.bench.timeline import Timeline
+from server.clock import ManualClock
 from server.people.draw import draw
 from server.people.sheet_view import view_of
 from server.people.sheet_watch import SheetWatch
@@ -22,14 +22,14 @@ from tests.server.people.at_sheet import AtSheet
 
 
 class Offline(AtSheet):
-    """Somebody at a sheet, as `AtSheet`, with what a word draws."""
+    """A student at a sheet, as `AtSheet`; a word draws the numbers."""
 
     def __init__(self, sheet: str, word: str) -> None:
         self.lesson = sheets.get(sheet)
         beginning = begin(self.lesson, lambda what: draw(word, sheet, what))
         self.facts, self.progress = beginning.facts, Progress(facts=dict(beginning.facts))
         scenario = with_values(get(self.lesson.head.bench.scenario), beginning.values)
-        self.line = Timeline(scenario, build(scenario), 100_000, time.perf_counter)
+        self.line = Timeline(scenario, build(scenario), 100_000, ManualClock())
         self.watch: SheetWatch | None = None
         self.follow()
 

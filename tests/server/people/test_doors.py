@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, get_args
 
 import pytest
@@ -11,11 +11,13 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 from websockets.typing import Subprotocol
 
+from server.app import create_app
 from server.bench.commands import RUN_KINDS
-from server.people.access import DOORS, SOCKET, Need, need_of
+from server.people.access import DOORS, SOCKET, TESTING_DOORS, Need, need_of
+from server.settings import Settings
 from server.stream.wire import SUBPROTOCOL
 from server.view3d.proxy import SUBPROTOCOL as SCENE
-from tests.server.people.group import Somebody, join, open_class, watcher
+from tests.server.people.group import Somebody, join, on_loop, open_class, the_teacher, watcher
 from tests.server.security.test_auth import routes
 
 ROLES = ("teacher", "student", "other student", "borrower", "onlooker", "watcher", "other watcher", "stranger")
@@ -41,11 +43,11 @@ def people(shared: Any) -> Iterator[dict[str, Somebody]]:
     async def lend() -> None:  # the bench of a student is not lent over REST; the doors need not know
         service.people.lend(known[borrower.id], student.bench)
 
-    asyncio.run_coroutine_threadsafe(lend(), service._loop).result(10)
+    on_loop(shared, lend())
     shown = shared.http.put(f"/api/v1/classes/{second['id']}/shown", json={"bench": student.bench})
     assert shown.status_code == 204, shown.text
     yield {
-        "teacher": Somebody(shared, shared.app.state.identity.token, student.bench),
+        "teacher": the_teacher(shared, student.bench),
         "student": student,
         "other student": other,
         "borrower": borrower,
@@ -68,8 +70,9 @@ def doors(app: Any) -> set[tuple[str, str]]:
     return found
 
 
-def test_the_table_has_every_door_and_no_other(live: Any) -> None:
-    assert doors(live.app) == set(DOORS)
+@pytest.mark.parametrize(("clock", "more"), [("machine", {}), ("manual", TESTING_DOORS)])
+def test_the_table_has_every_door_and_no_other(tmp_path: Path, clock: Any, more: dict[Any, Any]) -> None:
+    assert doors(create_app(Settings(data=tmp_path, clock=clock))) == {*DOORS, *more}
 
 
 def test_a_door_that_is_not_in_the_table_is_the_teachers() -> None:
@@ -84,14 +87,14 @@ def test_a_door_that_is_not_in_the_table_is_the_teachers() -> None:
 @pytest.mark.parametrize("role", ROLES)
 def test_every_door_by_role(live: Any, people: dict[str, Somebody], role: str) -> None:
     somebody, bench = people[role], people["student"].bench
-    for (method, path), need in DOORS.items():
+    for (method, path), need in {**DOORS, **TESTING_DOORS}.items():
         if method == SOCKET or (method, path) == ("DELETE", "/api/v1/benches/{bench_id}"):
             continue
         filled = path.replace("{bench_id}", bench).replace("{", "").replace("}", "")
         if role == "teacher" and method != "GET":
             assert live.service.people.may(None, need) == (need is Need.NOTHING)
-            continue  # it would end or change what the other cases stand on
-        # A body of the wrong type: who may pass the door is refused behind it, and nothing is done.
+            continue  # it would end or change the class of the other cases
+        # a body of the wrong type is refused behind the door, and changes nothing
         answer = somebody.ask(method, filled, **({} if method == "GET" else {"json": []}))
         refused = "/join" not in filled and answer.status_code in (401, 403)  # its own 403: the code is wrong
         if refused:
@@ -101,21 +104,25 @@ def test_every_door_by_role(live: Any, people: dict[str, Somebody], role: str) -
             assert answer.status_code == (401 if role == "stranger" else 403)
 
 
-@pytest.mark.parametrize("role", ROLES)
-@pytest.mark.parametrize("path", ["/api/v1/benches/{bench}/stream", "/benches/{bench}/3d"])
-def test_every_socket_by_role(live: Any, people: dict[str, Somebody], role: str, path: str) -> None:
-    somebody = people[role]
-    url = live.address.replace("http", "ws") + path.format(bench=people["student"].bench)
-    protocol = SCENE if path.endswith("3d") else Subprotocol(SUBPROTOCOL)
+def code_of(somebody: Somebody, path: str, protocol: str = SUBPROTOCOL) -> int:
+    """Open a socket; return the code that closes it, or 0 where it says something."""
+    url = somebody.live.address.replace("http", "ws") + path
     options: dict[str, Any] = {"additional_headers": somebody.headers, "proxy": None, "max_size": None}
-    with connect(url, subprotocols=[protocol], **options) as socket:
-        if role in ALLOWED[Need.WATCH]:
-            assert socket.recv(timeout=20)
-            return
-        with pytest.raises(ConnectionClosed) as closed:
-            socket.recv(timeout=20)
-    assert closed.value.rcvd is not None
-    assert closed.value.rcvd.code == (4401 if role == "stranger" else 4403)
+    with connect(url, subprotocols=[Subprotocol(protocol)], **options) as socket:
+        try:
+            return 0 if socket.recv(timeout=60) else -1
+        except ConnectionClosed as closed:
+            return closed.rcvd.code if closed.rcvd is not None else -1
+
+
+@pytest.mark.parametrize("role", ROLES)
+def test_every_socket_by_role(people: dict[str, Somebody], role: str) -> None:
+    bench, expected = people["student"].bench, 4401 if role == "stranger" else 4403
+    codes = [
+        code_of(people[role], f"/api/v1/benches/{bench}/stream"),
+        code_of(people[role], f"/benches/{bench}/3d", SCENE),
+    ]
+    assert codes == ([0, 0] if role in ALLOWED[Need.WATCH] else [expected, expected])
 
 
 COMMANDS: list[dict[str, Any]] = [

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import json
 import random
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from threading import Event
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from sqlalchemy import select
 
+from scenarios.campaign.executor import Processes
 from scenarios.games import GAMES, states
 from scenarios.games.states import Hidden
 from server.store.people import GameAttemptRow
 from tests.server.conftest import Live
-from tests.server.people.group import Somebody, join, open_class, watcher
+from tests.server.people.group import Somebody, join, open_class, the_teacher, watcher
 from tests.server.people.test_blind_doors import BEFORE, LONG, fetched, run, streamed
 from tests.server.people.test_blind_doors import live as still  # noqa: F401  (a fixture)
 
@@ -36,29 +38,36 @@ def look(somebody: Somebody, path: str, seed: int) -> dict[str, Any]:
     return found
 
 
-def teacher(live: Live) -> Somebody:
-    return Somebody(live, live.app.state.identity.token)
+@pytest.fixture(autouse=True)
+def judge(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Judge in a thread of the server: a process of its own takes seconds to start."""
+    with ThreadPoolExecutor(1) as thread:
+        monkeypatch.setattr(Processes, "submit", lambda _, *work: thread.submit(*work))
+        yield monkeypatch
 
 
-def test_the_points_are_those_of_the_command_line(live: Live) -> None:
-    alone = teacher(live)
+@pytest.mark.parametrize("apart", [False, pytest.param(True, marks=pytest.mark.long)])
+def test_the_points_are_those_of_the_command_line(live: Live, judge: pytest.MonkeyPatch, apart: bool) -> None:
+    if apart:
+        judge.undo()
+    alone, seed = the_teacher(live), 7 if apart else 6
     values = {"assumed_noise_scale": 2.0, "mass": 1.1}
-    shown = post(alone, f"{FILTER}/attempts", 201, seed=6, hand_in=values)
+    shown = post(alone, f"{FILTER}/attempts", 201, seed=seed, hand_in=values)
     game = GAMES["be-the-filter"]
-    outcome = game.judge(6, game.read(6, values))
+    outcome = game.judge(seed, game.read(seed, values))
     assert [one["outcome"] for one in shown["attempts"]] == [json.loads(outcome.model_dump_json())]
     assert shown["best"] == outcome.points and shown["left"] == 4 and shown["hidden"] is None
-    kind = GAMES["fool-the-bank"].kinds(6)[0]
+    kind = GAMES["fool-the-bank"].kinds(seed)[0]
     named = {"fault": kind.name, "severity": 0.01}
-    shown = post(alone, f"{FOOL}/attempts", 201, seed=6, hand_in=named)
+    shown = post(alone, f"{FOOL}/attempts", 201, seed=seed, hand_in=named)
     game = GAMES["fool-the-bank"]
-    outcome = game.judge(6, game.read(6, named))
+    outcome = game.judge(seed, game.read(seed, named))
     assert [one["outcome"] for one in shown["attempts"]] == [json.loads(outcome.model_dump_json())]
-    assert shown["left"] == 0 and shown["hidden"] == [fact.model_dump() for fact in game.hidden(6)]
+    assert shown["left"] == 0 and shown["hidden"] == [fact.model_dump() for fact in game.hidden(seed)]
 
 
 def test_the_list_says_rules_knobs_and_limits(live: Live) -> None:
-    cards = {one["id"]: one for one in teacher(live).ask("GET", "/api/v1/games").json()["games"]}
+    cards = {one["id"]: one for one in the_teacher(live).ask("GET", "/api/v1/games").json()["games"]}
     assert [*cards] == [*GAMES]
     knobs = {one["name"]: one for one in cards["be-the-filter"]["hand_in"]}
     assert (knobs["process_noise_v"]["unit"], knobs["probability_floor"]["maximum"]) == ("V", 0.05)
@@ -67,9 +76,9 @@ def test_the_list_says_rules_knobs_and_limits(live: Live) -> None:
 
 
 def test_a_class_has_games_of_its_own_and_a_table_that_keeps_secrets(live: Live) -> None:
-    group, other = open_class(live, "Tuesday"), open_class(live, "Friday")
+    group, other = open_class(live), open_class(live, "Friday")
     ada, bob, eve = join(live, group, "Ada"), join(live, group, "Bob"), join(live, other, "Eve")
-    master = teacher(live)
+    master = the_teacher(live)
     first = post(ada, f"{FILTER}/attempts", 201, seed=1, hand_in={"assumed_noise_scale": 3.0})
     same = post(bob, f"{FILTER}/attempts", 201, seed=1, hand_in={"assumed_noise_scale": 3.0})
     assert first["attempts"][0]["outcome"] == same["attempts"][0]["outcome"]  # the same game for all of the class
@@ -99,10 +108,13 @@ def test_a_class_has_games_of_its_own_and_a_table_that_keeps_secrets(live: Live)
     assert live.http.delete(f"/api/v1/classes/{group['id']}").status_code == 204
     kept = live.service.database.transact(lambda session: [row.name for row in session.scalars(select(GameAttemptRow))])
     assert "Eve" in kept and not {"Ada", "Bob"} & {*kept}  # what a class did goes with it
+    live.http.delete(f"/api/v1/classes/{other['id']}")
 
 
-def test_attempts_are_limited_and_refused_in_one_line(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
-    ada = join(live, open_class(live), "Ada")
+def test_attempts_are_limited_and_refused_in_one_line(
+    live: Live, group: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ada = join(live, group, "Ada")
     for left in (4, 3, 2, 1, 0):
         assert post(ada, f"{FILTER}/attempts", 201, seed=2, hand_in={})["left"] == left
     refused = post(ada, f"{FILTER}/attempts", 409, seed=2, hand_in={})["error"]
@@ -121,16 +133,30 @@ def test_attempts_are_limited_and_refused_in_one_line(live: Live, monkeypatch: p
     assert post(ada, f"{FILTER}/attempts", 409, seed=4, hand_in={})["error"]["code"] == "runs_disabled"
 
 
-def test_nobody_hands_in_twice_at_once(live: Live) -> None:
-    ada = join(live, open_class(live), "Ada")
-    named = {"fault": look(ada, FOOL, 1)["kinds"][0]["name"], "severity": 0.01}
-    with ThreadPoolExecutor(4) as threads:
-        tries = [
-            threads.submit(ada.ask, "POST", f"{FOOL}/attempts", json={"seed": 1, "hand_in": named}) for _ in "1234"
-        ]
-    codes = sorted(one.result().status_code for one in tries)
-    assert codes == [201, 409, 409, 409]
-    assert len(look(ada, FOOL, 1)["table"]) == 1
+class Waiting(Executor):
+    """Judges nothing before it is told to."""
+
+    def __init__(self) -> None:
+        self.asked, self.told = Event(), Future[Any]()
+
+    def submit(self, judged: Any, *what: Any) -> Any:  # type: ignore[override]
+        self.work = lambda: self.told.set_result(judged(*what))
+        self.asked.set()
+        return self.told
+
+
+def test_nobody_hands_in_twice_at_once(live: Live, group: dict[str, Any], judge: pytest.MonkeyPatch) -> None:
+    ada, waiting = join(live, group, "Ada"), Waiting()
+    judge.setattr(Processes, "submit", lambda _, *work: waiting.submit(*work))
+    hand_in = {"fault": look(ada, FOOL, 1)["kinds"][0]["name"], "severity": 0.01}
+    with ThreadPoolExecutor(1) as thread:
+        first = thread.submit(post, ada, f"{FOOL}/attempts", 201, seed=1, hand_in=hand_in)
+        assert waiting.asked.wait(60)
+        for door, body in (("attempts", {"hand_in": hand_in}), ("reveal", {})):
+            refused = post(ada, f"{FOOL}/{door}", 409, seed=1, **body)["error"]
+            assert refused["code"] == "conflict" and "still judged" in refused["message"]
+        waiting.work()
+        assert len(first.result(60)["table"]) == 1
 
 
 def test_a_game_is_kept_over_the_end_of_the_server(serve: Any) -> None:
@@ -147,8 +173,8 @@ def test_a_game_is_kept_over_the_end_of_the_server(serve: Any) -> None:
         assert bench["blind"]["game"] == {"game": "be-the-filter", "seed": 1} and bench["pending"] == []
 
 
-def test_on_the_bench_of_the_filter_only_the_knobs_turn(live: Live) -> None:
-    ada = join(live, open_class(live), "Ada")
+def test_on_the_bench_of_the_filter_only_the_knobs_turn(live: Live, group: dict[str, Any]) -> None:
+    ada = join(live, group, "Ada")
     ada.bench = post(ada, f"{FILTER}/begin", 201, seed=1, hand_in={"mass": 1.2})["bench"]
     path = f"/api/v1/benches/{ada.bench}"
     names = ada.ask("GET", path).json()["diagnosers"]["kalman"]["names"]
@@ -179,8 +205,8 @@ def test_on_the_bench_of_the_filter_only_the_knobs_turn(live: Live) -> None:
     assert left.status_code == 201 and left.json()["blind"] is None
 
 
-def test_on_the_bench_of_fool_the_bank_faults_are_tried_and_healed(live: Live) -> None:
-    ada = join(live, open_class(live), "Ada")
+def test_on_the_bench_of_fool_the_bank_faults_are_tried_and_healed(live: Live, group: dict[str, Any]) -> None:
+    ada = join(live, group, "Ada")
     ada.bench = post(ada, f"{FOOL}/begin", 201, seed=3)["bench"]
     path = f"/api/v1/benches/{ada.bench}"
     kinds = [kind["name"] for kind in look(ada, FOOL, 3)["kinds"]]
@@ -198,7 +224,7 @@ def test_on_the_bench_of_fool_the_bank_faults_are_tried_and_healed(live: Live) -
 
 
 def test_somebody_alone_plays_too_and_has_one_bench_of_it(live: Live) -> None:
-    alone = teacher(live)
+    alone = the_teacher(live)
     first = post(alone, f"{FILTER}/begin", 201, seed=1)["bench"]
     second = post(alone, f"{FOOL}/begin", 201, seed=1)["bench"]
     there = [bench["id"] for bench in live.http.get("/api/v1/benches").json()["benches"]]
@@ -208,13 +234,15 @@ def test_somebody_alone_plays_too_and_has_one_bench_of_it(live: Live) -> None:
     assert live.http.get(f"/api/v1/benches/{second}").json()["blind"] is None
 
 
+@pytest.mark.parametrize("count", [2, pytest.param(6, marks=pytest.mark.long)])
 @pytest.mark.parametrize("game", [FILTER, FOOL])
-def test_what_can_be_fetched_is_the_same_whatever_is_hidden(
+def test_every_door_says_the_same_of_every_game(
     still: Live,  # noqa: F811
     game: str,
+    count: int,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Samples aside, which are what the game is played by, and what the narrator says of the bank's own verdicts."""
+    """Except for the samples, by which the game is played, and the sentences about the verdicts of the bank."""
     live = still
     monkeypatch.setattr("server.people.games.secrets", SimpleNamespace(token_hex=lambda n: "e" * 2 * n))
     unseen = ("plant.displacement", "kalman.truth", "kalman.delay", "faults.added_mass", "effects.mass_scale", "a.b")
@@ -223,7 +251,7 @@ def test_what_can_be_fetched_is_the_same_whatever_is_hidden(
     chance, first, drawn = random.Random(1), {}, set()
     by_number = GAMES["fool-the-bank"].kinds
     monkeypatch.setattr(type(GAMES["fool-the-bank"]), "kinds", lambda _, __: by_number(1))  # these are public
-    for _ in range(4):
+    for _ in range(count):
         number = chance.randrange(2**31)
         monkeypatch.setattr("server.people.games.draw", lambda *_, n=number: n)
         ada.bench = post(ada, f"{game}/begin", 201, seed=1)["bench"]
@@ -245,13 +273,13 @@ def test_what_can_be_fetched_is_the_same_whatever_is_hidden(
         secrets = [hidden["sensor"]["noise_um"], hidden["seed"]]
         secrets += [value for name, value in hidden["device"].items() if name not in ("id", "bias_v")]
         assert not [value for value in secrets if str(value) in text]
-    assert len(drawn) == 4
+    assert len(drawn) == count
 
 
-def test_the_hidden_states_are_not_among_the_events(live: Live) -> None:
-    ada = join(live, open_class(live), "Ada")
+def test_the_hidden_states_are_not_among_the_events(live: Live, group: dict[str, Any]) -> None:
+    ada = join(live, group, "Ada")
     ada.bench = post(ada, f"{FILTER}/begin", 201, seed=1)["bench"]
-    master = teacher(live)
+    master = the_teacher(live)
     run(live, ada.bench, states.FIRST + states.EACH + 10)
     path = f"/api/v1/benches/{ada.bench}"
     whole = {one["kind"] for one in master.ask("GET", f"{path}/events").json()["events"]}

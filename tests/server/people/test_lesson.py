@@ -2,27 +2,13 @@
 
 from __future__ import annotations
 
-import asyncio
-import time
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from websockets.exceptions import ConnectionClosed
 
 from server.people.people import People
-from tests.server.people.group import Somebody, join, open_class, watcher
-
-
-@pytest.fixture
-def group(live: Any) -> Iterator[dict[str, Any]]:
-    made = open_class(live)
-    yield made
-    live.http.delete(f"/api/v1/classes/{made['id']}")
-
-
-def teacher(live: Any, bench: str) -> Somebody:
-    return Somebody(live, live.app.state.identity.token, bench, "teacher")
+from tests.server.conftest import Live
+from tests.server.people.group import Somebody, advance, closed_with, join, on_loop, the_teacher, watcher
 
 
 def turn(who: Somebody, bench: str, do: str, to: str = "") -> Any:
@@ -30,24 +16,9 @@ def turn(who: Somebody, bench: str, do: str, to: str = "") -> Any:
     return answer.json() if answer.status_code != 200 else answer.json()["company"]
 
 
-def closed_with(stream: Any) -> int:
-    with pytest.raises(ConnectionClosed) as closed:
-        while True:
-            stream.step(10.0)
-    assert closed.value.rcvd is not None
-    return int(closed.value.rcvd.code)
-
-
-def until(what: Any, seconds: float = 30.0) -> None:
-    end = time.monotonic() + seconds
-    while not what():
-        assert time.monotonic() < end
-        time.sleep(0.02)
-
-
-def test_one_drives_the_others_are_refused_by_rest_and_stream(live: Any, group: dict[str, Any]) -> None:
+def test_one_drives_the_others_are_refused_by_rest_and_stream(live: Live, group: dict[str, Any]) -> None:
     ada = join(live, group, "Ada")
-    them = teacher(live, ada.bench)
+    them = the_teacher(live, ada.bench)
     path = f"/api/v1/benches/{ada.bench}"
     with ada.stream() as hers, them.stream(ada.bench) as theirs:
         hers.until(lambda m: isinstance(m, dict) and m["type"] == "status" and m["company"] is not None)
@@ -70,10 +41,9 @@ def test_one_drives_the_others_are_refused_by_rest_and_stream(live: Any, group: 
         assert turn(ada, ada.bench, "take")["error"]["code"] == "driving"
         replaced = ada.ask("POST", "/api/v1/benches", json={"scenario": "first-look"})
         assert replaced.json()["error"]["code"] == "driving"
-        # for all: whoever drives
+        # a command to all passes whoever drives
         live.http.post(f"/api/v1/classes/{group['id']}/commands", json={"command": {"kind": "pause"}})
-        # the page answers at once; the server asks about every second
-        hers.until_type("status")
+        advance(live, seconds=1.0)
         theirs.until_type("ping")
         theirs.send(type="pong")
     said = [entry["text"] for entry in live.http.get(f"{path}/audit").json()["entries"]]
@@ -81,68 +51,65 @@ def test_one_drives_the_others_are_refused_by_rest_and_stream(live: Any, group: 
 
 
 @pytest.mark.parametrize("what", ["hold", "safe"])
-def test_a_driver_whose_connection_is_cut_loses_the_bench(serve: Any, what: str) -> None:
-    with serve() as live:
-        group = open_class(live)
-        ada = join(live, group, "Ada")
-        made = ada.ask("POST", "/api/v1/benches", json={"scenario": "first-look", "set": {"without_driver": what}})
-        bench = made.json()["id"]
-        them, driving = teacher(live, bench), live.service.driving
-        with ada.stream(bench) as hers, them.stream(bench) as theirs:
-            hers.until_type("status")
-            theirs.until_type("status")
-            hers.connection.socket.shutdown(2)  # no close, as of a machine that is switched off
-            until(lambda: live.service.hub.watchers(bench) == 1)
-            assert theirs.command("pause")["error"]["code"] == "driving"
-            clock = driving._clock
-            driving._clock = lambda: clock() + 6.0
-            driving._looked += 6.0
-            event = theirs.until_event(kind="driving" if what == "hold" else "make_safe")
-            assert "Ada, who drove, has not been heard for 5 s" in event["text"]
-            status = live.get(bench)
-            assert status["state"] == ("running" if what == "hold" else "tripped")
-            if what == "safe":
-                assert live.get(bench)["trip"]["tick"] == event["tick"]
-                assert theirs.command(reset_trip=True)["ok"]
-                # what happened repeats with the same bits
-                toml = live.http.get(f"/api/v1/benches/{bench}/scenario").text
-                digest = toml.partition("digest ")[2].split()[0]
-                again = live.http.post("/api/v1/benches", json={"scenario": toml, "time_scale": None}).json()["id"]
-                live.until(again, lambda found: found["state"] == "paused")
-                assert live.http.get(f"/api/v1/benches/{again}/digest").json()["digest"] == digest
-            assert theirs.command("pause")["ok"]
+def test_a_driver_whose_connection_is_cut_loses_the_bench(live: Live, group: dict[str, Any], what: str) -> None:
+    ada = join(live, group, "Ada")
+    wanted = {"scenario": "first-look", "set": {"without_driver": what}}
+    bench = ada.ask("POST", "/api/v1/benches", json=wanted).json()["id"]
+    them = the_teacher(live, bench)
+    with ada.stream(bench) as hers, them.stream(bench) as theirs:
+        for stream in (hers, theirs):
+            stream.until_type("status")
+        hers.connection.socket.shutdown(2)  # no close, as of a machine that is switched off
+        theirs.until_type("status", watchers=1)
+        assert theirs.command("pause")["error"]["code"] == "driving"
+        advance(live, seconds=4.5)
+        assert theirs.command("pause")["error"]["code"] == "driving"
+        advance(live, seconds=1.5)
+        event = theirs.until_event(kind="driving" if what == "hold" else "make_safe")
+        assert "Ada, who drove, has not been heard for 5 s" in event["text"]
+        assert live.get(bench)["state"] == ("running" if what == "hold" else "tripped")
+        if what == "safe":
+            assert live.get(bench)["trip"]["tick"] == event["tick"]
+            assert theirs.command(reset_trip=True)["ok"]
+            # a repetition of what happened has the same bits
+            toml = live.http.get(f"/api/v1/benches/{bench}/scenario").text
+            digest = toml.partition("digest ")[2].split()[0]
+            again = live.http.post("/api/v1/benches", json={"scenario": toml, "time_scale": None}).json()["id"]
+            while live.get(again)["state"] != "paused":
+                advance(live, seconds=0.1)
+            assert live.http.get(f"/api/v1/benches/{again}/digest").json()["digest"] == digest
+        assert theirs.command("pause")["ok"]
 
 
-def test_the_teachers_bench_is_lent_to_a_student(live: Any, group: dict[str, Any]) -> None:
+def test_the_teachers_bench_is_lent_to_a_student(live: Live, group: dict[str, Any]) -> None:
     own = live.bench("first-look")["id"]
     ada, ben = join(live, group, "Ada"), join(live, group, "Ben")
-    them = teacher(live, own)
+    them = the_teacher(live, own)
     with ada.stream() as hers, them.stream(own) as theirs:
         assert turn(them, own, "hand_over", ada.id)["driver"]["name"] == "Ada"
         hers.until_type("notice", code="ask_me")
-        assert ada.ask("GET", "/api/v1/me").json()["lent"] == own
+        assert ada.me()["lent"] == own
         assert ben.ask("GET", f"/api/v1/benches/{own}").status_code == 403
         with ada.stream(own) as lent:
             assert lent.command("pause")["ok"] and theirs.command("start")["error"]["code"] == "driving"
             assert turn(them, own, "take")["driver"]["name"] == "teacher"
             assert closed_with(lent) == 4403
         hers.until_type("notice", code="ask_me")
-        assert ada.ask("GET", "/api/v1/me").json()["lent"] is None
+        assert ada.me()["lent"] is None
         assert ada.ask("GET", f"/api/v1/benches/{own}").status_code == 403
     assert "not lent" in turn(them, ben.bench, "hand_over", ada.id)["error"]["message"]
 
 
-def test_a_bench_is_shown_to_all_until_the_teacher_ends_it(live: Any, group: dict[str, Any]) -> None:
+def test_a_bench_is_shown_to_all_until_the_teacher_ends_it(live: Live, group: dict[str, Any]) -> None:
     own = live.bench("first-look")["id"]
     path = f"/api/v1/classes/{group['id']}"
     ada = join(live, group, "Ada")
-    tick = live.get(ada.bench)["tick"]
     with ada.stream() as hers:
         assert live.http.put(f"{path}/shown", json={"bench": own}).status_code == 204
         hers.until_type("notice", code="ask_me")
     late = join(live, group, "Ben")
     for who in (ada, late):
-        me = who.ask("GET", "/api/v1/me").json()
+        me = who.me()
         assert me["shown"] == own and me["bench"] == who.bench
     assert live.http.get(path).json()["shown"] == own
     with ada.stream(own) as shown:
@@ -153,25 +120,25 @@ def test_a_bench_is_shown_to_all_until_the_teacher_ends_it(live: Any, group: dic
         assert live.http.delete(f"{path}/shown").status_code == 204
         assert closed_with(shown) == 4403
     assert ada.ask("GET", f"/api/v1/benches/{own}").status_code == 403
-    assert live.get(ada.bench)["tick"] >= tick and ada.ask("GET", "/api/v1/me").json()["shown"] is None
+    assert ada.me()["shown"] is None
     live.http.put(f"{path}/shown", json={"bench": own})
     live.http.delete(f"/api/v1/benches/{own}")
-    assert ada.ask("GET", "/api/v1/me").json()["shown"] is None
+    assert ada.me()["shown"] is None
     assert live.http.put(f"{path}/shown", json={"bench": own}).json()["error"]["field"] == "bench"
 
 
-def test_all_benches_start_together_from_tick_0(live: Any, group: dict[str, Any]) -> None:
+def test_all_benches_start_together_from_tick_0(live: Live, group: dict[str, Any]) -> None:
     students = [join(live, group, name) for name in ("Ada", "Ben", "Cy")]
     path = f"/api/v1/classes/{group['id']}"
-    for one in students:
-        live.until(one.bench, lambda bench: bench["tick"] > 100)
+    ticks = advance(live, bench=students[2].bench, ticks=101)
+    assert all(ticks[one.bench] > 100 for one in students)
     students[0].ask("POST", f"/api/v1/benches/{students[0].bench}/commands", json={"kind": "pause"})
     students[0].ask("POST", f"/api/v1/benches/{students[0].bench}/commands", json={"kind": "reset"})
     fault = {"fault": "added_mass", "severity": 0.05}
     students[0].ask("POST", f"/api/v1/benches/{students[0].bench}/commands", json=fault)
     answer = live.http.post(f"{path}/start", json={"members": [one.id for one in students[:2]]})
     assert answer.json() == {"done": 2, "failed": []}
-    assert live.get(students[0].bench)["faults"] != []  # it stood at tick 0 already, and keeps what was set there
+    assert live.get(students[0].bench)["faults"] != []  # at tick 0 already, it keeps what was set there
     live.http.post(f"{path}/commands", json={"command": {"kind": "pause"}})
     for one in students[:2]:
         events = one.ask("GET", f"/api/v1/benches/{one.bench}/events").json()["events"]
@@ -180,7 +147,7 @@ def test_all_benches_start_together_from_tick_0(live: Any, group: dict[str, Any]
     assert live.http.post(f"{path}/start", json={"members": ["nobody"]}).json()["error"]["field"] == "members.0"
 
 
-def test_a_layout_is_given_to_all_and_a_hand_is_lowered(live: Any, group: dict[str, Any]) -> None:
+def test_a_layout_is_given_to_all_and_a_hand_is_lowered(live: Live, group: dict[str, Any]) -> None:
     ada = join(live, group, "Ada")
     path = f"/api/v1/classes/{group['id']}"
     assert ada.ask("GET", "/api/v1/me/layout").status_code == 404
@@ -188,16 +155,16 @@ def test_a_layout_is_given_to_all_and_a_hand_is_lowered(live: Any, group: dict[s
     with ada.stream() as hers:
         assert live.http.put(f"{path}/layout", json=given).status_code == 204
         hers.until_type("notice", code="ask_me")
-        me = ada.ask("GET", "/api/v1/me").json()
+        me = ada.me()
         assert ada.ask("GET", "/api/v1/me/layout").json() == {"id": me["layout"], **given}
         assert live.http.delete(f"{path}/members/{ada.id}/hand").json()["error"]["code"] == "conflict"
         ada.ask("PUT", "/api/v1/me/hand", json={"raised": True})
         assert live.http.delete(f"{path}/members/{ada.id}/hand").status_code == 204
         hers.until_type("notice", code="ask_me")
-        assert not ada.ask("GET", "/api/v1/me").json()["hand"]
+        assert not ada.me()["hand"]
 
 
-def test_a_link_to_watch_ends_with_its_bench(live: Any) -> None:
+def test_a_link_to_watch_ends_with_its_bench(live: Live) -> None:
     bench = live.bench("first-look", paused=True)["id"]
     guest = watcher(live, bench)
     with guest.stream() as stream:
@@ -207,12 +174,12 @@ def test_a_link_to_watch_ends_with_its_bench(live: Any) -> None:
     assert guest.ask("GET", "/api/v1/me").status_code == 401
 
 
-def test_recordings_of_earlier_benches_stay_in_sight(live: Any, group: dict[str, Any]) -> None:
+def test_recordings_of_earlier_benches_stay_in_sight(live: Live, group: dict[str, Any]) -> None:
     ada, ben = join(live, group, "Ada"), join(live, group, "Ben")
-    live.until(ada.bench, lambda found: found["tick"] > 20)
+    advance(live, bench=ada.bench, ticks=21)
     made = ada.ask("POST", f"/api/v1/benches/{ada.bench}/recordings", json={"ticks": 0, "past_ticks": 10}).json()
     live.http.post(f"/api/v1/classes/{group['id']}/scenario", json={"scenario": "first-look"})
-    assert ada.ask("GET", "/api/v1/me").json()["bench"] != ada.bench
+    assert ada.me()["bench"] != ada.bench
     for who, expected in ((ada, 200), (ben, 404)):
         listed = [one["id"] for one in who.ask("GET", "/api/v1/recordings").json()["recordings"]]
         assert (made["id"] in listed) == (expected == 200)
@@ -224,6 +191,6 @@ def test_recordings_of_earlier_benches_stay_in_sight(live: Any, group: dict[str,
         await people.recover()
         return next(people.benches_of(one) for one in people.students() if one.id == ada.id)
 
-    kept = asyncio.run_coroutine_threadsafe(after_a_restart(), live.service._loop).result(10)
+    kept = on_loop(live, after_a_restart())
     assert kept[0] == ada.bench and len(kept) == 2
     live.http.delete(f"/api/v1/recordings/{made['id']}")

@@ -1,4 +1,4 @@
-"""Two processes at one address, as docs/scaling.md sets them up: each has its own classes, runs are those of both."""
+"""Two processes at one address, as docs/scaling.md sets them up: each has its own classes, both have the same runs."""
 
 from __future__ import annotations
 

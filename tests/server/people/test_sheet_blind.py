@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -54,20 +55,21 @@ question = "How heavy?"
 value = "run_mass"
 ```
 """
+MASS = {"fault": "added_mass", "severity": 0.05}
 BEGUN = re.compile(r"begun [\d :-]+UTC")
 TO_COME = 900
 """Ticks after which a fault has come, at the usual pace."""
 
 
 def hidden(live: Live, sheet: str, faults: list[Any], monkeypatch: pytest.MonkeyPatch) -> AtSheet:
-    """Begin the sheet with somebody whose device is the same each time, and hide a fault on its bench."""
+    """Begin the sheet with a student whose device is the same each time, and hide a fault on its bench."""
 
     async def drawn(*_: Any) -> int:
         return 7
 
     with monkeypatch.context() as patch:
         patch.setattr(Classes, "draw", drawn)
-        at = AtSheet(live, sheet, join(live, open_class(live), "Ada"))
+        at = AtSheet(live, sheet, join(live, open_class(live, "At a sheet"), "Ada"))
         at.do(kind="step", ticks=70)  # a window, and a part of the next
         patch.setattr(blind, "faults_of", lambda _: faults)
         at.ask("POST", f"/benches/{at.bench}/blind", status=201, seed=3)
@@ -96,32 +98,39 @@ def told(at: AtSheet, sheet: str) -> dict[str, str]:
     return found
 
 
-def test_no_door_of_a_sheet_tells_what_is_hidden(serve: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("server.people.sheets.EVERY_S", 3600.0)  # nothing looks but who asks
-    with serve() as live:
-        sheet = live.http.post(f"{API}/sheets", json={"text": SHEET}).json()["id"]
-        mass = {"fault": "added_mass", "severity": 0.05}
-        cases = [[mass], [], [{"fault": "stiffness", "severity": 0.05}]]
-        students = [hidden(live, sheet, faults, monkeypatch) for faults in cases]
-        for at, faults in zip(students, cases, strict=True):
-            acting = live.get(at.bench)["faults"]
-            assert [one["name"] for one in acting] == [one["fault"] for one in faults]
-            step = at.step("run")
-            assert step["earned"] == 0.0 and step["held_share"] == 0.0
-            assert [one["now"] for one in step["conditions"]] == ["–"] * 3
-        first, *others = [told(at, sheet) for at in students]
-        for other in others:
-            assert [(key, other[key], first[key]) for key in first if other[key] != first[key]] == []
+@pytest.fixture
+def sheet(live: Live) -> Iterator[str]:
+    """The sheet; what was done at it, and the classes that did it, are deleted."""
+    made = live.http.post(f"{API}/sheets", json={"text": SHEET}).json()["id"]
+    yield made
+    live.http.delete(f"{API}/sheets/{made}")
+    for group in live.http.get(f"{API}/classes").json()["classes"]:
+        if group["name"] == "At a sheet":
+            live.http.delete(f"{API}/classes/{group['id']}")
 
 
-def test_a_step_is_looked_at_again_once_the_fault_is_told(serve: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    with serve() as live:
-        sheet = live.http.post(f"{API}/sheets", json={"text": SHEET}).json()["id"]
-        at = hidden(live, sheet, [{"fault": "added_mass", "severity": 0.05}], monkeypatch)
-        assert at.step("run")["earned"] == 0.0
-        at.ask("POST", f"/benches/{at.bench}/blind/answer", said="m+5", confidence=1.0)
-        assert at.step("run")["earned"] == 0.0  # what held meanwhile does not count
-        at.do(kind="step", ticks=99)
-        assert at.step("run")["earned"] == 0.0
-        at.do(kind="step", ticks=100)
-        assert at.step("run")["earned"] == 1.0
+def test_no_door_of_a_sheet_tells_what_is_hidden(live: Live, sheet: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    cases: list[list[Any]] = [[MASS], [], [{"fault": "stiffness", "severity": 0.05}]]
+    students = [hidden(live, sheet, faults, monkeypatch) for faults in cases]
+    for at, faults in zip(students, cases, strict=True):
+        acting = live.get(at.bench)["faults"]
+        assert [one["name"] for one in acting] == [one["fault"] for one in faults]
+        step = at.step("run")
+        assert step["earned"] == 0.0 and step["held_share"] == 0.0
+        assert [one["now"] for one in step["conditions"]] == ["–"] * 3
+    first, *others = [told(at, sheet) for at in students]
+    for other in others:
+        assert [(key, other[key], first[key]) for key in first if other[key] != first[key]] == []
+
+
+def test_a_step_is_looked_at_again_once_the_fault_is_told(
+    live: Live, sheet: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    at = hidden(live, sheet, [MASS], monkeypatch)
+    assert at.step("run")["earned"] == 0.0
+    at.ask("POST", f"/benches/{at.bench}/blind/answer", said="m+5", confidence=1.0)
+    assert at.step("run")["earned"] == 0.0  # what held meanwhile does not count
+    at.do(kind="step", ticks=99)
+    assert at.step("run")["earned"] == 0.0
+    at.do(kind="step", ticks=100)
+    assert at.step("run")["earned"] == 1.0

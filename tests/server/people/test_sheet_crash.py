@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import json
 import random
-import signal
-import time
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,15 +11,17 @@ import pytest
 from core.board.stored import Stored, revived, stored
 from server.bench.timeline import Timeline
 from server.bench.watch import KeptWatch
+from server.clock import ManualClock
 from server.people.sheet_watch import SheetWatch
+from tests.server.people.group import Somebody, advance, join, open_class
 from tests.server.people.offline import Offline
 from tests.server.people.test_sheet_lessons import LESSONS
 from tests.server.people.test_sheets import OWN
-from tests.server.people.test_survival import Process
+from tests.server.people.test_survival import LEFT_OR_KILLED, Servers
 
 
 class Crashing(Offline):
-    """Somebody at a sheet whose server crashes now and then, and comes back from what it has kept."""
+    """A student at a sheet whose server crashes again and again, and goes on from its checkpoint."""
 
     crashes = 0
 
@@ -43,7 +42,7 @@ class Crashing(Offline):
         kept = self.watch.kept(self.line) if self.watch is not None else None  # type: ignore[arg-type]
         board = stored(self.line.board)  # type: ignore[arg-type]
         again = revived(Stored(json.loads(json.dumps(board.document)), board.arrays))
-        self.line = Timeline(self.line.scenario, again, 100_000, time.perf_counter)
+        self.line = Timeline(self.line.scenario, again, 100_000, ManualClock())
         self.watch = None
         self.follow()
         if kept is not None and self.watch is not None:
@@ -51,7 +50,9 @@ class Crashing(Offline):
         self.crashes += 1
 
 
-@pytest.mark.parametrize("name", ["first-look", "resonance-and-q", "kalman-and-noise"])
+@pytest.mark.parametrize(
+    "name", ["first-look", "kalman-and-noise", pytest.param("resonance-and-q", marks=pytest.mark.long)]
+)
 def test_a_sheet_with_crashes_is_found_as_one_without(name: str) -> None:
     calm, shaken = Offline(name, "Ada"), Crashing(name, "Ada", random.Random(name))
     for at in (calm, shaken):
@@ -77,35 +78,33 @@ def test_what_was_found_and_not_written_is_told_again() -> None:
     assert len(told) == 2
 
 
-def test_a_step_goes_on_where_it_was_after_a_kill(tmp_path: Path) -> None:
-    server = Process(tmp_path)
-    sheet = server.ask("POST", "/api/v1/sheets", json={"text": OWN})["id"]
-    group = server.ask("POST", "/api/v1/classes", json={"name": "Tuesday"})
-    joined = {"code": group["code"], "name": "Ada"}
-    ada = server.ask("POST", f"/api/v1/classes/{group['id']}/join", json=joined)["session"]
-    view = server.ask("POST", f"/api/v1/sheets/{sheet}/begin", ada)
-    commands = f"/api/v1/benches/{view['bench']}/commands"
+@pytest.mark.parametrize("servers", LEFT_OR_KILLED, indirect=True)
+def test_a_step_goes_on_where_it_was_after_a_kill(servers: Servers) -> None:
+    first, second = servers
 
-    def step(ticks: int) -> dict[str, Any]:
-        server.ask("POST", commands, ada, json={"kind": "step", "ticks": ticks})
-        found: dict[str, Any] = server.ask("GET", f"/api/v1/sheets/{sheet}", ada)["sections"][0]["step"]
+    def step(ada: Somebody, ticks: int) -> dict[str, Any]:
+        command = {"kind": "step", "ticks": ticks}
+        assert ada.ask("POST", f"/api/v1/benches/{ada.bench}/commands", json=command).is_success
+        found: dict[str, Any] = ada.ask("GET", sheet).json()["sections"][0]["step"]
         return found
 
-    server.ask("POST", commands, ada, json={"kind": "pause"})
-    server.ask("POST", commands, ada, json={"kind": "reset"})
-    volts = float(view["sections"][0]["text"].split("Set ")[1].split("\u00a0")[0])
-    server.ask("POST", commands, ada, json={"set": {"reference.amplitude_v": volts}})
-    before = step(120)  # two windows of 50 ticks and a part of the third
-    assert before["held_share"] == 0.5
-    time.sleep(1.5)  # checkpoints are at most a second old
-    server.end(signal.SIGKILL)
+    with first as live:
+        sheet = f"/api/v1/sheets/{live.http.post('/api/v1/sheets', json={'text': OWN}).json()['id']}"
+        ada = join(live, open_class(live), "Ada")
+        view = ada.ask("POST", f"{sheet}/begin").json()
+        ada.bench = view["bench"]
+        volts = float(view["sections"][0]["text"].split("Set ")[1].split("\u00a0")[0])
+        for command in ({"kind": "pause"}, {"kind": "reset"}, {"set": {"reference.amplitude_v": volts}}):
+            assert ada.ask("POST", f"/api/v1/benches/{ada.bench}/commands", json=command).is_success
+        before = step(ada, 120)  # two windows of 50 ticks and a part of the third
+        assert before["held_share"] == 0.5
+        advance(live, seconds=0.7)  # a checkpoint is written
 
-    server = Process(tmp_path)
-    try:
-        assert server.ask("GET", f"/api/v1/sheets/{sheet}", ada)["sections"][0]["step"] == before
-        assert step(30)["held_share"] == 0.75  # the third window began before the crash
-        assert step(49)["earned"] == 0.0 and step(1)["earned"] == 1.0
-        view = server.ask("GET", f"/api/v1/sheets/{sheet}", ada)
+    with second as live:
+        ada = Somebody(live, ada.secret, ada.bench)
+        assert ada.me()["bench"] == ada.bench  # it has come back
+        assert ada.ask("GET", sheet).json()["sections"][0]["step"] == before
+        assert step(ada, 30)["held_share"] == 0.75  # the third window began before the crash
+        assert step(ada, 49)["earned"] == 0.0 and step(ada, 1)["earned"] == 1.0
+        view = ada.ask("GET", sheet).json()
         assert view["earned"] == 1.0 and view["sections"][1]["state"] == "open"
-    finally:
-        server.end(signal.SIGTERM)

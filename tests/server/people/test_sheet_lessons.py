@@ -188,7 +188,11 @@ def test_every_sheet_of_the_library_is_tried() -> None:
     assert len(LESSONS) >= 8
 
 
-@pytest.mark.parametrize("name", LESSONS)
+SLOW = {"variable-structure", "identification", "kalman-and-noise", "forgetting"}
+"""Sheets that the long suite alone does by REST; the short one does them without a server."""
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.long] * (name in SLOW)) for name in LESSONS])
 def test_a_sheet_from_start_to_end_earns_all_points(live: Live, name: str) -> None:
     at = AtSheet(live, name)
     LESSONS[name](at)
@@ -199,9 +203,10 @@ def test_a_sheet_from_start_to_end_earns_all_points(live: Live, name: str) -> No
     live.http.delete(f"/api/v1/sheets/{name}/progress")
 
 
+@pytest.mark.parametrize("words", ["Ben", pytest.param("Ada Cleo Dora", marks=pytest.mark.long)])
 @pytest.mark.parametrize("name", sorted(set(LESSONS) - {"blind-diagnosis"}))
-def test_a_sheet_can_be_done_whatever_is_drawn(name: str) -> None:
-    for word in ("Ada", "Ben", "Cleo", "Dora"):
+def test_a_sheet_can_be_done_whatever_is_drawn(name: str, words: str) -> None:
+    for word in words.split():
         at = Offline(name, word)
         LESSONS[name](at)
         assert at.look()["earned"] == at.view["points"], word

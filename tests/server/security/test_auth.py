@@ -52,10 +52,10 @@ def test_every_route_refuses_a_stranger(live: Any) -> None:
     assert set(OPEN) <= checked
 
 
-@pytest.mark.parametrize("path", ["/", "/some/page", "/api/v1/nothing", "/assets/x.js", "/metrics"])
-def test_paths_that_are_no_route_refuse_a_stranger_too(live: Any, path: str) -> None:
+def test_paths_that_are_no_route_refuse_a_stranger_too(live: Any) -> None:
+    paths = ["/", "/some/page", "/api/v1/nothing", "/assets/x.js", "/metrics"]
     with live.anonymous() as stranger:
-        assert stranger.get(path).status_code == 401
+        assert [path for path in paths if stranger.get(path).status_code != 401] == []
 
 
 def test_the_refusal_tells_a_person_what_this_is_and_how_to_get_in(live: Any) -> None:
@@ -73,24 +73,15 @@ def test_the_refusal_tells_a_person_what_this_is_and_how_to_get_in(live: Any) ->
     assert "script" not in wrong.text
 
 
-@pytest.mark.parametrize("path", ["/api/v1/benches/x/stream", "/benches/x/3d", "/nothing"])
 @pytest.mark.parametrize("headers", [{}, {"Authorization": "Bearer wrong"}, {"Cookie": "{cookie}=wrong"}])
-def test_every_socket_refuses_a_stranger(live: Any, path: str, headers: dict[str, str]) -> None:
-    cookie = live.app.state.identity.cookie_name
-    headers = {name: value.format(cookie=cookie) for name, value in headers.items()}
-    url = live.address.replace("http", "ws") + path
-    with (
-        connect(
-            url,
-            origin=live.address,
-            additional_headers=headers,
-            subprotocols=[SUBPROTOCOL],  # type: ignore[list-item]
-            proxy=None,
-        ) as socket,
-        pytest.raises(ConnectionClosed) as caught,
-    ):
-        socket.recv(timeout=5)
-    assert caught.value.rcvd is not None and caught.value.rcvd.code == 4401
+def test_every_socket_refuses_a_stranger(live: Any, headers: dict[str, str]) -> None:
+    cookie, base = live.app.state.identity.cookie_name, live.address.replace("http", "ws")
+    given = {name: value.format(cookie=cookie) for name, value in headers.items()}
+    for path in ("/api/v1/benches/x/stream", "/benches/x/3d", "/nothing"):
+        options = {"origin": live.address, "additional_headers": given, "subprotocols": [SUBPROTOCOL], "proxy": None}
+        with connect(base + path, **options) as socket, pytest.raises(ConnectionClosed) as caught:
+            socket.recv(timeout=60)
+        assert caught.value.rcvd is not None and caught.value.rcvd.code == 4401, path
 
 
 def test_the_token_in_the_address_is_exchanged_for_a_cookie(live: Any) -> None:
@@ -133,20 +124,20 @@ def test_a_link_on_another_site_gets_in_by_a_page_of_ours(live: Any) -> None:
         assert answer.status_code == 200 and "url=/" in answer.text and token not in answer.text
 
 
-@pytest.mark.parametrize("path", ["//evil.example", "/\\evil.example", "/%5Cevil.example", "///evil.example/a"])
-def test_the_exchange_never_leads_elsewhere(live: Any, path: str) -> None:
+def test_the_exchange_never_leads_elsewhere(live: Any) -> None:
     with live.anonymous() as browser:
-        answer = browser.get(f"{live.address}{path}?token={live.app.state.identity.token}")
-        target = answer.headers.get("location", "/")
-        assert target.startswith("/") and not target.startswith(("//", "/\\"))
+        for path in ("//evil.example", "/\\evil.example", "/%5Cevil.example", "///evil.example/a"):
+            answer = browser.get(f"{live.address}{path}?token={live.app.state.identity.token}")
+            target = answer.headers.get("location", "/")
+            assert target.startswith("/") and not target.startswith(("//", "/\\")), path
 
 
-@pytest.mark.parametrize("token", ["wrong", "a-token-for-the-tests-onl", "ä", "a-token-for-the-tests-only2"])
-def test_a_wrong_token_gets_nothing(live: Any, token: str) -> None:
+def test_a_wrong_token_gets_nothing(live: Any) -> None:
     with live.anonymous() as stranger:
-        assert stranger.get("/", params={"token": token}).status_code == 401
-        header = {"Authorization": f"Bearer {token}".encode()}
-        assert stranger.get("/api/v1/benches", headers=header).status_code == 401
+        for token in ("wrong", "a-token-for-the-tests-onl", "ä", "a-token-for-the-tests-only2"):
+            assert stranger.get("/", params={"token": token}).status_code == 401, token
+            header = {"Authorization": f"Bearer {token}".encode()}
+            assert stranger.get("/api/v1/benches", headers=header).status_code == 401, token
 
 
 def test_the_3d_page_is_behind_the_gate(live: Any) -> None:

@@ -53,12 +53,12 @@ def outside() -> str:
 def network(classroom: Any, outside: str) -> Iterator[httpx.Client]:
     """A client that comes by the network."""
     port = classroom.http.base_url.port
-    with httpx.Client(base_url=f"http://{outside}:{port}", timeout=30, trust_env=False) as client:
+    with httpx.Client(base_url=f"http://{outside}:{port}", timeout=60, trust_env=False, verify=False) as client:
         yield client
 
 
 @pytest.mark.parametrize("peer", [*HERE, *ELSEWHERE, "", None])
-def test_who_is_on_this_machine(peer: str | None) -> None:
+def test_a_caller_on_this_machine_may_use_the_token(peer: str | None) -> None:
     end = None if peer is None else (peer, 50000)
     everyone, here = Identity(TOKEN), Identity(TOKEN, loopback_only=True)
     ways = {"bearer": {"Authorization": f"Bearer {TOKEN}"}, "cookie": {"Cookie": f"{here.cookie_name}={here.cookie}"}}
@@ -73,24 +73,24 @@ def test_who_is_on_this_machine(peer: str | None) -> None:
 
 
 @pytest.mark.parametrize("in_class", [True, False])
-@pytest.mark.parametrize("peer", ["127.0.0.1", "192.168.1.7"])
-def test_the_right_token_is_refused_elsewhere_like_a_wrong_one(tmp_path: Path, in_class: bool, peer: str) -> None:
-    settings = Settings(data=tmp_path, token=TOKEN, host="0.0.0.0", classroom=in_class)  # type: ignore[arg-type]
-    transport = httpx.ASGITransport(create_app(settings), client=(peer, 50000))
+def test_the_right_token_is_refused_elsewhere_like_a_wrong_one(tmp_path: Path, in_class: bool) -> None:
+    app = create_app(Settings(data=tmp_path, token=TOKEN, host="0.0.0.0", classroom=in_class))  # type: ignore[arg-type]
 
-    async def answers(token: str) -> tuple[Any, ...]:
+    async def answers(peer: str, token: str) -> tuple[Any, ...]:
+        transport = httpx.ASGITransport(app, client=(peer, 50000))
         async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1") as client:
             opened = await client.get("/", params={"token": token}, headers=HTML)
             asked = await client.get("/api/v1/nothing", headers={"Authorization": f"Bearer {token}"})
         return opened.status_code, opened.text, "set-cookie" in opened.headers, asked.status_code, asked.text
 
-    right, wrong = asyncio.run(answers(TOKEN)), asyncio.run(answers("another-token-just-as-long"))
-    assert wrong[0] == wrong[3] == 401 and not wrong[2]
-    if in_class and peer != "127.0.0.1":
-        assert right == wrong
-        return
-    assert (right[0], right[2], right[3]) == (303, True, 404)
-    assert "works on the teacher" not in wrong[1] + wrong[4]
+    for peer in ("127.0.0.1", "192.168.1.7"):
+        right, wrong = (asyncio.run(answers(peer, token)) for token in (TOKEN, "another-token-just-as-long"))
+        assert wrong[0] == wrong[3] == 401 and not wrong[2]
+        if in_class and peer != "127.0.0.1":
+            assert right == wrong
+            continue
+        assert (right[0], right[2], right[3]) == (303, True, 404)
+        assert "works on the teacher" not in wrong[1] + wrong[4]
 
 
 def test_the_token_is_for_the_teachers_machine_alone(classroom: Any, network: httpx.Client) -> None:
@@ -125,7 +125,7 @@ def test_no_stream_opens_with_the_token_from_elsewhere(classroom: Any, outside: 
         ) as stream,
         pytest.raises(ConnectionClosed) as caught,
     ):
-        stream.recv(timeout=5)
+        stream.recv(timeout=60)
     assert caught.value.rcvd is not None and caught.value.rcvd.code == 4401
     with classroom.stream(bench["id"]) as stream:
         assert stream.step()["type"] == "hello"
@@ -156,13 +156,11 @@ NAMES = [
 ]
 
 
-@pytest.mark.parametrize(("host", "welcome"), NAMES)
-def test_students_come_by_the_address_or_the_name_of_the_machine(
-    network: httpx.Client, outside: str, host: str, welcome: bool
-) -> None:
-    given = host.format(outside=outside, port=network.base_url.port, machine=socket.gethostname())
-    answer = network.get("/api/v1/benches", headers={"Host": given})
-    assert answer.status_code == 401 if welcome else answer.status_code in (400, 403)
+def test_students_come_by_the_address_or_the_name_of_the_machine(network: httpx.Client, outside: str) -> None:
+    for host, welcome in NAMES:
+        given = host.format(outside=outside, port=network.base_url.port, machine=socket.gethostname())
+        status = network.get("/api/v1/benches", headers={"Host": given}).status_code
+        assert status in ((401,) if welcome else (400, 403)), host
 
 
 def test_an_address_of_another_connection_is_not_ours(classroom: Any, outside: str) -> None:
@@ -189,30 +187,31 @@ ORIGINS = [
 ]
 
 
-@pytest.mark.parametrize(("origin", "welcome"), ORIGINS)
-def test_only_the_page_that_was_opened_may_ask(network: httpx.Client, outside: str, origin: str, welcome: bool) -> None:
-    given = origin.format(outside=outside, port=network.base_url.port, machine=socket.gethostname())
-    answer = network.post("/api/v1/benches", json={"scenario": "first-look"}, headers={"Origin": given})
-    assert answer.status_code == (401 if welcome else 403)
+def test_only_the_page_that_was_opened_may_ask(network: httpx.Client, outside: str) -> None:
+    for origin, welcome in ORIGINS:
+        given = origin.format(outside=outside, port=network.base_url.port, machine=socket.gethostname())
+        answer = network.post("/api/v1/benches", json={"scenario": "first-look"}, headers={"Origin": given})
+        assert answer.status_code == (401 if welcome else 403), origin
 
 
-@pytest.mark.parametrize(
-    ("own", "host", "welcome"),
-    [
-        ("192.168.1.5", "192.168.1.5:8000", True),
-        ("::ffff:192.168.1.5", "192.168.1.5:8000", True),
-        ("fd00::5", "[fd00::5]:8000", True),
-        ("fd00::5", "[fd00::6]:8000", False),
-        ("fd00::5", "192.168.1.5:8000", False),
-        ("192.168.1.5", "[fd00::5]:8000", False),
-        ("/run/socket", "/run/socket", False),
-        ("", "", False),
-    ],
-)
-def test_the_address_of_the_connection_is_ours_in_a_class_alone(own: str, host: str, welcome: bool) -> None:
-    connection = caller(("192.168.1.7", 50000), {"Host": host}, own=(own, 8000))
-    assert (OriginPolicy("0.0.0.0", [], classroom=True).refusal(connection, False) is None) is welcome
-    assert OriginPolicy("0.0.0.0", []).refusal(connection, False) is not None
+OWN = [
+    ("192.168.1.5", "192.168.1.5:8000", True),
+    ("::ffff:192.168.1.5", "192.168.1.5:8000", True),
+    ("fd00::5", "[fd00::5]:8000", True),
+    ("fd00::5", "[fd00::6]:8000", False),
+    ("fd00::5", "192.168.1.5:8000", False),
+    ("192.168.1.5", "[fd00::5]:8000", False),
+    ("/run/socket", "/run/socket", False),
+    ("", "", False),
+]
+
+
+def test_the_address_of_the_connection_is_ours_in_a_class_alone() -> None:
+    for own, host, welcome in OWN:
+        connection = caller(("192.168.1.7", 50000), {"Host": host}, own=(own, 8000))
+        refusal = OriginPolicy("0.0.0.0", [], classroom=True).refusal(connection, False)
+        assert (refusal is None) is welcome, (own, host)
+        assert OriginPolicy("0.0.0.0", []).refusal(connection, False) is not None, (own, host)
 
 
 def test_a_machine_without_a_name_adds_none(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -43,40 +43,34 @@ ORIGINS = [
 ]
 
 
-@pytest.mark.parametrize(("host", "welcome"), HOSTS)
-def test_only_our_own_names_are_answered(live: Any, host: str, welcome: bool) -> None:
-    port = live.http.base_url.port
-    answer = live.http.get("/api/v1/benches", headers={"Host": host.format(port=port)})
-    if welcome:
-        assert answer.status_code == 200
-    else:
-        assert answer.status_code in (400, 403), answer.text
-        assert answer.status_code == 400 or answer.json()["error"]["code"] == "forbidden_origin"
+def test_only_our_own_names_are_answered(live: Any) -> None:
+    for host, welcome in HOSTS:
+        given = host.format(port=live.http.base_url.port)
+        answer = live.http.get("/api/v1/benches", headers={"Host": given})
+        assert answer.status_code in ((200,) if welcome else (400, 403)), host
+        assert answer.status_code != 403 or answer.json()["error"]["code"] == "forbidden_origin", host
 
 
-@pytest.mark.parametrize(("origin", "welcome"), ORIGINS)
 @pytest.mark.parametrize("method", ["GET", "POST", "DELETE"])
-def test_only_our_own_page_may_ask(live: Any, origin: str, welcome: bool, method: str) -> None:
-    given = origin.format(port=live.http.base_url.port)
-    answer = live.http.request(method, "/api/v1/benches/none", headers={"Origin": given})
-    if welcome:
-        assert answer.status_code in (404, 405)
-    else:
-        assert answer.status_code == 403
-        assert answer.json()["error"]["code"] == "forbidden_origin"
+def test_only_our_own_page_may_ask(live: Any, method: str) -> None:
+    for origin, welcome in ORIGINS:
+        given = origin.format(port=live.http.base_url.port)
+        answer = live.http.request(method, "/api/v1/benches/none", headers={"Origin": given})
+        assert answer.status_code in ((404, 405) if welcome else (403,)), origin
+        assert welcome or answer.json()["error"]["code"] == "forbidden_origin", origin
 
 
-@pytest.mark.parametrize(("origin", "welcome"), ORIGINS)
-def test_only_our_own_page_may_open_a_stream(live: Any, origin: str, welcome: bool) -> None:
-    bench = live.bench(paused=True)
-    given = origin.format(port=live.http.base_url.port)
-    if welcome:
-        with live.stream(bench["id"], origin=given) as stream:
-            assert stream.step()["type"] == "hello"
-        return
-    with pytest.raises(InvalidStatus) as caught, live.stream(bench["id"], origin=given):
-        pass
-    assert caught.value.response.status_code == 403
+def test_only_our_own_page_may_open_a_stream(live: Any) -> None:
+    bench = live.bench(paused=True)["id"]
+    for origin, welcome in ORIGINS:
+        given = origin.format(port=live.http.base_url.port)
+        if welcome:
+            with live.stream(bench, origin=given) as stream:
+                assert stream.step()["type"] == "hello"
+            continue
+        with pytest.raises(InvalidStatus) as caught, live.stream(bench, origin=given):
+            pass
+        assert caught.value.response.status_code == 403, origin
 
 
 @pytest.mark.parametrize("host", ["evil.example", "127.0.0.1.evil.example"])

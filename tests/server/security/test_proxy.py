@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import socket
 import ssl
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -133,15 +132,12 @@ def test_the_stream_and_the_3d_view_come_through(lab: Lab) -> None:
         body = {"scenario": "first-look", "time_scale": 0.002}
         bench = browser.post("/api/v1/benches", json=body, headers={"Origin": lab.origin}).json()
         with lab.socket(f"/api/v1/benches/{bench['id']}/stream", browser.cookies) as stream:
-            assert '"type":"hello"' in stream.recv(timeout=10)
+            assert '"type":"hello"' in stream.recv(timeout=60)
         page = browser.get(bench["view3d"])
         assert page.status_code == 200 and "frame-ancestors 'self'" in page.headers["content-security-policy"]
         watch = f"/benches/{bench['id']}/3d"
         with lab.socket(watch, browser.cookies, protocol="viser-v1.1.1") as scene:
-            end, messages = time.monotonic() + 10, 0
-            while messages < 30:
-                assert isinstance(scene.recv(timeout=end - time.monotonic()), bytes)
-                messages += 1
+            assert all(isinstance(scene.recv(timeout=60), bytes) for _ in range(30))
         with pytest.raises(InvalidStatus):
             lab.socket(watch, browser.cookies, origin="https://evil.example", protocol="viser-v1.1.1")
 

@@ -1,0 +1,60 @@
+"""Classes under test: device time, leases and limits pass only when a test advances the clock."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.server.conftest import Live, serving
+from tests.server.forks import forks
+from tests.server.people.group import open_class
+
+
+@pytest.fixture(scope="session")
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
+    """One server for all tests that leave it as they find it."""
+    with serving(tmp_path_factory.mktemp("shared"), clock="manual") as live:
+        yield live
+
+
+@pytest.fixture
+def live(live: Live) -> Iterator[Live]:
+    """The shared server; it forgets afterwards how often codes were tried."""
+    yield live
+    live.service.joining._tries._buckets.clear()
+
+
+@pytest.fixture
+def group(live: Live) -> Iterator[dict[str, Any]]:
+    """A class; the end of the test is the end of the class too."""
+    made = open_class(live)
+    yield made
+    live.http.delete(f"/api/v1/classes/{made['id']}")
+
+
+@pytest.fixture
+def servers(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[list[Any]]:
+    """Two servers, one after the other: the second has the folder as the first leaves it.
+
+    The first is stopped, or killed, or the folder is copied while it serves: a kill would leave the same.
+    """
+    folder, copy = tmp_path / "data", tmp_path / "copy"
+
+    @contextmanager
+    def copied() -> Iterator[Live]:
+        with serving(folder, clock="manual") as live:
+            yield live
+            shutil.copytree(folder, copy)
+
+    if request.param == "killed":
+        with forks(tmp_path / "log") as loaded:
+            yield [loaded.serve(folder, clock="manual", figures=False) for _ in "12"]
+    elif request.param == "left":
+        yield [copied(), serving(copy, clock="manual")]
+    else:
+        yield [serving(folder, clock="manual") for _ in "12"]
