@@ -10,6 +10,7 @@ export interface ChannelEvents {
 export interface Channel {
   readonly isOpen: boolean;
   send(text: string): void;
+  /** No message comes any more. */
   close(): void;
 }
 

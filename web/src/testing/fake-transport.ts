@@ -38,6 +38,11 @@ export class FakeTransport {
     setStream(vi.isFakeTimers() ? made() : withoutWatch(made));
   }
 
+  /** Whether the channel is open. */
+  get isOpen(): boolean {
+    return this.channel?.isOpen ?? false;
+  }
+
   /** The commands of the page, the oldest first. */
   get commands(): Command[] {
     return this.of("command").map(({ command }) => command);
@@ -63,12 +68,12 @@ export class FakeTransport {
 
   /** Send any message. */
   say(message: ServerMessage): void {
-    act(() => this.channel?.events.onMessage(JSON.stringify(message)));
+    this.deliver(JSON.stringify(message));
   }
 
   /** Say which bench this is; a channel that is not open yet opens. */
   hello(bench: Bench, rest: { server?: string; last_event?: number } = {}): void {
-    if (!this.channel?.isOpen) this.accept();
+    if (!this.isOpen) this.accept();
     this.say({ type: "hello", wire: 2, server: "server", last_event: 0, bench, ...rest } as ServerMessage);
   }
 
@@ -100,7 +105,7 @@ export class FakeTransport {
     const panels = wanted.map((one) => ({ ...one, ...pictureOf(one.subscription, values, time, dtMs) }));
     this.frames += 1;
     const bytes = encodeFrame({ frame: this.frames, headTick: time.head, dtMs, panels });
-    act(() => this.channel?.events.onMessage(bytes));
+    this.deliver(bytes);
   }
 
   /** Send a frame that was recorded to the panel that subscribes to its signals. */
@@ -113,7 +118,7 @@ export class FakeTransport {
     view.setUint32(4, this.frames, true);
     view.setUint16(32, wanted.panel, true);
     view.setFloat64(64, wanted.revision, true);
-    act(() => this.channel?.events.onMessage(buffer));
+    this.deliver(buffer);
   }
 
   /** Answer the oldest command without an answer: it took effect at a tick. */
@@ -132,6 +137,12 @@ export class FakeTransport {
       if (this.channel) this.channel.isOpen = false;
       this.channel?.events.onClose(code);
     });
+  }
+
+  private deliver(data: string | ArrayBuffer): void {
+    if (!this.channel?.isOpen) throw new Error("the channel to the page is not open");
+    const { events } = this.channel;
+    act(() => events.onMessage(data));
   }
 
   private answer(how: { ok: boolean; tick: number | null; error: ApiErrorBody | null }): Promise<void> {
