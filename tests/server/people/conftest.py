@@ -15,13 +15,6 @@ from tests.server.forks import forks
 from tests.server.people.group import open_class
 
 
-@pytest.fixture(scope="session")
-def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
-    """One server for all tests that leave it as they find it."""
-    with serving(tmp_path_factory.mktemp("shared"), clock="manual") as live:
-        yield live
-
-
 @pytest.fixture
 def live(live: Live) -> Iterator[Live]:
     """The shared server; it forgets afterwards how often codes were tried."""
@@ -47,14 +40,14 @@ def servers(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[list[Any
 
     @contextmanager
     def copied() -> Iterator[Live]:
-        with serving(folder, clock="manual") as live:
+        with serving(folder) as live:
             yield live
             shutil.copytree(folder, copy)
 
     if request.param == "killed":
         with forks(tmp_path / "log") as loaded:
-            yield [loaded.serve(folder, clock="manual", figures=False) for _ in "12"]
+            yield [loaded.serve(folder, figures=False) for _ in "12"]
     elif request.param == "left":
-        yield [copied(), serving(copy, clock="manual")]
+        yield [copied(), serving(copy)]
     else:
-        yield [serving(folder, clock="manual") for _ in "12"]
+        yield [serving(folder) for _ in "12"]
