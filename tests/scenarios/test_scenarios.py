@@ -28,7 +28,6 @@ from scenarios.schema import Head, Scenario
 from tests.lab import document
 from tests.library_pass import results
 
-
 # -- the library
 
 
@@ -65,7 +64,7 @@ def test_every_scenario_of_the_library_says_its_subject_and_reads_back():
     wrong = []
     for scenario in library():
         head = scenario.head
-        if not (head.title and head.source and head.summary) or head.expect and not (head.claim and scenario.verdict):
+        if not (head.title and head.source and head.summary) or (head.expect and not (head.claim and scenario.verdict)):
             wrong.append(f"{scenario.id} lacks title, source, summary, claim or verdict")
         if scenario.verdict in ("partly", "not reproduced") and not any(entry.note for entry in head.expect):
             wrong.append(f"{scenario.id} does not say the truth instead")
