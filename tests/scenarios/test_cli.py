@@ -203,19 +203,21 @@ def test_out_that_cannot_be_written_is_exit_2(call, tmp_path):
     assert result.exit_code == 2 and "--out" in result.stderr
 
 
+def alike(one: Any, other: Any) -> bool:
+    """Whether two documents are the same but for the last bits of their numbers, and the times that they took."""
+    if isinstance(one, dict):
+        return one.keys() == other.keys() and all(alike(one[key], other[key]) for key in one if key != "elapsed_s")
+    if isinstance(one, list):
+        return len(one) == len(other) and all(map(alike, one, other))
+    return bool(one == (pytest.approx(other, rel=1e-9) if isinstance(other, float) else other))
+
+
 def test_the_gallery_has_a_row_for_each_scenario_that_matches(call):
     result = call("gallery", "--only", "ch3-mrac-*", "--json")
     found = json.loads(result.stdout)
     assert result.exit_code == 0 and all(set(entry) >= RUN_KEYS for entry in found)
     expected = [library_pass.result(name)["gallery"] for name in ids() if name.startswith("ch3-mrac-")]
-    for entry, kept in zip(found, expected, strict=True):
-        figures = {"metrics", "expectations", "elapsed_s"}
-        assert {k: v for k, v in entry.items() if k not in figures} == {
-            k: v for k, v in kept.items() if k not in figures
-        }
-        assert entry["metrics"] == pytest.approx(kept["metrics"], rel=1e-9)
-        for row, other in zip(entry["expectations"], kept["expectations"], strict=True):
-            assert row == pytest.approx(other, rel=1e-9)
+    assert alike(found, expected)
     people = call("gallery", "--only", "ch3-mrac-spring-*")
     assert people.exit_code == 0 and "ch3-mrac-spring-x2" in people.stdout and "ch3-mrac-mass" not in people.stdout
     lines = people.stdout.splitlines()
