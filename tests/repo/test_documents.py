@@ -1,4 +1,4 @@
-"""What the documents name is there: files, folders, links, commands, settings."""
+"""All names in the documents exist: files, folders, links, commands, settings."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
+
+from server.cli import app
 
 PLACEHOLDER = re.compile(r"[<>{}…]|\.\.\.")
 
@@ -74,8 +77,7 @@ def test_named_commands_exist(root: Path, documents: dict[str, str]) -> None:
     code = "\n".join(re.findall(r"```.*?```|`[^`\n]+`", documents["README.md"], re.S))
     commands = set(re.findall(r"\bcombbench ([a-z]+)", code))
     assert {"serve", "run"} <= commands
-    combbench = Path(sys.executable).parent / "combbench"
-    helped = subprocess.run([combbench, "--help"], capture_output=True, text=True, check=True).stdout
+    helped = CliRunner().invoke(app, ["--help"]).stdout
     for command in commands:
         assert re.search(rf"\b{command}\b", helped), f"combbench has no command {command}"
 
