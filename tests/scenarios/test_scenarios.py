@@ -92,9 +92,10 @@ def unlike_itself(scenario: Scenario) -> str:
     return "" if no_chance or run(short, seed=99).digest != first.digest else f"{scenario.id} does not heed its seed"
 
 
-def test_a_run_of_each_plant_gives_the_same_bits_again():
+def test_a_run_of_each_plant_and_a_study_give_the_same_bits_again():
     plants = {(one.spec.plant.block.name, bool(one.twins)): one for one in library() if one.study is None}
-    assert len(plants) > 8 and list(filter(None, map(unlike_itself, plants.values()))) == []
+    studies = [get(name) for name in ("ch1-process-spread", "ch1-bode-tolerances", "ch2-doppler")]
+    assert len(plants) > 8 and list(filter(None, map(unlike_itself, [*plants.values(), *studies]))) == []
 
 
 @pytest.mark.long
