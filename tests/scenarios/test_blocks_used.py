@@ -24,11 +24,7 @@ def blocks_of(spec: Spec) -> Iterator[tuple[str, str]]:
         yield "control", spec.controllers[name].block.name
     for name in needed(spec):
         yield "sense", spec.sensors[name].block.name
-    for family, sections in (
-        ("identify", spec.identifiers),
-        ("diagnose", spec.diagnosers),
-        ("readout", spec.readouts),
-    ):
+    for family, sections in (("identify", spec.identifiers), ("diagnose", spec.diagnosers), ("readout", spec.readouts)):
         for section in sections.values():
             yield family, section.block.name
 

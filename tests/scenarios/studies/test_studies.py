@@ -32,8 +32,7 @@ def test_studies_of_the_library_hold_and_their_summaries_are_json():
 
 
 @pytest.mark.parametrize(
-    ("device", "field"),
-    [({"id": "second-order-gain"}, "device.id"), ({"id": "lcr-350", "bias_v": 0}, "device.bias_v")],
+    ("device", "field"), [({"id": "second-order-gain"}, "device.id"), ({"id": "lcr-350", "bias_v": 0}, "device.bias_v")]
 )
 def test_what_has_no_mass_or_is_not_moved_is_not_swept(device, field):
     with pytest.raises(InputError) as error:
