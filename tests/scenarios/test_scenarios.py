@@ -348,6 +348,8 @@ def test_length_in_samples_or_time():
     assert run(Scenario.load({**document(), "samples": 1})).board.tick == 1
 
 
-def test_summary_is_json():
-    summary = run(get("ch3-mrac-spring-x2")).summary()
-    assert json.loads(json.dumps(summary, allow_nan=False)) == summary
+def test_a_summary_is_json_and_has_the_figures_of_the_device():
+    for name in ("ch3-mrac-spring-x2", "ch1-table-1-1", "ch1-process-spread"):
+        summary = run(get(name)).summary()
+        assert json.loads(json.dumps(summary, allow_nan=False)) == summary
+        assert any(figure.startswith("device.") for figure in summary["metrics"])

@@ -153,13 +153,16 @@ def test_a_piece_of_work_that_is_lost_is_computed_again_and_no_run_twice(
     assert {key: found.digest for key, found in table.found.items()} == digests(sweep)
 
 
+@pytest.mark.parametrize(
+    ("scheduler", "lost"), [("", "its processes died"), ("tcp://a:1", "lost the scheduler at tcp://a:1")]
+)
 def test_after_losses_in_a_row_a_campaign_stops_and_tells_its_progress(
-    monkeypatch: pytest.MonkeyPatch, pauses: list[float]
+    monkeypatch: pytest.MonkeyPatch, pauses: list[float], scheduler: str, lost: str
 ) -> None:
     table, executor = Memory(), Unsteady(dict.fromkeys(range(2, 99), "out"))
     monkeypatch.setattr(Campaign, "_open", lambda _: nullcontext(executor))
-    with pytest.raises(Stopped, match=r"its processes died 5 times in a row; \d+ of 12 runs are done"):
-        Campaign(small(), table).run()
+    with pytest.raises(Stopped, match=rf"{lost} 5 times in a row; \d+ of 12 runs are done"):
+        Campaign(small(), table, scheduler=scheduler).run()
     assert 0 < len(table.puts) == len(set(table.puts)) < 12 and pauses == sorted(pauses)
 
 
