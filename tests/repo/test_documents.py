@@ -102,7 +102,9 @@ def test_documents_and_container_files_name_only_settings_that_exist(root: Path,
     assert named <= {*Settings.model_fields, "kernel_cache", "test_seed"}
 
 
+@pytest.mark.long
 def test_core_stands_alone() -> None:
+    """Of imports of its own; the contracts of the import linter, which every check runs, forbid the others."""
     code = (
         "import sys; from core.registry import catalog; assert catalog();"
         "bad = {'fastapi', 'starlette', 'uvicorn', 'viser', 'server', 'scenarios'} & set(sys.modules);"

@@ -275,6 +275,7 @@ def program(*args: str, folder: Path, **options: Any) -> subprocess.CompletedPro
     return subprocess.run(command, cwd=folder, env=environment, text=True, check=False, **given)
 
 
+@pytest.mark.long
 def test_the_program_itself_runs_in_any_folder(tmp_path):
     done = program("run", "ch3-mrac-spring-x2", "--json", folder=tmp_path)
     assert done.returncode == 0 and "Traceback" not in done.stderr and json.loads(done.stdout)["ok"]
@@ -302,7 +303,7 @@ def test_every_answer_that_a_full_disk_refuses_is_exit_2_and_one_line(args, monk
     ("arguments", "code"),
     [
         ("run first-look --set samples=50", 0),
-        ("run nowhere", 2),
+        pytest.param("run nowhere", 2, marks=pytest.mark.long),
         pytest.param("doctor", 0, marks=pytest.mark.long),
         pytest.param("catalog control", 0, marks=pytest.mark.long),
     ],

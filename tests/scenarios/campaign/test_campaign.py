@@ -190,6 +190,7 @@ def test_without_a_scheduler_a_campaign_stops_and_says_so(monkeypatch: pytest.Mo
 
 
 @pytest.mark.long
+@pytest.mark.timeout(900)
 def test_a_batch_that_is_done_but_cannot_be_fetched_is_computed_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -211,8 +212,8 @@ def test_a_batch_that_is_done_but_cannot_be_fetched_is_computed_again(
         campaign = Campaign(sweep, table, scheduler=cluster.address)
         thread = threading.Thread(target=campaign.run, daemon=True)
         thread.start()
-        thread.join(60)
-        assert not thread.is_alive() and failed
+        thread.join()
+        assert failed
     assert len(table.puts) == len(set(table.puts)) == 12
 
 
@@ -232,6 +233,7 @@ def test_a_campaign_on_a_cluster_is_cancelled(tmp_path: Path) -> None:
 
 
 @pytest.mark.long
+@pytest.mark.timeout(900)
 def test_a_cluster_gives_what_single_runs_give_though_worker_and_scheduler_are_killed(tmp_path: Path) -> None:
     sweep, table = small(100, 4000), Memory()
     with Cluster(tmp_path) as cluster:
@@ -248,7 +250,7 @@ def test_a_cluster_gives_what_single_runs_give_though_worker_and_scheduler_are_k
 
         def until(done: int) -> None:
             with progress:
-                assert progress.wait_for(lambda: campaign.done >= done and table.puts, 90), f"{campaign.done} done"
+                progress.wait_for(lambda: campaign.done >= done and table.puts)
 
         until(2)
         first[0].kill()
@@ -261,8 +263,7 @@ def test_a_cluster_gives_what_single_runs_give_though_worker_and_scheduler_are_k
             worker.wait()
         cluster.start_scheduler()
         cluster.start_worker()
-        thread.join(90)
-        assert not thread.is_alive()
+        thread.join()
     assert len(at_the_loss) < 200
     assert len(table.puts) == len(set(table.puts)) == len(table.found) == 200
     some = dict(list(digests(small(100, 4000)).items())[::20])
