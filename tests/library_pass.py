@@ -40,6 +40,16 @@ def result(name: str) -> dict[str, Any]:
     return found
 
 
+def results() -> dict[str, dict[str, Any]]:
+    """Return what every scenario gave, by its id; what is missing is computed on all processors."""
+    from scenarios.library import ids
+
+    missing = [name for name in ids() if not _place(name).exists()]
+    if missing:
+        _told(*missing)
+    return {name: result(name) for name in ids()}
+
+
 def names() -> list[str]:
     """Name all results, the longest runs first, so that no processor has a long one left in the end."""
     from scenarios.library import library
@@ -51,13 +61,9 @@ def names() -> list[str]:
 def _place(name: str) -> Path:
     """Return the file of a result: its folder has the version of the code, its name the hash of its text."""
     from scenarios.key import code_version
-    from scenarios.library import library
 
-    if name == BENCHES:
-        text = (ROOT / "tests" / "scenarios" / "digests.json").read_text()
-    else:
-        text = next(scenario for scenario in library() if scenario.id == name).toml()
-    return FOLDER / code_version() / f"{name}-{hashlib.sha256(text.encode()).hexdigest()[:12]}.json"
+    text = ROOT / ("tests/scenarios/digests.json" if name == BENCHES else f"scenarios/library/{name}.toml")
+    return FOLDER / code_version() / f"{name}-{hashlib.sha256(text.read_bytes()).hexdigest()[:12]}.json"
 
 
 def _compute(name: str) -> str:

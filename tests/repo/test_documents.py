@@ -1,4 +1,4 @@
-"""What the documents name is there: files, folders, links, commands, settings."""
+"""All names in the documents exist: files, folders, links, commands, settings."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
+
+from server.cli import app
 
 PLACEHOLDER = re.compile(r"[<>{}…]|\.\.\.")
 
@@ -74,8 +77,7 @@ def test_named_commands_exist(root: Path, documents: dict[str, str]) -> None:
     code = "\n".join(re.findall(r"```.*?```|`[^`\n]+`", documents["README.md"], re.S))
     commands = set(re.findall(r"\bcombbench ([a-z]+)", code))
     assert {"serve", "run"} <= commands
-    combbench = Path(sys.executable).parent / "combbench"
-    helped = subprocess.run([combbench, "--help"], capture_output=True, text=True, check=True).stdout
+    helped = CliRunner().invoke(app, ["--help"]).stdout
     for command in commands:
         assert re.search(rf"\b{command}\b", helped), f"combbench has no command {command}"
 
@@ -96,11 +98,13 @@ def test_documents_and_container_files_name_only_settings_that_exist(root: Path,
 
     texts = [*documents.values(), *((root / name).read_text() for name in ("Dockerfile", "compose.yaml"))]
     named = {name.lower() for text in texts for name in re.findall(rf"{PREFIX}(\w+)", text)}
-    # The one place that is needed before there are settings: where numba finds its cache.
-    assert named <= {*Settings.model_fields, "kernel_cache"}
+    # The cache of numba is needed before there are settings; the seed is that of the long suite.
+    assert named <= {*Settings.model_fields, "kernel_cache", "test_seed"}
 
 
+@pytest.mark.long
 def test_core_stands_alone() -> None:
+    """Of imports of its own; the contracts of the import linter, which every check runs, forbid the others."""
     code = (
         "import sys; from core.registry import catalog; assert catalog();"
         "bad = {'fastapi', 'starlette', 'uvicorn', 'viser', 'server', 'scenarios'} & set(sys.modules);"

@@ -6,6 +6,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
+from core.block import Block
+from core.control.controller import ControllerPorts
+from core.record import Record
+
 ROOT = Path(__file__).resolve().parents[2]
 
 UNIT = '''
@@ -58,6 +64,7 @@ def checked(*paths: Path) -> str:
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False).stdout
 
 
+@pytest.mark.long
 def test_a_misspelt_port_parameter_or_state_is_an_error_before_anything_runs(tmp_path):
     right, wrong = tmp_path / "proportional.py", tmp_path / "misspelt.py"
     right.write_text(UNIT)
@@ -67,3 +74,9 @@ def test_a_misspelt_port_parameter_or_state_is_an_error_before_anything_runs(tmp
     for name in ("mesured", "gian", "lost", "volts"):
         assert f'has no attribute "{name}"' in found
     assert all("misspelt.py" in line for line in found.splitlines()), found
+
+
+def test_no_base_of_ports_parameters_or_states_allows_any_name():
+    """The type checker would pass every name of a class that has ``__getattr__``."""
+    bases = {base for kind in (Record, Block, ControllerPorts) for base in kind.__mro__}
+    assert [base for base in bases if "__getattr__" in vars(base) or "__getattribute__" in vars(base)] == [object]

@@ -7,22 +7,7 @@ from pathlib import Path
 
 LONGEST = 400
 GENERATED = {"web/src/api/schema.d.ts"}
-TEXT = {
-    ".py",
-    ".ts",
-    ".tsx",
-    ".css",
-    ".html",
-    ".md",
-    ".toml",
-    ".json",
-    ".yaml",
-    ".yml",
-    ".lock",
-    ".sh",
-    ".mako",
-    "",
-}
+TEXT = {".py", ".ts", ".tsx", ".css", ".html", ".md", ".toml", ".json", ".yaml", ".yml", ".lock", ".sh", ".mako", ""}
 MACHINE = re.compile(r"""(?:^|[\s"'`=(:])/(?:work|root|home/\w+|Users/\w+|opt/\w+)/""", re.M)
 REGISTRY = re.compile(
     r"pypi\.org|pythonhosted\.org|registry\.npmjs|npmjs\.(?:org|com)|deb\.debian\.org|crates\.io|"

@@ -6,7 +6,7 @@ digests``, look at which ones the diff names, and say in CHANGELOG.md why each o
 ARGS=--draw`` also draws other benches.
 
 Runs do not depend on the machine: a test computes them again with `OLDER` libraries. Studies, whose figures numpy and
-scipy compute, do: see `SAME_EVERYWHERE`.
+scipy compute, do: see `tests.library_pass.SAME_EVERYWHERE`.
 """
 
 from __future__ import annotations
@@ -28,15 +28,9 @@ from core.errors import InputError
 from scenarios.library import library
 from scenarios.run import run
 from scenarios.schema import Scenario
+from tests.library_pass import ROOT, SAME_EVERYWHERE
 
-ROOT = Path(__file__).parents[2]
 FILE = Path(__file__).with_suffix(".json")
-
-SAME_EVERYWHERE = {
-    "OPENBLAS_CORETYPE": "HASWELL",
-    "NPY_DISABLE_CPU_FEATURES": "AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AVX512_SPR",
-}
-"""numpy and scipy choose their routines by the processor; told this, every processor since 2013 gives the same bits."""
 
 OLDER = {
     "OPENBLAS_CORETYPE": "NEHALEM",

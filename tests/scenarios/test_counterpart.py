@@ -1,16 +1,13 @@
-"""The same scenario with its controllers taken away, and what the library says of it."""
+"""The same scenario with its controllers taken away, and the comparisons of the library."""
 
 from __future__ import annotations
 
-import pytest
-
 from scenarios.campaign.single import beside, compared
-from scenarios.counterpart import counterpart
+from scenarios.counterpart import counterpart, replaced
 from scenarios.edit import with_values
-from scenarios.library import get, library
+from scenarios.library import get
 from scenarios.run import run
-
-CONTROLLED = [scenario for scenario in library() if counterpart(scenario) is not None]
+from tests.library_pass import results
 
 
 def test_every_controller_that_drives_is_replaced_and_faults_stay():
@@ -51,19 +48,19 @@ def test_of_a_gyroscope_only_the_sense_axis_is_opened():
     assert counterpart(get("ch6-sense-axis-sync"), "pid") is None
 
 
-@pytest.mark.parametrize("scenario", CONTROLLED, ids=lambda scenario: scenario.id)
-def test_what_praises_a_controller_is_missed_without_it(scenario):
-    """By twice the tolerance; anything else says why it compares with nothing."""
-    others = compared(scenario, [scenario.spec.seed])
-    for entry in scenario.head.expect:
-        assert entry.compare, f"{entry.metric} says neither what it is compared with nor why with nothing"
-        against = {"open_loop": ["open_loop"], "pid": ["open_loop", "pid"], "none": []}[entry.compare]
-        for kind in against:
-            measured = others[kind][0].metrics.get(entry.metric)
-            assert entry.missed_twice(measured), f"{entry.metric} {entry.text()}: {kind} gives {measured}"
-
-
-def test_only_those_with_a_controller_compare():
-    for scenario in library():
-        if scenario not in CONTROLLED:
-            assert not any(entry.compare for entry in scenario.head.expect), scenario.id
+def test_a_claim_for_a_controller_is_missed_without_it():
+    """By twice the tolerance; any other expectation says why it compares with nothing."""
+    wrong = []
+    for name, found in results().items():
+        scenario = get(name)
+        if not replaced(scenario, "open_loop"):
+            wrong += [f"{name} compares without a controller" for entry in scenario.head.expect if entry.compare]
+            continue
+        for entry in scenario.head.expect:
+            if not entry.compare:
+                wrong.append(f"{name}: {entry.metric} is compared with nothing and gives no reason")
+            for kind in {"open_loop": ["open_loop"], "pid": ["open_loop", "pid"]}.get(entry.compare, []):
+                measured = found["counterparts"][kind].get(entry.metric)
+                if not entry.missed_twice(measured):
+                    wrong.append(f"{name}: {entry.metric} {entry.text()}: {kind} gives {measured}")
+    assert wrong == []

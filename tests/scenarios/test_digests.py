@@ -7,23 +7,23 @@ import json
 import pytest
 
 from core.board.instances import faults_of
+from tests.library_pass import BENCHES, result, results
 from tests.scenarios import digests
 
 
-@pytest.mark.timeout(600)
 def test_every_run_gives_the_bits_it_gave() -> None:
-    before = digests.kept()
-    now = json.loads(digests.apart())
-    assert set(now["library"]) == set(before["library"])
-    changed = [name for name, digest in before["library"].items() if now["library"][name] != digest]
+    before, found = digests.kept(), results()
+    assert set(found) == set(before["library"])
+    changed = [name for name, digest in before["library"].items() if found[name]["digest"] != digest]
     changed += [
         f"bench {number}: {old['scenario']}"
-        for number, (old, new) in enumerate(zip(before["benches"], now["benches"], strict=True))
-        if old["digest"] != new["digest"]
+        for number, (old, new) in enumerate(zip(before["benches"], result(BENCHES)["digests"], strict=True))
+        if old["digest"] != new
     ]
     assert changed == []
 
 
+@pytest.mark.long
 @pytest.mark.timeout(600)
 def test_runs_do_not_depend_on_the_libraries_of_the_machine() -> None:
     kept, now = digests.kept(), json.loads(digests.apart("--runs", machine=digests.OLDER))

@@ -120,20 +120,17 @@ def test_a_claim_is_ticked_only_at_the_end_and_by_what_is_printed() -> None:
         assert [mark.words for mark in claim.marks] == [BAND["words"]]
 
 
-MARKED = [one.id for one in library() if one.head.printed]
-
-
-@pytest.mark.parametrize("name", MARKED)
-def test_what_the_library_draws_is_on_its_bench_and_quotes_a_number(name: str) -> None:
-    one = get(name)
-    check_marks(one, build(one).signals)
-    for entry in one.head.printed:
-        assert re.search(NUMBER_WORDS, entry.number), entry.number
-        assert re.fullmatch(r"(\d+(\.\d+)+)?", entry.figure)
-        assert re.fullmatch(r"\d+(\.\d+)+", entry.section)
-        first, last = entry.ticks(0, one.spec.dt_ms)
-        assert first < (one.samples or 0)
-        assert last is None or last <= (one.samples or 0)
+def test_each_mark_of_the_library_is_on_its_bench_and_quotes_a_number() -> None:
+    marked = [one for one in library() if one.head.printed]
+    assert marked
+    for one in marked:
+        check_marks(one, build(one).signals)
+        for entry in one.head.printed:
+            assert re.search(NUMBER_WORDS, entry.number), (one.id, entry.number)
+            assert re.fullmatch(r"(\d+(\.\d+)+)?", entry.figure), one.id
+            assert re.fullmatch(r"\d+(\.\d+)+", entry.section), one.id
+            first, last = entry.ticks(0, one.spec.dt_ms)
+            assert first < (one.samples or 0) and (last is None or last <= (one.samples or 0)), one.id
 
 
 def test_efforts_are_the_printed_share_of_the_reference() -> None:

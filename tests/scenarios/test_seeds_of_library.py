@@ -1,42 +1,112 @@
-"""Every noisy scenario of the library keeps its expectations over fifty seeds, not at the one it is shown with."""
+"""Expectations of noisy scenarios hold at seeds for which no window was set, not only at the seed that is shown."""
 
 from __future__ import annotations
 
-import pytest
+from collections import Counter
+from collections.abc import Sequence
 
-from scenarios.library import library
-from scenarios.run import run
+import pytest
+from scipy.stats import binom
+
+from scenarios.library import get, ids, library
+from scenarios.run import build, run
 from scenarios.schema import Scenario
 from tests.scenarios.fast_run import fast, figures
 
-SEEDS = range(1, 51)
-MOST_MISSED = 2
-"""Seeds of the fifty at which an expectation may miss: the others are at least 95 %."""
+FRESH = range(1001, 1009)
+"""Seeds of the short suite, which run abreast; an expectation may miss at `MOST_FRESH` of them."""
+MOST_FRESH = 2
+FIFTY = range(1, 51)
+MOST_OF_FIFTY = 2
+"""Seeds of the fifty at which a scenario may miss an expectation: the others are at least 95 %."""
+KNOWN = {("ch5-mass-at-low-frequency", "diagnosis.kalman.delay_samples.3"): "11 of the 200 seeds from 1001 on"}
+"""Expectations that miss at more of the fresh seeds, with the share that was measured; each is to be mended."""
+DEAR = {"ch5-detectors", "ch6-drift", "gyro-allan", "gyro-allan-three-noises", "gyro-thermal-floor"}
+"""Scenarios that the long suite alone runs at fresh seeds: records of many seconds."""
+SHARE, CHANCE = 0.05, 1e-6
 
 
-def longest_first() -> list[Scenario]:
-    """Return the scenarios in an order in which no process is left with a long one in the end."""
-    return sorted(library(), key=lambda scenario: scenario.samples or 0, reverse=True)
+def is_noisy(scenario: Scenario) -> bool:
+    """Whether a bench depends on its seed from its first samples on; of a study the figures show it."""
+    if scenario.study is not None:
+        return True
+    first, second = (build(scenario, seed) for seed in FRESH[:2])
+    first.advance(100), second.advance(100)
+    return first.digest() != second.digest()
+
+
+def missed(scenario: Scenario, seeds: Sequence[int]) -> Counter[str]:
+    """Return at how many seeds each expectation misses; none where the first two seeds give the same figures."""
+    found: Counter[str] = Counter()
+    before: dict[str, float] | None = None
+    with fast():
+        for seed, measured in zip(seeds, figures(scenario, seeds), strict=True):
+            if seed == seeds[1] and measured == before:
+                return Counter()
+            before = measured
+            found.update(row.metric for row in scenario.head.expect if not row.holds(measured.get(row.metric)))
+    return found
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.long] if n in DEAR else []) for n in ids()])
+def test_an_expectation_holds_at_fresh_seeds(name: str) -> None:
+    """It misses at 2 of 8 at most; one that is known to miss more often still does, until it is mended."""
+    scenario = get(name)
+    if not scenario.head.expect or not is_noisy(scenario):
+        return
+    found = missed(scenario, FRESH)
+    known = {metric for scenario_name, metric in KNOWN if scenario_name == name}
+    assert {metric: count for metric, count in found.items() if count > MOST_FRESH and metric not in known} == {}
+    assert [metric for metric in known if found[metric] <= MOST_FRESH] == [], "is mended: take it out of KNOWN"
+
+
+def test_each_known_expectation_is_of_the_library_and_has_its_share() -> None:
+    for (name, metric), share in KNOWN.items():
+        assert metric in [row.metric for row in get(name).head.expect] and "seeds" in share
 
 
 @pytest.mark.long
 @pytest.mark.timeout(900)
-@pytest.mark.parametrize("scenario", longest_first(), ids=lambda scenario: scenario.id)
-def test_a_claim_holds_over_seeds(scenario: Scenario) -> None:
-    if not scenario.head.expect:
-        pytest.skip("claims nothing")
-    missed: list[list[str]] = []
-    before: dict[str, float] = {}
+@pytest.mark.parametrize("name", ids())
+def test_a_scenario_holds_at_fifty_seeds(name: str) -> None:
+    scenario, wrong, before = get(name), list[list[str]](), dict[str, float]()
     with fast():
-        for seed, found in zip(SEEDS, figures(scenario, SEEDS), strict=True):
-            if seed == SEEDS[1] and found == before:
-                pytest.skip("nothing is left to chance")
+        for seed, found in zip(FIFTY, figures(scenario, FIFTY), strict=True) if scenario.head.expect else ():
+            if seed == FIFTY[1] and found == before:
+                return
             before = found
-            wrong = [entry.metric for entry in scenario.head.expect if not entry.holds(found.get(entry.metric))]
-            missed += [wrong] if wrong else []
-            assert len(missed) <= MOST_MISSED, f"misses at {len(missed)} of the first {seed} seeds: {missed}"
-            if seed - len(missed) == len(SEEDS) - MOST_MISSED:
-                break  # whatever the others give
+            missing = [row.metric for row in scenario.head.expect if not row.holds(found.get(row.metric))]
+            wrong += [missing] if missing else []
+            assert len(wrong) <= MOST_OF_FIFTY, f"misses at {len(wrong)} of the first {seed} seeds: {wrong}"
+            if seed - len(wrong) == len(FIFTY) - MOST_OF_FIFTY:
+                return  # whatever the others give
+
+
+@pytest.mark.long
+@pytest.mark.timeout(1800)
+@pytest.mark.parametrize("name", ids())
+def test_an_expectation_holds_at_drawn_seeds(name: str, drawn_seed: int) -> None:
+    """Three times fifty seeds are drawn, and all expectations of the library are judged together.
+
+    If each of its R expectations misses at 5 % of all seeds, the number of misses among 150 is binomial, and some
+    expectation has more than k of them with a chance of at most R P(X > k). The bound is the least k for which that is
+    below one in a million.
+    """
+    rows = sum(len(scenario.head.expect) for scenario in library())
+    seeds = 3 * len(FIFTY)
+    most = int(binom.isf(CHANCE / rows, seeds, SHARE))
+    scenario, found = get(name), Counter[str]()
+    for part in range(3) if scenario.head.expect else ():
+        first = (drawn_seed + part * 333_333_333) % 10**9 + 10_000
+        found += missed(scenario, range(first, first + len(FIFTY)))
+    known = {metric for scenario_name, metric in KNOWN if scenario_name == name}
+    assert {metric: n for metric, n in found.items() if n > most and metric not in known} == {}, f"most {most}"
+
+
+@pytest.mark.long
+def test_a_scenario_without_noise_at_its_beginning_has_none() -> None:
+    quiet = [one for one in library() if one.study is None and not is_noisy(one)]
+    assert len(quiet) > 20 and [one.id for one in quiet if run(one, 1).digest != run(one, 2).digest] == []
 
 
 @pytest.mark.long
@@ -44,7 +114,7 @@ def test_a_claim_holds_over_seeds(scenario: Scenario) -> None:
     "name", ["ch5-seven-step", "ch3-pull-in-map", "gyro-diagnosis", "ch6-drift", "ch2-doppler", "gyro-allan"]
 )
 def test_the_fast_run_gives_the_figures_of_a_run(name: str) -> None:
-    scenario = next(entry for entry in library() if entry.id == name)
+    scenario = get(name)
     with fast():
         found = [*figures(scenario, [1, 2, 3])][-1]
     metrics = run(scenario, 3).metrics

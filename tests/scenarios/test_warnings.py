@@ -98,11 +98,7 @@ def test_a_drive_that_is_said_to_be_two_things_is_refused():
 def test_feedback_is_refused_while_the_drive_is_analogue_and_the_board_runs_on():
     board = make({"plant.drive": "analogue"})
     play(board, 10)
-    for command in (
-        {"switch": "mrac"},
-        {"switch": "mrac", "at_sample": 100},
-        {"set": {"controller.kind": "pid"}},
-    ):
+    for command in ({"switch": "mrac"}, {"switch": "mrac", "at_sample": 100}, {"set": {"controller.kind": "pid"}}):
         with pytest.raises(InputError) as caught:
             do(board, command)
         assert caught.value.field == "plant.drive"

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import re
-import subprocess
-import sys
 
 import pytest
 import tomlkit
@@ -75,12 +73,14 @@ def test_a_malformed_list_is_refused_by_name(text: str, field: str) -> None:
     assert refused.value.field == field
 
 
-def test_a_new_hidden_list_is_printed_with_its_commitment(monkeypatch: pytest.MonkeyPatch) -> None:
-    done = subprocess.run(
-        [sys.executable, "-m", "scenarios.benchmark.seeds"], capture_output=True, text=True, check=True
-    )
-    monkeypatch.setattr(seeds, "COMMITMENT", done.stderr.split()[-1])
-    assert seeds.hidden_list(done.stdout, NAMES).cases.keys() == set(NAMES)
+def test_a_new_hidden_list_is_printed_with_its_commitment(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.argv", ["seeds"])
+    seeds.main()
+    printed = capsys.readouterr()
+    monkeypatch.setattr(seeds, "COMMITMENT", printed.err.split()[-1])
+    assert seeds.hidden_list(printed.out, NAMES).cases.keys() == set(NAMES)
 
 
 def test_the_repository_commits_to_one_list() -> None:

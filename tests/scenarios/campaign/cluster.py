@@ -6,9 +6,9 @@ import os
 import socket
 import subprocess
 import sys
-import time
+import threading
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -16,6 +16,11 @@ ROOT = Path(__file__).resolve().parents[3]
 def free_port() -> int:
     with socket.create_server(("127.0.0.1", 0)) as listener:
         return int(listener.getsockname()[1])
+
+
+def read_to_end(stream: IO[bytes]) -> None:
+    with stream:
+        stream.read()
 
 
 class Cluster:
@@ -28,24 +33,23 @@ class Cluster:
         self.workers: list[subprocess.Popen[bytes]] = []
         self.scheduler = self.start_scheduler()
 
-    def _start(self, *command: str) -> subprocess.Popen[bytes]:
+    def _start(self, *command: str, log: int | IO[bytes]) -> subprocess.Popen[bytes]:
         environment = {**os.environ, "PYTHONPATH": str(ROOT), "DASK_DISTRIBUTED__ADMIN__TICK__LIMIT": "1h"}
         command = (sys.executable, "-m", "dask", *command, "--no-dashboard")
-        return subprocess.Popen(command, cwd=self._folder, env=environment, stdout=self._log, stderr=self._log)
+        return subprocess.Popen(command, cwd=self._folder, env=environment, stdout=self._log, stderr=log)
 
     def start_scheduler(self) -> subprocess.Popen[bytes]:
-        self.scheduler = self._start("scheduler", "--host", "127.0.0.1", "--port", str(self.port))
-        end = time.monotonic() + 60
-        while True:
-            try:
-                socket.create_connection(("127.0.0.1", self.port), 0.2).close()
-                return self.scheduler
-            except OSError:
-                assert time.monotonic() < end and self.scheduler.poll() is None, "the scheduler did not start"
-                time.sleep(0.1)
+        """Start the scheduler; it listens once its log says so."""
+        command = ("scheduler", "--host", "127.0.0.1", "--port", str(self.port))
+        self.scheduler = self._start(*command, log=subprocess.PIPE)
+        assert self.scheduler.stderr is not None
+        assert any(b"Scheduler at" in line for line in self.scheduler.stderr), "the scheduler did not start"
+        threading.Thread(target=read_to_end, args=(self.scheduler.stderr,), daemon=True).start()
+        return self.scheduler
 
     def start_worker(self) -> subprocess.Popen[bytes]:
-        worker = self._start("worker", self.address, "--nthreads", "1", "--no-nanny", "--death-timeout", "60")
+        options = ("--nthreads", "1", "--no-nanny", "--death-timeout", "60")
+        worker = self._start("worker", self.address, *options, log=self._log)
         self.workers.append(worker)
         return worker
 

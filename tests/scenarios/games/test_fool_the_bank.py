@@ -34,17 +34,26 @@ def a_fault(seed: int) -> str:
     return GAME.kinds(seed)[0].name
 
 
+def is_first_found(seed: int, fault: str, end: float, steps: int) -> bool:
+    """Whether the edge is the first that a scan finds, in so many steps from half the edge to the edge."""
+    edge = Edge(seed, fault, end).find()
+    assert edge is not None and edge * end > 0.0
+    scan = [edge * (0.5 + 0.5 * step / steps) for step in range(steps + 1)]
+    found = next(severity for severity in scan if missed_in(seed, fault, severity) < 9)
+    just_below = edge / 2 ** (1.0 / 512.0) * (1.0 - 1e-12)  # the last step before it was missed
+    return abs(found) >= 0.97 * abs(edge) and missed_in(seed, fault, edge) < 9 <= missed_in(seed, fault, just_below)
+
+
+def test_the_edge_is_the_first_that_a_scan_finds():
+    assert is_first_found(2, "damping", -0.6, 8)
+
+
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("seed", "fault", "end"), [(1, "stiffness", 1.0), (2, "damping", -0.6), (3, "sensor_hum", 5.0)]
 )
-def test_the_edge_is_the_first_that_a_scan_finds(seed, fault, end):
-    edge = Edge(seed, fault, end).find()
-    assert edge is not None and edge * end > 0.0
-    scan = [edge * (0.5 + 0.02 * step) for step in range(26)]  # from half the edge to the edge
-    found = [severity for severity in scan if missed_in(seed, fault, severity) < 9]
-    assert found and abs(found[0]) >= 0.97 * abs(edge)
-    assert missed_in(seed, fault, edge) < 9
-    assert missed_in(seed, fault, edge / 2 ** (1.0 / 512.0) * (1.0 - 1e-12)) >= 9  # the last step before it was missed
+def test_the_edge_is_the_first_that_a_fine_scan_finds(seed, fault, end):
+    assert is_first_found(seed, fault, end, 25)
 
 
 def test_points_follow_the_rule():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -82,13 +81,13 @@ def test_another_plant_is_refused(tmp_path: Path) -> None:
         export(quiet(**{"plant.model": "nonlinear"}), tmp_path / "device.fmu")
 
 
-def test_the_command_line(tmp_path: Path) -> None:
-    program = Path(sys.executable).parent / "combbench"
-    command = [program, "fmu", "first-look", "--out", "made/device.fmu", "--set"]
-    done = subprocess.run([*command, "sample_rate_khz=50"], cwd=tmp_path, capture_output=True, text=True)
+def test_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    command = ["fmu", "first-look", "--out", "made/device.fmu", "--set"]
+    done = CliRunner().invoke(app, [*command, "sample_rate_khz=50"])
     assert done.stdout == "made/device.fmu, a step of 2e-05 s\n" and (tmp_path / "made" / "device.fmu").is_file()
-    refused = subprocess.run([*command, "device.id=gyro-a"], cwd=tmp_path, capture_output=True, text=True)
-    assert refused.returncode == 2 and len(refused.stderr.splitlines()) == 1
+    refused = CliRunner().invoke(app, [*command, "device.id=gyro-a"])
+    assert refused.exit_code == 2 and len(refused.stderr.splitlines()) == 1
 
 
 def test_without_the_package_one_line_says_so(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

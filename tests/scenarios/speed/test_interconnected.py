@@ -17,7 +17,7 @@ from tests.lab import inject, make, play
 pytest.importorskip("control")
 
 
-@pytest.mark.parametrize("rate_khz", [500, 1000])
+@pytest.mark.parametrize("rate_khz", [500, pytest.param(1000, marks=pytest.mark.long)])
 def test_mrac_is_what_python_control_simulates(rate_khz):
     """A board that samples and holds differs by half a sample of delay: 0.5 w0 dt of what moves."""
     board = make({"controller": {"kind": "mrac"}, "sample_rate_khz": rate_khz})
