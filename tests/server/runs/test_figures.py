@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import errno
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -15,8 +16,16 @@ from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.report.metric_name import micro
 from scenarios.run import run
+from server.runs.build_figures import build
+from server.runs.figures import Figures
 
 FEW = ("first-look", "ch1-beam-width", "ch3-ffrls-b30")
+
+
+@pytest.fixture(autouse=True)
+def none_built(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Forget the figures that a wheel or an image would bring."""
+    monkeypatch.setattr("server.runs.figures.BUILT", tmp_path / "built")
 
 
 def few(monkeypatch: pytest.MonkeyPatch, *more: Any) -> None:
@@ -25,12 +34,14 @@ def few(monkeypatch: pytest.MonkeyPatch, *more: Any) -> None:
         monkeypatch.setattr(f"{module}.library", lambda: chosen)
 
 
-def settled(live: Any) -> dict[str, Any]:
-    """Return the gallery once no figure is being made."""
+def settled(live: Any, first: Sequence[str] = ()) -> dict[str, Any]:
+    """Open the gallery, with some cards in sight; return it once no figure is being made."""
 
     async def made() -> None:
         await asyncio.wait([live.service.figures._task])
 
+    opened = live.http.get("/api/v1/gallery", params={"first": list(first)}).json()
+    assert opened["figures"]["is_making"]
     asyncio.run_coroutine_threadsafe(made(), live.service._loop).result(120)
     found: dict[str, Any] = live.http.get("/api/v1/gallery").json()
     assert not found["figures"]["is_making"]
@@ -101,3 +112,38 @@ def test_cards_say_what_they_are_about(live: Any) -> None:
     assert {"ch3", "Kalman bank (MMAE)", "Added mass"} <= set(cards["ch5-seven-step"]["topics"])
     assert any("PID" in topic for topic in cards["ch5-closed-loop"]["topics"])
     assert all(card["topics"] for card in cards.values() if card["study"] is None)
+
+
+def test_figures_are_made_when_the_gallery_is_opened_the_cards_in_sight_first(
+    serve: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    few(monkeypatch)
+    drawn: list[str] = []
+    draw = Figures._draw
+
+    async def noted(self: Figures, scenario: Any) -> dict[str, Any]:
+        drawn.append(scenario.id)
+        return await draw(self, scenario)
+
+    monkeypatch.setattr(Figures, "_draw", noted)
+    with serve(figures=True) as live:
+        live.bench("first-look", paused=True)
+        assert live.http.get("/api/v1/gallery/first-look/figure").status_code == 404
+        assert live.service.figures._task is None and not drawn
+        settled(live, first=["ch3-ffrls-b30"])
+        assert drawn[0] == "ch3-ffrls-b30" and set(drawn) == set(FEW)
+        assert live.http.get("/api/v1/gallery", params={"first": ["x"] * 65}).status_code == 422
+
+
+def test_figures_that_an_image_brings_are_not_made_again(
+    serve: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    few(monkeypatch)
+    built = tmp_path / "built"
+    for name in FEW:
+        build(name, built)
+    with serve(folder=tmp_path / "data", figures=True) as live:
+        assert settled(live)["figures"]["made"] == 3
+        assert live.service.queue.processes._pool is None
+        assert not (tmp_path / "data" / "figures").exists()
+        assert live.http.get("/api/v1/gallery/first-look/figure").text.startswith("<svg")
