@@ -1,5 +1,5 @@
-import { expect, test } from "./lab";
-import { seriousViolations } from "./serious-violations";
+import { expect, test } from "../lab";
+import { seriousViolations } from "../serious-violations";
 
 const NOISES = Array.from({ length: 250 }, (_, i) => (i + 1) / 1000);
 const CAMPAIGN = {
@@ -14,7 +14,7 @@ const CAMPAIGN = {
 test("a campaign of many points is read page by page, and its runs as a density", async ({ page, server }) => {
   const { id } = await server.ask<{ id: string }>("POST", "/sweeps", { sweep: CAMPAIGN });
   const state = () => server.ask<{ state: string }>("GET", `/sweeps/${id}`).then((found) => found.state);
-  await expect.poll(state, { timeout: 120_000 }).toBe("done");
+  await expect.poll(state).toBe("done");
   await page.request.get(server.url);
   await page.goto(`${server.origin}/?page=runs&sweep=${id}`);
   const result = page.getByRole("region", { name: "Result" });

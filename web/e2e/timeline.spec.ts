@@ -1,0 +1,92 @@
+import { benchOf } from "./classroom";
+import { expect, test } from "./lab";
+
+interface Bench {
+  id: string;
+  name: string;
+  tick: number;
+  state: string;
+  controller: string;
+  faults: { name: string }[];
+  diagnosers: Record<string, { kind: string }>;
+  origin: { bench: string; tick: number; is_past: boolean } | null;
+}
+
+test("the timeline goes back, branches begin there with one change each, and the other future lies behind them", async ({
+  page,
+  server,
+  openBench,
+}) => {
+  await openBench("lab", { samples: 1_000_000 });
+  const ask = (id = benchOf(page)) => server.ask<Bench>("GET", `/benches/${id}`);
+  const bench = benchOf(page);
+  const timeline = page.getByRole("region", { name: "Timeline" });
+  const moment = timeline.getByRole("slider");
+  const past = timeline.getByText(/^As it was at/);
+  await server.advance(2);
+  await server.ask("POST", `/benches/${bench}/commands`, { fault: "added_mass", severity: 0.1 });
+  await server.advance(2);
+
+  await moment.focus();
+  await page.keyboard.press("Home");
+  await expect(past).toBeVisible();
+  await expect.poll(() => benchOf(page)).not.toBe(bench);
+  await expect.poll(() => ask()).toMatchObject({ state: "paused", origin: { bench, is_past: true } });
+  const looked = benchOf(page);
+  const { tick } = await ask();
+  await moment.focus();
+  await page.keyboard.press("ArrowRight");
+  await expect.poll(async () => (await ask()).tick).toBe(tick + 1);
+  await timeline.getByRole("button", { name: "Back to now" }).click();
+  await expect.poll(() => benchOf(page)).toBe(bench);
+  const all = async () => (await server.ask<{ benches: Bench[] }>("GET", "/benches")).benches.map(({ id }) => id);
+  await expect.poll(all).not.toContain(looked);
+
+  const behind = page.getByText(/^Behind, faded: First look/).first();
+  const branch = async (choice: string) => {
+    await timeline.getByRole("button", { name: "Branch here" }).click();
+    await page.getByRole("menuitem", { name: choice }).click();
+    await expect(behind).toBeVisible();
+    await expect.poll(() => ask()).toMatchObject({ state: "running", origin: { bench, is_past: false } });
+    return benchOf(page);
+  };
+  const back = async () => {
+    await timeline.getByRole("button", { name: "The other future" }).click();
+    await expect.poll(() => benchOf(page)).toBe(bench);
+    await expect(page.getByTestId("bench-state")).toHaveText("running");
+  };
+  await moment.focus();
+  await page.keyboard.press("ArrowLeft");
+  await expect(past).toBeVisible();
+  expect(await ask(await branch("With PID"))).toMatchObject({ controller: "pid", faults: [{ name: "added_mass" }] });
+  expect((await ask(bench)).controller).not.toBe("pid");
+  await back();
+  const other = await ask(await branch("With Consistency test"));
+  expect(Object.values(other.diagnosers).map(({ kind }) => kind)).toContain("consistency");
+  expect(other.faults.map(({ name }) => name)).toEqual(["added_mass"]);
+  await back();
+
+  await page.getByRole("tab", { name: "Events" }).click();
+  await page.getByRole("button", { name: /^Branch without this: inject added_mass/ }).click();
+  await expect.poll(() => benchOf(page)).not.toBe(bench);
+  await expect.poll(() => ask()).toMatchObject({ state: "running", faults: [], origin: { bench } });
+  const without = benchOf(page);
+  expect((await ask(bench)).faults.map(({ name }) => name)).toEqual(["added_mass"]);
+
+  await timeline.getByRole("button", { name: "Compared with 1" }).click();
+  const sheet = page.getByRole("dialog", { name: "Compare with other benches" });
+  await sheet.getByRole("checkbox", { name: "Draw the difference on an axis of its own" }).check();
+  await expect(page.getByText(/Dotted, on the axis Δ: the difference from First look/).first()).toBeVisible();
+  const name = sheet.getByRole("textbox", { name: /^Name of First look/ });
+  await name.fill("heavier");
+  await name.press("Enter");
+  await expect.poll(async () => (await ask(bench)).name).toBe("heavier");
+  await expect(page.getByText(/^Behind, faded: heavier\./).first()).toBeVisible();
+  await sheet.getByRole("button", { name: "Show", exact: true }).click();
+  await expect.poll(() => benchOf(page)).toBe(bench);
+  await expect(page.getByText(/^Behind, faded: without inject added/).first()).toBeVisible();
+  await timeline.getByRole("button", { name: "Compared with 1" }).click();
+  await sheet.getByRole("button", { name: /^Close the bench without inject added/ }).click();
+  await expect(page.getByText(/^Behind, faded/)).toHaveCount(0);
+  await expect.poll(all).not.toContain(without);
+});
