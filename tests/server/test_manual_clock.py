@@ -53,6 +53,20 @@ def test_steps_need_no_time(lab: Any) -> None:
     assert lab.get(bench)["tick"] == 9_000
 
 
+def test_a_looped_span_takes_its_time_at_every_pass(lab: Any) -> None:
+    bench = lab.bench("first-look", paused=True)["id"]
+    lab.command(bench, "step", ticks=1_000)
+    kept = lab.http.post(f"/api/v1/benches/{bench}/recordings", json={"past_ticks": 500, "ticks": 0}).json()["id"]
+    replay = lab.http.post(f"/api/v1/recordings/{kept}/replay", json={"paused": True}).json()["id"]
+    lab.command(replay, "loop", start_tick=600, end_tick=800)
+    lab.command(replay, "time_scale", value=200 * DT_S)  # the span takes a second
+    lab.command(replay, "start")
+    for _ in range(3):
+        tick = advance(lab, seconds=0.5)[replay]
+        assert 690 <= tick <= 710
+        advance(lab, seconds=0.5 + PERIOD_S)
+
+
 def test_a_paused_bench_stays_where_it_is(lab: Any) -> None:
     bench = lab.bench("first-look", paused=True)["id"]
     assert advance(lab, seconds=10.0)[bench] == 0
