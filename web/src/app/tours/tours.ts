@@ -5,6 +5,7 @@ import { addPanel, dockNow, showPanel } from "../../bench/dock";
 import { send } from "../../bench/send";
 import { type LayoutName, setPage } from "../../bench/view-store";
 import { askLatest } from "../../bench/why";
+import { isActive } from "../../runs/jobs";
 import { useBench } from "../../stream/bench-store";
 import { currentEvents } from "../../stream/event-log";
 
@@ -46,7 +47,9 @@ export async function forgetRun(): Promise<void> {
   const left = run;
   run = undefined;
   if (!left) return;
-  await api.cancelRun(left).catch(unless(409)); // it has ended
+  let state: string | undefined = "running";
+  // cancelling may take longer than the server lets a request wait; it is refused once the run has ended
+  while (state && isActive(state)) state = (await api.cancelRun(left).catch(unless(409)))?.state;
   await api.removeRuns([left]);
 }
 
