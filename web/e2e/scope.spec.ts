@@ -145,5 +145,5 @@ test("the captures of a trigger outlive the history: previous, next, newest, by 
   await page.getByRole("combobox", { name: "When it" }).selectOption("leaves");
   await page.getByRole("textbox", { name: "From" }).fill("-5");
   await page.getByRole("textbox", { name: "To" }).fill("5");
-  await expect(scope.getByRole("button", { name: /● ⇤ −5\sµm to 5\sµm/ })).toBeVisible();
+  await expect(scope.getByRole("button", { name: /● ⇤ −5\sV to 5\sV/ })).toBeVisible();
 });
