@@ -59,20 +59,25 @@ test("the timeline goes back, branches begin there with one change each, and the
     origin: { bench, is_past: false },
   });
   expect((await ask(bench)).controller).not.toBe("pid");
+  const pid = benchOf(page);
   await timeline.getByRole("button", { name: "The other future" }).click();
   await expect.poll(() => benchOf(page)).toBe(bench);
   await expect(page.getByTestId("bench-state")).toHaveText("running");
+  const compared = timeline.getByRole("button", { name: "Compared with 1" });
+  const sheet = page.getByRole("dialog", { name: "Compare with other benches" });
+  await compared.click();
+  await sheet.getByRole("button", { name: /^Close the bench with PID/ }).click();
+  await expect(page.getByText(/^Behind, faded/)).toHaveCount(0);
+  await expect.poll(all).not.toContain(pid);
+  await page.keyboard.press("Escape");
 
   await page.getByRole("tab", { name: "Events" }).click();
   await page.getByRole("button", { name: /^Branch without this: inject added_mass/ }).click();
   await expect.poll(() => benchOf(page)).not.toBe(bench);
   await expect.poll(() => ask()).toMatchObject({ state: "running", faults: [], origin: { bench } });
-  const without = benchOf(page);
   expect((await ask(bench)).faults.map(({ name }) => name)).toEqual(["added_mass"]);
   await server.advance(2);
-
-  await timeline.getByRole("button", { name: /^Compared with \d/ }).click();
-  const sheet = page.getByRole("dialog", { name: "Compare with other benches" });
+  await compared.click();
   await sheet.getByRole("checkbox", { name: "Draw the difference on an axis of its own" }).check();
   await expect(page.getByText(/Dotted, on the axis Δ: the difference from First look/).first()).toBeVisible();
   const name = sheet.getByRole("textbox", { name: /^Name of First look/ });
@@ -82,12 +87,8 @@ test("the timeline goes back, branches begin there with one change each, and the
   await expect(page.getByText(/^Behind, faded: heavier\./).first()).toBeVisible();
   await sheet.getByRole("button", { name: "Show", exact: true }).click();
   await expect.poll(() => benchOf(page)).toBe(bench);
-  const withoutBehind = page.getByText(/^Behind, faded: .*without inject added/);
-  await expect(withoutBehind.first()).toBeVisible();
-  await timeline.getByRole("button", { name: /^Compared with \d/ }).click();
-  await sheet.getByRole("button", { name: /^Close the bench without inject added/ }).click();
-  await expect(withoutBehind).toHaveCount(0);
-  await expect.poll(all).not.toContain(without);
+  await expect(page.getByText(/^Behind, faded: without inject added/).first()).toBeVisible();
+  await page.keyboard.press("Escape");
 
   const other = await branch("With Consistency test", /^Behind, faded: heavier/);
   expect(Object.values(other.diagnosers).map(({ kind }) => kind)).toContain("consistency");
