@@ -56,12 +56,18 @@ const editor = (page: Page): Locator => page.getByRole("region", { name: "Editor
 const text = (page: Page): Locator => editor(page).getByRole("textbox", { name: "Text of the unit" });
 const state = (page: Page): Locator => editor(page).getByRole("status");
 
-/** A bench of the scenario with an empty editor beside it. */
-async function openEditor(page: Page, server: LabServer, set: object = {}): Promise<void> {
+/** A bench of the scenario in the lab layout. */
+async function openBench(page: Page, server: LabServer, set: object = {}): Promise<void> {
   await page.request.get(server.url);
-  const { id } = await server.ask<{ id: string }>("POST", "/benches", { scenario: SCENARIO, time_scale: 0.001, set });
+  const bench = { scenario: SCENARIO, time_scale: 0.001, set };
+  const { id } = await server.ask<{ id: string }>("POST", "/benches", bench);
   await page.goto(`${server.origin}/?bench=${id}&layout=lab`);
   await expect(page.getByTestId("bench-state")).toHaveText("running");
+}
+
+/** The same with an empty editor beside it. */
+async function openEditor(page: Page, server: LabServer): Promise<void> {
+  await openBench(page, server);
   await page.keyboard.press("o");
   await expect(text(page)).toBeVisible();
 }
@@ -153,7 +159,7 @@ test("the PID of the library gives its own digest when it is pasted; a copy of i
   server,
 }) => {
   const set = { "controller.kind": "pid" };
-  await openEditor(page, server, set);
+  await openEditor(page, server);
   await paste(page, PID);
   await expect(editor(page).getByLabel("Name of the unit")).toHaveValue("pid");
   await expect(state(page)).toContainText("It runs on this bench");
@@ -161,6 +167,7 @@ test("the PID of the library gives its own digest when it is pasted; a copy of i
   const ours = await run(server, { "units.pid.source": PID, ...set });
   expect([found, ours.digest]).toEqual(Array(2).fill((await run(server, set)).digest));
 
+  await openBench(page, server, set);
   await page.getByRole("button", { name: /^Controller PID/ }).click();
   await page.getByRole("button", { name: "Edit a copy" }).click();
   await expect(editor(page).getByLabel("Name of the unit")).toHaveValue("my_pid");

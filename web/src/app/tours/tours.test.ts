@@ -57,3 +57,18 @@ it("a run that takes long to end is cancelled until it has ended, and only then 
   await takeTour("running", [], () => ({ state: states.shift() }));
   expect(said).toEqual(["cancel of-tour", "cancel of-tour", "cancel of-tour", "remove of-tour"]);
 });
+
+it("a run that the server is still being asked for when the tour is left goes with it", async () => {
+  let answer = (_: object) => {};
+  vi.spyOn(api, "runs").mockResolvedValue([]);
+  vi.spyOn(api, "startRun").mockReturnValue(new Promise((resolve) => (answer = resolve as never)));
+  vi.spyOn(api, "cancelRun").mockResolvedValue({} as never);
+  const removed = vi.spyOn(api, "removeRuns").mockResolvedValue({} as never);
+  const steps = TOURS.flatMap(({ steps }) => steps);
+  void steps.find(({ title }) => title === "A run of its own")?.does?.();
+  const left = forgetRun();
+  await vi.waitFor(() => expect(api.startRun).toHaveBeenCalled());
+  answer({ id: "of-tour" });
+  await left;
+  expect(removed).toHaveBeenCalledWith(["of-tour"]);
+});
