@@ -39,13 +39,12 @@ test("units of one's own stand on the page as those of the library: chosen, tune
   await page.getByRole("tab", { name: "Faults" }).click();
   await page.getByRole("button", { name: /^Inject .* Added mass$/ }).click();
   await expect(page.getByText("1 fault acts")).toBeVisible();
-  await server.advance(10);
-  await expect(
-    page
-      .getByRole("region", { name: "Diagnosis" })
-      .getByText(/mass \+5/)
-      .first(),
-  ).toBeVisible();
+  const says = page.getByRole("region", { name: "Diagnosis by mine" }).locator("dd").first();
+  const later = async () => {
+    await server.advance(1);
+    return says.innerText();
+  };
+  await expect.poll(later).toMatch(/^mass \+5/);
   await expectClean(page, "a bench with units of one's own");
   await showOn(page, SCREENS[3]);
   await expectClean(page, "the same on a phone");
