@@ -12,6 +12,9 @@ const CAMPAIGN = {
 };
 
 test("a campaign of many points is read page by page, and its runs as a density", async ({ page, server }) => {
+  const run = await server.ask<{ id: string }>("POST", "/runs", { scenario: "first-look", set: { samples: 20 } });
+  const stateOfRun = async () => (await server.ask<{ state: string }>("GET", `/runs/${run.id}`)).state;
+  await expect.poll(stateOfRun, "the worker has started").toBe("done");
   const { id } = await server.ask<{ id: string }>("POST", "/sweeps", { sweep: CAMPAIGN });
   const ask = () => server.ask<{ state: string; done: number }>("GET", `/sweeps/${id}`);
   for (let ended = 225; ended < 2250; ended += 225)

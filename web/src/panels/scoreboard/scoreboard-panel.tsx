@@ -15,6 +15,7 @@ export function ScoreboardPanel() {
       <EmptyState title="No score yet">A diagnoser is scored from its first sample on; this bench has none.</EmptyState>
     );
   return (
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: a region that scrolls is reached by the keyboard
     <section className={styles.panel} aria-label="Scores" tabIndex={0}>
       <table className={styles.table}>
         <thead>
