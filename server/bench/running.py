@@ -94,7 +94,7 @@ class Running:
             return False
         if self.ends_at is not None and bench.board.tick >= self.ends_at and self.is_started:
             self._finish()
-            return False  # a loop has begun anew: the target of this round lay before the jump
+            return self.is_started and target is None  # a span that begins again has its target from the next round on
         return self.is_started and (target is None or bench.board.tick < target)
 
     def finish_round(self, target: int | None, now: float) -> None:

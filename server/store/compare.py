@@ -60,12 +60,13 @@ def compare(
     InputError
         When they have no tick or no signal in common, or a tolerance names none.
     """
-    names = [pq.read_schema(path).names for path in (first, second)]
+    files = [pq.ParquetFile(path) for path in (first, second)]
+    names = [file.schema_arrow.names for file in files]
     common = [name for name in names[0][2:] if name in names[1]]
     for name in tolerances:
         if name not in common:
             raise unknown("signal of both recordings", name, common, "tolerances")
-    ticks = [_column(path, "tick") for path in (first, second)]
+    ticks = [_column(file, "tick") for file in files]
     if by_start:
         length = min(len(ticks[0]), len(ticks[1]))
         rows = [np.arange(length), np.arange(length)]
@@ -73,11 +74,10 @@ def compare(
         _, *rows = np.intersect1d(ticks[0], ticks[1], assume_unique=True, return_indices=True)
     if not len(rows[0]) or not common:
         raise InputError("have no tick and signal in common", "other", 'align them by "start"')
-    schema = pq.read_schema(first)
     differences = []
     for name in common:
         first_values, second_values = (
-            _column(path, name)[at].astype(np.float64) for path, at in zip((first, second), rows, strict=True)
+            _column(file, name)[at].astype(np.float64) for file, at in zip(files, rows, strict=True)
         )
         difference = np.abs(first_values - second_values)
         difference[np.isnan(first_values) & np.isnan(second_values)] = 0.0
@@ -90,7 +90,7 @@ def compare(
         differences.append(
             SignalDifference(
                 signal=name,
-                unit=(schema.field(name).metadata or {}).get(b"unit", b"").decode(),
+                unit=(files[0].schema_arrow.field(name).metadata or {}).get(b"unit", b"").decode(),
                 max_difference=largest,
                 at_tick=int(ticks[0][rows[0][worst]]),
                 rms_difference=rms,
@@ -107,6 +107,6 @@ def compare(
     )
 
 
-def _column(path: Path, name: str) -> NDArray[np.float64]:
-    column: NDArray[np.float64] = pq.read_table(path, columns=[name]).column(0).to_numpy()
+def _column(file: pq.ParquetFile, name: str) -> NDArray[np.float64]:
+    column: NDArray[np.float64] = file.read(columns=[name]).column(0).to_numpy()
     return column

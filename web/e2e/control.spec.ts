@@ -1,53 +1,42 @@
 import { readFile } from "node:fs/promises";
+import { benchOf } from "./classroom";
 import { expect, test } from "./lab";
 
-test("the controller changes live", async ({ page, openBench }) => {
+test("a controller is switched, keys act after lists and fields, a wrong value is refused in words, all is saved", async ({
+  page,
+  server,
+  openBench,
+}) => {
   await openBench();
-  await page.getByRole("combobox", { name: "Controller" }).click();
-  await page.getByRole("option", { name: /^Direct MRAC Direct model/ }).click();
-  await page.getByRole("tab", { name: "Events" }).click();
-  await expect(page.getByRole("button", { name: /^\d.*switch to mrac/ })).toBeVisible();
-  await expect(page.getByTestId("bench-state")).toHaveText("running");
-});
-
-test("keys act after Escape from a list or a field", async ({ page, openBench }) => {
-  await openBench();
-  await page.getByRole("combobox", { name: "Controller" }).first().click();
-  await expect(page.getByRole("option", { name: /^PID/ })).toBeVisible();
+  const state = page.getByTestId("bench-state");
+  const controller = page.getByRole("combobox", { name: "Controller" }).first();
+  await controller.click();
   await page.keyboard.press("Escape");
-  await expect(page.getByRole("option", { name: /^PID/ })).toBeHidden();
   await page.keyboard.press("t");
   await expect(page.getByRole("heading", { name: "Theory" })).toBeVisible();
   await page.getByRole("textbox", { name: "Search equations" }).fill("t");
   await page.keyboard.press("Escape");
   await page.keyboard.press("b");
-  await expect(page.getByRole("region", { name: /^Scope/ }).first()).toBeVisible();
-});
-
-test("keys act after a choice, and a bench that stands still shows its traces in the other scheme too", async ({
-  page,
-  openBench,
-}) => {
-  await openBench();
-  const scope = page.getByRole("region", { name: /^Scope: reference.voltage/ });
-  await expect(scope.getByText(/\d\sV$/).first()).toBeVisible();
-  await page.getByRole("combobox", { name: "Controller" }).click();
-  await page.getByRole("option", { name: /^PID / }).click();
+  await controller.click();
+  await page.getByRole("option", { name: /^Direct MRAC Direct model/ }).click();
   await page.keyboard.press("Space");
-  await expect(page.getByTestId("bench-state")).toHaveText("paused");
-  const scheme = () => page.evaluate(() => document.documentElement.dataset.mantineColorScheme);
-  const before = await scheme();
-  await page.keyboard.press("d");
-  await expect.poll(scheme).not.toBe(before);
-  await page.waitForTimeout(500); // a picture that is to come would be there
-  await expect(scope.getByText(/\d\sV$/)).toHaveCount(2);
-});
+  await expect(state).toHaveText("paused");
+  const tick = async () => (await server.ask<{ tick: number }>("GET", `/benches/${benchOf(page)}`)).tick;
+  const before = await tick();
+  await page.keyboard.press(".");
+  await expect.poll(tick).toBe(before + 1);
+  await page.keyboard.press("Space");
+  await expect(state).toHaveText("running");
+  await page.getByRole("tab", { name: "Events" }).click();
+  await expect(page.getByRole("button", { name: /^\d.*switch to mrac/ })).toBeVisible();
+  const scale = page.getByRole("group", { name: "Time scale" });
+  await page.keyboard.press("]");
+  await expect(scale.getByRole("button", { name: /^4\.00/ })).toBeVisible();
+  await server.advance(3);
+  await expect(scale.getByText(/runs (4\.0|3\.9)\d\sms\/s/)).toBeVisible();
+  await page.keyboard.press("[");
+  await expect(scale.getByRole("button", { name: /^2\.00/ })).toBeVisible();
 
-test("a parameter changes live, a wrong one is refused in words, and what happened is saved", async ({
-  page,
-  openBench,
-}) => {
-  await openBench();
   await page.getByRole("button", { name: /Sensor ?Ideal/ }).click();
   const noise = page.getByRole("textbox", { name: /^Noise, µm/ });
   await noise.fill("0.2");
@@ -62,25 +51,81 @@ test("a parameter changes live, a wrong one is refused in words, and what happen
     page.waitForEvent("download"),
     page.getByRole("button", { name: /^Save what happened/ }).click(),
   ]);
-  const toml = await readFile(await download.path(), "utf8");
-  expect(toml).toMatch(/sensors?\..*noise_um/);
+  expect(await readFile(await download.path(), "utf8")).toMatch(/sensors?\..*noise_um/);
   expect(download.suggestedFilename()).toMatch(/^first-look-\d+\.toml$/);
 });
 
-test("a runaway controller trips the board, the page says why, and the trip can be reset", async ({
+test("a fault, a healing, a closed panel and a reset are taken back and made again, by key, button and notice", async ({
   page,
-  openBench,
   server,
+  openBench,
 }) => {
   await openBench();
-  const id = new URL(page.url()).searchParams.get("bench");
-  const send = (data: object) => server.ask("POST", `/benches/${id}/commands`, data);
+  const faults = page.getByRole("region", { name: "Faults" });
+  const acting = faults.getByText("1 fault acts");
+  const body = page.locator("body");
+  await faults.getByRole("button", { name: /^Inject .*Added mass/ }).click();
+  await expect(acting).toBeVisible();
+  await page.getByRole("button", { name: /^Undo: Added mass \+5/ }).click();
+  await expect(acting).toBeHidden();
+  await body.press("Control+y");
+  await expect(acting).toBeVisible();
+  const takeBack = (words: string) =>
+    page.getByRole("alert").filter({ hasText: words }).getByRole("button", { name: "Undo" }).click();
+  await body.press("h");
+  await expect(acting).toBeHidden();
+  await takeBack("All faults healed");
+  await expect(acting).toBeVisible();
+
+  const panels = page.getByRole("tab");
+  const many = await panels.count();
+  await page.getByRole("button", { name: "Add or close panels" }).first().click();
+  await page.getByRole("menuitem", { name: /^Close / }).click();
+  await expect(panels).toHaveCount(many - 1);
+  await body.press("Control+z");
+  await expect(panels).toHaveCount(many);
+  await body.press("Control+z");
+  await expect(acting).toBeHidden();
+
+  await server.advance(2);
+  const tick = async () => Number((await page.getByRole("timer").locator("small").textContent())?.replace(/\D/g, ""));
+  const { tick: reached } = await server.ask<{ tick: number }>("GET", `/benches/${benchOf(page)}`);
+  await expect.poll(tick).toBe(reached);
+  await body.press("Space");
+  await expect(page.getByTestId("bench-state")).toHaveText("paused");
+  await body.press("Shift+R");
+  await expect.poll(tick).toBe(0);
+  await takeBack("Reset to the start");
+  await expect.poll(tick).toBe(reached);
+});
+
+test("a runaway controller trips the board, the page says why; the trip is reset, and forked from before it", async ({
+  page,
+  server,
+  openBench,
+}) => {
+  await openBench("lab", { samples: 1_000_000 });
+  const state = page.getByTestId("bench-state");
+  const bench = benchOf(page);
+  const send = (data: object) => server.ask("POST", `/benches/${bench}/commands`, data);
+  await server.advance(2);
   await send({ switch: "mrac", cold: true });
   await send({ set: { "controllers.mrac.adaptation_gain": 30 } });
   await send({ kind: "time_scale", value: 0.1 });
-  await expect(page.getByTestId("bench-state")).toHaveText("tripped", { timeout: 120_000 });
+  await server.advance(4);
+  await expect(state).toHaveText("tripped");
   await expect(page.getByText(/^Tripped: /)).toBeVisible();
   await expect(page.getByText("The voltage is off")).toBeVisible();
   await page.getByRole("button", { name: "Reset the trip" }).click();
-  await expect(page.getByTestId("bench-state")).not.toHaveText("tripped");
+  await expect(state).toHaveText("paused");
+
+  await send({ set: { "guard.travel_um": 0.001 } });
+  await send({ kind: "start" });
+  await server.advance(1);
+  await page.getByRole("button", { name: "Fork from before" }).click();
+  await expect.poll(() => benchOf(page)).not.toBe(bench);
+  const { trip } = await server.ask<{ trip: { tick: number } }>("GET", `/benches/${bench}`);
+  const fork = await server.ask<{ trip: null; tick: number }>("GET", `/benches/${benchOf(page)}`);
+  expect(fork.trip).toBeNull();
+  expect(fork.tick).toBeLessThan(trip.tick);
 });

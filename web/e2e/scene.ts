@@ -16,6 +16,6 @@ export async function sceneAtRest(page: Page): Promise<string> {
     shown = await sceneShown(page);
     return shown === before;
   };
-  await expect.poll(rests, { timeout: 120_000, intervals: [700] }).toBe(true);
+  await expect.poll(rests).toBe(true);
   return shown;
 }

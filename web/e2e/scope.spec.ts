@@ -1,95 +1,149 @@
-import type { Locator } from "@playwright/test";
+import { readFileSync } from "node:fs";
+import { benchOf } from "./classroom";
 import { expect, pictureOf, SCOPE_CANVAS, test } from "./lab";
-import { seriousViolations } from "./serious-violations";
 
-/** What a scope draws, read from its own canvas: rows with the axis' numbers below, rows the traces cover. */
-async function drawn(scope: Locator): Promise<{ below: number; traces: number; height: number }> {
-  const field = await scope.locator(".u-over").boundingBox();
-  const panel = await scope.boundingBox();
-  if (!field || !panel) throw new Error("nothing is drawn");
-  const traces = await scope.locator("canvas").evaluate((canvas: HTMLCanvasElement) => {
-    const context = canvas.getContext("2d") as CanvasRenderingContext2D;
-    const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
-    let [first, last] = [canvas.height, 0];
-    for (let y = 0; y < canvas.height; y += 1)
-      for (let x = Math.round(canvas.width * 0.1); x < canvas.width * 0.9; x += 1) {
-        const at = 4 * (y * canvas.width + x);
-        const [r, g, b] = [data[at], data[at + 1], data[at + 2]];
-        if (data[at + 3] < 128 || Math.max(r, g, b) - Math.min(r, g, b) < 60) continue; // grid and text are grey
-        first = Math.min(first, y);
-        last = Math.max(last, y);
-      }
-    return (last - first) * (canvas.clientHeight / canvas.height);
-  });
-  return { below: panel.y + panel.height - (field.y + field.height), traces, height: panel.height };
+interface Capture {
+  trigger_tick: number;
+  end_tick: number;
 }
 
-test("at first sight every scope has its axis, one row of names, and traces that fill it", async ({
+test("a scope moves with device time, looks back while it runs on, and measures what it shows; the picture is kept", async ({
   page,
+  server,
   openBench,
 }) => {
-  await page.setViewportSize({ width: 1366, height: 768 });
-  await openBench("research");
-  for (const key of ["3", "2", "1"]) {
-    await page.keyboard.press(key);
-    const scopes = page.getByRole("region", { name: /^Scope: / });
-    await expect(scopes).toHaveCount(key === "1" ? 1 : 2);
-    // all at once: the layout before may still be there
-    for (const scope of await scopes.all())
-      await expect(async () => {
-        await expect(scope.locator(".u-over")).toBeInViewport({ ratio: 1, timeout: 1000 });
-        const room = await drawn(scope);
-        expect(room.below).toBeGreaterThan(15); // the axis of time
-        expect(room.traces / room.height).toBeGreaterThan(0.4);
-        const names = await scope.getByRole("list", { name: "Signals" }).boundingBox();
-        expect(names?.height).toBeLessThan(30);
-        expect(await scope.evaluate((panel) => panel.scrollHeight <= panel.clientHeight)).toBe(true);
-      }).toPass();
-  }
-});
-
-test("names that have no room are behind a button, the tracking error is a scope, a band says it is one", async ({
-  page,
-  openBench,
-}) => {
-  await page.setViewportSize({ width: 1366, height: 768 });
-  await openBench("research", { "controller.kind": "pid" });
-  const motion = page.getByRole("region", { name: /^Scope: plant\.displacement/ });
-  await motion.getByRole("button", { name: /^\+\d$/ }).click();
-  const others = page.getByRole("list", { name: "Other signals" });
-  await expect(others.getByText(/^model/)).toBeVisible();
-  await expect(others.getByRole("listitem").last()).toContainText("µm");
-  await page.keyboard.press("Escape");
-
-  await expect(motion.getByRole("note")).toBeHidden();
-  await motion.getByRole("combobox", { name: "Time window" }).selectOption("500");
-  const note = motion.getByRole("note", { name: /^envelope: Each pixel takes [\d.]+\s[µm]?s, \d+\ssamples\./ });
-  await expect(note).toBeVisible();
-  await seriousViolations(page).then((found) => expect(found).toEqual([]));
-  await motion.getByRole("combobox", { name: "Time window" }).selectOption("4");
-  await expect(note).toBeHidden();
-
-  await page.getByRole("tab", { name: "Tracking error" }).click();
-  const error = page.getByRole("region", { name: "Scope: model.tracking_error" });
-  await expect(error.getByRole("list", { name: "Signals" })).toContainText(/model tracking error\s*−?[\d.]+\s[nµ]m/);
-});
-
-test("a scope has a logarithmic scale, which stays with the layout", async ({ page, openBench }) => {
-  await openBench("lab");
-  const scope = page.getByRole("region", { name: /^Scope: plant.displacement/ });
-  await expect.poll(async () => (await drawn(scope)).traces).toBeGreaterThan(10);
-  await page.getByRole("button", { name: "Pause", exact: true }).click();
-  const picture = () => pictureOf(page, SCOPE_CANVAS);
-  const before = await picture();
-  const choose = async () => {
-    await scope.getByRole("button", { name: "Choose signals" }).click();
-    return page.getByRole("checkbox", { name: "Logarithmic scale, of magnitudes" });
+  await openBench("lab", { samples: 1_000_000 });
+  const scope = page.getByRole("region", { name: /^Scope: reference.voltage/ });
+  const live = scope.getByRole("button", { name: "LIVE" });
+  const clock = page.getByRole("timer", { name: "Device time" });
+  const passes = async (seconds: number) => {
+    const before = await clock.innerText();
+    await server.advance(seconds);
+    await expect(clock).not.toHaveText(before);
   };
-  await (await choose()).check();
-  await page.keyboard.press("Escape");
-  await expect.poll(picture).not.toBe(before);
-  await page.waitForTimeout(900);
-  await page.reload();
+  await passes(3);
+  await scope.getByLabel(/^Plot/).focus();
+  await page.keyboard.press("ArrowLeft");
+  await expect(live).toHaveAttribute("aria-pressed", "false");
+  await expect(live).toContainText("PAST");
+  await passes(1);
+  await expect(page.getByTestId("bench-state")).toHaveText("running");
+  await live.click();
+  await expect(live).toHaveAttribute("aria-pressed", "true");
+
+  await scope.getByRole("button", { name: "Measure" }).click();
+  const figures = scope.getByRole("region", { name: "Measurements" });
+  const row = figures.getByRole("row", { name: /drive voltage/ });
+  await passes(1);
+  // the first look plays 10 V at 2 kHz, and in open loop the drive is the reference
+  await expect(row.getByRole("cell").nth(3)).toHaveText(/^7\.0[67]\d*\sV$/);
+  await expect(row.getByRole("cell").nth(5)).toHaveText(/^(2\.000|1\.999|2\.001)\skHz$/);
+  await expect(row.getByRole("cell").nth(8)).toHaveText(/^−?0\.\d°$/);
+  await expect(row.getByRole("cell").nth(9)).toHaveText("1.000");
+  await expect(figures.getByText("2.000 ms")).toBeVisible();
+  const b = scope.getByRole("slider", { name: "Cursor B" });
+  await b.focus();
+  for (let i = 0; i < 25; i += 1) await b.press("ArrowLeft");
+  await expect(figures.getByText("1.000 ms")).toBeVisible(); // 25 of 100 of a window of 4 ms
+  await expect(figures.getByText("1.000 kHz")).toBeVisible();
+  await page.getByRole("button", { name: "Pause", exact: true }).click();
+  await expect(scope.getByRole("button", { name: "LIVE, PAUSED" })).toBeVisible();
+
+  const save = async (kind: string) => {
+    await scope.getByRole("button", { name: "Export" }).click();
+    const [download] = await Promise.all([
+      page.waitForEvent("download"),
+      page.getByRole("menuitem", { name: kind, exact: true }).click(),
+    ]);
+    return readFileSync(await download.path());
+  };
+  const svg = (await save("SVG")).toString();
+  expect(svg).toContain("voltage, V");
+  expect(svg).toContain("time of the device, ms");
+  const png = await save("PNG");
+  expect(png.subarray(1, 4).toString()).toBe("PNG");
+  // twice the pixels of the drawing, from the header
+  expect(png.readUInt32BE(16)).toBe(2 * Number(/width="(\d+)"/.exec(svg)?.[1]));
+  const csv = (await save("CSV")).toString().split("\n");
+  expect(csv[0]).toBe('"tick","time_ms","reference.voltage","drive.voltage"');
+  expect(csv.length).toBeGreaterThan(100);
+});
+
+test("the captures of a trigger outlive the history: previous, next, newest, by keys, and live again", async ({
+  page,
+  server,
+  openBench,
+}) => {
+  await openBench("lab", { samples: 10_000_000 });
+  const bench = benchOf(page);
+  const stepTo = async (tick: number) => {
+    let { tick: now } = await server.ask<{ tick: number }>("GET", `/benches/${bench}`);
+    for (let ticks = 0; now < tick; now += ticks) {
+      ticks = Math.min(10_000, tick - now);
+      await server.ask("POST", `/benches/${bench}/commands`, { kind: "step", ticks });
+    }
+  };
+  const scope = page.getByRole("region", { name: /^Scope: plant\.displacement/ });
+  const strip = scope.getByRole("group", { name: "Captures", exact: true });
+  const words = strip.getByRole("status");
+  const older = scope.getByRole("button", { name: "Previous capture" });
+  await page.getByRole("button", { name: "Pause", exact: true }).click();
   await expect(page.getByTestId("bench-state")).toHaveText("paused");
-  await expect(await choose()).toBeChecked();
+  await expect(strip).toBeHidden();
+  await scope.getByRole("button", { name: "Trigger", exact: true }).click();
+  await expect(words).toHaveText("no captures yet");
+  await stepTo(30_000);
+  await expect(words).toHaveText(/^50\scaptures kept$/);
+
+  const { dt_ms: dt } = await server.ask<{ dt_ms: number }>("GET", `/benches/${bench}`);
+  const list = async () =>
+    (await server.ask<{ triggers: { captures: Capture[] }[] }>("GET", `/benches/${bench}/captures`)).triggers[0]
+      .captures;
+  const captures = await list();
+  const at = (index: number) =>
+    `capture ${index + 1} of 50 at ${(captures[index].trigger_tick * dt).toFixed(3)}\u00a0ms`;
+  const picture = () => pictureOf(page, SCOPE_CANVAS);
+  await older.click();
+  await expect(words).toHaveText(at(49));
+  await expect(scope.getByRole("button", { name: "PAST → LIVE" })).toBeVisible();
+  await expect(scope.getByRole("button", { name: "Next capture" })).toBeDisabled();
+  await older.click();
+  await expect(words).toHaveText(at(48));
+  await scope.getByRole("group", { name: /^Plot\./ }).focus();
+  await page.keyboard.press("PageUp");
+  await expect(words).toHaveText(at(47));
+  await page.keyboard.press("PageDown");
+  await expect(words).toHaveText(at(48));
+  await page.keyboard.press("End");
+  await expect(words).toHaveText(at(49));
+  await page.keyboard.press("l");
+  await expect(words).toHaveText(/^50\scaptures kept$/);
+
+  // a page that comes back finds the same, and every sample of them although the history has gone on
+  await page.reload();
+  await expect(words).toHaveText(/^50\scaptures kept$/);
+  const stand = async (index: number) => {
+    const before = await picture();
+    await scope.getByRole("slider", { name: "Capture" }).fill(String(index));
+    await expect(words).toHaveText(at(index));
+    await expect.poll(picture).not.toBe(before);
+  };
+  await stand(10);
+  const kept = await picture();
+  await stepTo(450_000);
+  const { first_tick: first } = await server.ask<{ first_tick: number }>("GET", `/benches/${bench}`);
+  expect(first).toBeGreaterThan(captures[49].end_tick);
+  expect(await list(), "while it stands on one, the scope takes no others").toEqual(captures);
+  await stand(11);
+  await stand(10);
+  await expect.poll(picture).toBe(kept);
+
+  await scope.getByRole("button", { name: /↗/ }).click();
+  await page.getByRole("textbox", { name: "Level" }).fill("1000");
+  await expect(words).toHaveText("no captures yet");
+  await expect(older).toBeDisabled();
+  await page.getByRole("combobox", { name: "When it" }).selectOption("leaves");
+  await page.getByRole("textbox", { name: "From" }).fill("-5");
+  await page.getByRole("textbox", { name: "To" }).fill("5");
+  await expect(scope.getByRole("button", { name: /● ⇤ −5\sV to 5\sV/ })).toBeVisible();
 });

@@ -1,84 +1,52 @@
-import type { Page } from "@playwright/test";
+import { benchOf } from "./classroom";
 import { expect, test } from "./lab";
-import { seriousViolations } from "./serious-violations";
 
-const benchOf = (page: Page) => new URL(page.url()).searchParams.get("bench") ?? "";
-
-/** The titles of the bubbles of each tour. */
-const TOURS: Record<string, string[]> = {
-  "First look round": [
-    "A bench that runs",
-    "Run, step, pace",
-    "The motion",
-    "A fault",
-    "The verdict",
-    "Where to go on",
-  ],
-  Faults: ["The list of faults", "Damping +30 %", "Found", "Where it acts", "Heal all"],
-  Controllers: ["A device that has changed", "Who drives", "MRAC drives", "What it learns", "Back to the open loop"],
-  Diagnosis: ["Six hypotheses", "Mass +5 %", "Why", "The score", "Find one yourself"],
-  "Runs and claims": [
-    "From live to headless",
-    "Runs and campaigns",
-    "A run of its own",
-    "Claim and measurement",
-    "Back to the bench",
-  ],
-};
-
-test("every tour drives the page, does what it says, and puts all back, at its end or by Escape", async ({
+test("a tour drives the page and puts all back at its end, and by Escape while its run is under way", async ({
   page,
   openBench,
   server,
 }) => {
-  const runs = async () => (await server.ask<{ runs: { id: string }[] }>("GET", "/runs")).runs.map(({ id }) => id);
-  if (!(await runs()).length) await server.ask("POST", "/runs", { scenario: "ch1-step" }); // as the tour's, and kept
-  const ran = await runs();
-  await openBench("research");
+  await openBench("lecture");
   const bench = benchOf(page);
   const tabs = () => page.getByRole("tab").allInnerTexts();
   const before = await tabs();
   const bubble = page.getByRole("dialog");
+  const next = bubble.getByRole("button", { name: "Next" });
+  const offer = page.getByRole("button", { name: "Show me round" });
+  const count = async (path: "benches" | "runs") =>
+    (await server.ask<Record<string, object[]>>("GET", `/${path}`))[path].length;
   const asBefore = async () => {
     await expect(bubble).toHaveCount(0);
     await expect(page.getByTestId("bench-state")).toHaveText("running");
     await expect.poll(() => benchOf(page)).toBe(bench);
     await expect.poll(tabs).toEqual(before);
-    await expect.poll(async () => (await server.ask<{ benches: object[] }>("GET", "/benches")).benches.length).toBe(1);
+    await expect.poll(() => count("benches")).toBe(1);
   };
-  const start = async (title: string) => {
-    await page.keyboard.press("?");
-    await page.getByRole("button", { name: title, exact: true }).click();
-  };
-  for (const [title, steps] of Object.entries(TOURS)) {
-    await start(title);
-    for (const [i, step] of steps.entries()) {
-      await expect(bubble).toContainText(step);
-      await expect(bubble).toContainText(`${i + 1} of ${steps.length}`);
-      if (step === "The verdict") {
-        expect(benchOf(page)).not.toBe(bench);
-        await expect(page.getByText("+5 %", { exact: false }).first()).toBeVisible();
-        expect(await seriousViolations(page)).toEqual([]);
-      }
-      await bubble.getByRole("button", { name: i === steps.length - 1 ? "Done" : "Next" }).press("Enter");
-    }
-    await asBefore();
+  await offer.click();
+  for (const title of ["A bench that runs", "Run, step, pace", "The motion", "A fault"]) {
+    await expect(bubble).toContainText(title);
+    await next.press("Enter");
   }
-  await start("Diagnosis");
-  await expect(bubble).toContainText("Six hypotheses");
+  await expect(page.getByText("1 fault acts")).toBeVisible();
+  expect(benchOf(page)).not.toBe(bench);
+  await server.advance(5);
+  await expect(bubble).toContainText("The verdict");
+  await expect(bubble).toContainText("5 of 6");
+  await expect(page.getByText("+5 %", { exact: false }).first()).toBeVisible();
+  await next.press("Enter");
+  await expect(bubble).toContainText("Where to go on");
+  await bubble.getByRole("button", { name: "Done" }).press("Enter");
+  await asBefore();
+  await expect(offer).toHaveCount(0);
+
+  await page.keyboard.press("?");
+  await page.getByRole("button", { name: "Runs and claims", exact: true }).click();
+  for (const title of ["From live to headless", "Runs and campaigns"]) {
+    await expect(bubble).toContainText(title);
+    await next.press("Enter");
+  }
+  await expect.poll(() => count("runs")).toBe(1);
   await page.keyboard.press("Escape");
   await asBefore();
-  expect(await runs()).toEqual(ran);
-
-  await page.setViewportSize({ width: 390, height: 844 });
-  await expect(page.getByRole("button", { name: "Show me round" })).toHaveCount(0);
-});
-
-test("who is new is offered a tour once, beside the hints", async ({ page, openBench }) => {
-  await openBench("lecture");
-  await page.getByRole("button", { name: "Show me round" }).click();
-  await expect(page.getByRole("dialog")).toContainText("A bench that runs");
-  await page.keyboard.press("Escape");
-  await expect(page.getByRole("dialog")).toHaveCount(0);
-  await expect(page.getByRole("button", { name: "Show me round" })).toHaveCount(0);
+  await expect.poll(() => count("runs")).toBe(0);
 });

@@ -17,7 +17,7 @@ interface Common {
 /** A run or a campaign in the list. */
 export type Job = Common & ({ kind: "run"; run: Run } | { kind: "campaign"; sweep: SweepRun });
 
-const isActive = (state: string) => state === "queued" || state === "running";
+export const isActive = (state: string) => state === "queued" || state === "running";
 
 /** What a run is called. */
 export const runName = (run: Run): string => run.label || micro(run.title) || run.scenario_id;

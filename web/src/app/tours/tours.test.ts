@@ -12,13 +12,19 @@ vi.hoisted(() => {
 const said: string[] = [];
 
 /** A server on which the run of the tour is in a state when the tour ends. */
-async function takeTour(state: "running" | "done", others: string[] = []): Promise<void> {
+async function takeTour(
+  state: "running" | "done",
+  others: string[] = [],
+  answer: () => object = () => ({}),
+): Promise<void> {
   vi.spyOn(api, "runs").mockResolvedValue(others.map((id) => ({ id })) as never);
   vi.spyOn(api, "startRun").mockResolvedValue({ id: "of-tour" } as never);
   vi.spyOn(api, "cancelRun").mockImplementation((id) => {
     said.push(`cancel ${id}`);
     const refusal = { code: "conflict", message: "it has ended", field: null, details: {} };
-    return state === "running" ? Promise.resolve({} as never) : Promise.reject(new ApiError(409, refusal as never));
+    return state === "running"
+      ? Promise.resolve(answer() as never)
+      : Promise.reject(new ApiError(409, refusal as never));
   });
   vi.spyOn(api, "removeRuns").mockImplementation((ids) => {
     said.push(`remove ${ids}`);
@@ -44,4 +50,25 @@ it.each(["running", "done"] as const)("the run of a tour goes with it while it i
 it("a run that was there before the tour stays", async () => {
   await takeTour("done", ["of-tour"]);
   expect(said).toEqual([]);
+});
+
+it("a run that takes long to end is cancelled until it has ended, and only then removed", async () => {
+  const states = ["running", "running", "cancelled"];
+  await takeTour("running", [], () => ({ state: states.shift() }));
+  expect(said).toEqual(["cancel of-tour", "cancel of-tour", "cancel of-tour", "remove of-tour"]);
+});
+
+it("a run that the server is still being asked for when the tour is left goes with it", async () => {
+  let answer = (_: object) => {};
+  vi.spyOn(api, "runs").mockResolvedValue([]);
+  vi.spyOn(api, "startRun").mockReturnValue(new Promise((resolve) => (answer = resolve as never)));
+  vi.spyOn(api, "cancelRun").mockResolvedValue({} as never);
+  const removed = vi.spyOn(api, "removeRuns").mockResolvedValue({} as never);
+  const steps = TOURS.flatMap(({ steps }) => steps);
+  void steps.find(({ title }) => title === "A run of its own")?.does?.();
+  const left = forgetRun();
+  await vi.waitFor(() => expect(api.startRun).toHaveBeenCalled());
+  answer({ id: "of-tour" });
+  await left;
+  expect(removed).toHaveBeenCalledWith(["of-tour"]);
 });

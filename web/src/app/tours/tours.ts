@@ -5,6 +5,7 @@ import { addPanel, dockNow, showPanel } from "../../bench/dock";
 import { send } from "../../bench/send";
 import { type LayoutName, setPage } from "../../bench/view-store";
 import { askLatest } from "../../bench/why";
+import { isActive } from "../../runs/jobs";
 import { useBench } from "../../stream/bench-store";
 import { currentEvents } from "../../stream/event-log";
 
@@ -39,14 +40,23 @@ const found = (name: string) => () =>
 const drives = (name: string) => () => useBench.getState().bench?.controller === name;
 const injectMass = command({ fault: "added_mass", severity: 0.05 } as Command);
 
-let run: string | undefined;
+/** The run that a tour has started, once the server has answered; none where it was there already. */
+let run: Promise<string | undefined> | undefined;
+
+async function startRun(): Promise<string | undefined> {
+  const there = await api.runs({});
+  const { id } = await api.startRun({ scenario: "ch1-step" });
+  return there.some((one) => one.id === id) ? undefined : id;
+}
 
 /** What a tour has left on the server is gone with it. */
 export async function forgetRun(): Promise<void> {
-  const left = run;
+  const left = await run?.catch(() => undefined); // said already
   run = undefined;
   if (!left) return;
-  await api.cancelRun(left).catch(unless(409)); // it has ended
+  let state: string | undefined = "running";
+  // cancelling may take longer than the server lets a request wait; it is refused once the run has ended
+  while (state && isActive(state)) state = (await api.cancelRun(left).catch(unless(409)))?.state;
   await api.removeRuns([left]);
 }
 
@@ -226,10 +236,9 @@ export const TOURS: Tour[] = [
         title: "A run of its own",
         text: "The tour has just started the step of 10 V. It is in the list, with its state.",
         at: find("main"),
-        does: async () => {
-          const there = await api.runs({});
-          const { id } = await api.startRun({ scenario: "ch1-step" });
-          run = there.some((one) => one.id === id) ? undefined : id; // what somebody has run already stays
+        does: () => {
+          run = startRun();
+          return run;
         },
       },
       {

@@ -1,9 +1,9 @@
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { expect, test } from "./lab";
-import { expectClean, SCREENS, showOn } from "./screens";
+import { expect, test } from "../lab";
+import { expectClean, SCREENS, showOn } from "../screens";
 
-const DOCUMENT = readFileSync(join(import.meta.dirname, "..", "..", "docs", "own-units.md"), "utf-8");
+const DOCUMENT = readFileSync(join(import.meta.dirname, "..", "..", "..", "docs", "own-units.md"), "utf-8");
 const [PI, JUDGE] = DOCUMENT.split("```python\n")
   .slice(1)
   .map((part) => part.split("```")[0]);
@@ -38,12 +38,13 @@ test("units of one's own stand on the page as those of the library: chosen, tune
   await expect(card.getByLabel(/proportional/i).first()).toBeVisible();
   await page.getByRole("tab", { name: "Faults" }).click();
   await page.getByRole("button", { name: /^Inject .* Added mass$/ }).click();
-  await expect(
-    page
-      .getByRole("region", { name: "Diagnosis" })
-      .getByText(/mass \+5/)
-      .first(),
-  ).toBeVisible();
+  await expect(page.getByText("1 fault acts")).toBeVisible();
+  const says = page.getByRole("region", { name: "Diagnosis by mine" }).locator("dd").first();
+  const later = async () => {
+    await server.advance(1);
+    return says.innerText();
+  };
+  await expect.poll(later).toMatch(/^mass \+5/);
   await expectClean(page, "a bench with units of one's own");
   await showOn(page, SCREENS[3]);
   await expectClean(page, "the same on a phone");
