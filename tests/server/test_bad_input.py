@@ -333,7 +333,11 @@ def test_a_bench_that_was_closed_takes_no_command(live: Any) -> None:
         with pytest.raises(ApiError) as late:  # its turn came after the end of the bench
             session.execute(parse({"kind": kind}), "test")
         body = late.value.body
-        assert (late.value.status_code, body.code, body.message) == (404, "not_found", answer.json()["error"]["message"])
+        assert (late.value.status_code, body.code, body.message) == (
+            404,
+            "not_found",
+            answer.json()["error"]["message"],
+        )
 
 
 QUESTIONS: list[tuple[dict[str, Any], str]] = [
