@@ -19,7 +19,7 @@ from pydantic import Field, ValidationError
 from core.board.document import Document, defaults, plant_of
 from core.board.library import library_of
 from core.errors import InputError, from_validation, short
-from core.registry import FAMILIES
+from core.registry import FAMILIES, blocks
 from core.table import Table
 
 TABLE = "packages"
@@ -52,7 +52,9 @@ class Package:
 
     @cached_property
     def source(self) -> str:
-        """SHA-256 over its Python files, with line ends as on Unix."""
+        """SHA-256 over its Python files, with line ends as on Unix; a package that cannot be loaded is refused."""
+        for entry in self.entries:
+            blocks(entry.group.removeprefix("combbench."))
         digest = hashlib.sha256()
         roots = {spec.name: spec for spec in (_root(entry.module) for entry in self.entries)}
         for _, spec in sorted(roots.items()):

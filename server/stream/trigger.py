@@ -86,6 +86,8 @@ class Trigger:
         while self.next_tick < history.end_tick:
             end = min(self.next_tick + BLOCK, history.end_tick)
             samples = history.read([self.index], self.next_tick, end)[0]
+            if len(samples) < end - self.next_tick:  # meanwhile the history has lost its oldest ticks
+                self.restart(end - len(samples))
             crossings += self._crossings(samples, first_only)
             if crossings and first_only:
                 return crossings

@@ -138,6 +138,23 @@ def test_a_jump_in_time_starts_a_new_history():
         np.testing.assert_array_equal(found, expected_columns(whole, range(1234, 4234), 0, 5000, columns))
 
 
+def test_a_tap_that_was_idle_before_a_jump_is_written_after_it():
+    """Each time it is idle for half of the ring, over the same half; the other half has samples from before."""
+    history = History(2, SIGNALS - 2, 4096)
+    half = history.capacity // 2
+    data = signal(history.capacity + 2 * half)
+    feed(history, data[: history.capacity], [512])
+    data[history.capacity :, 2] = 0.0
+    for first in (history.capacity, history.capacity, history.capacity + half):
+        outputs, taps = np.split(data[first : first + half], [2], axis=1)
+        history.append(Rows(first, half, outputs.copy(), taps.copy(), np.ones(SIGNALS - 2, dtype=np.bool_)))
+    kept = range(history.first_tick, history.end_tick)
+    assert len(kept) == half and kept.stop == len(data)
+    np.testing.assert_array_equal(history.read([0, 1, 2], 0, len(data)), data[kept.start :].T.astype(np.float32))
+    found = history.columns([0, 1, 2], kept.start, kept.stop, 70)
+    np.testing.assert_array_equal(found, expected_columns(data, kept, kept.start, kept.stop, 70))
+
+
 def last_crossing(x: np.ndarray, rising: bool, level: float, hysteresis: float, start: int, stop: int) -> int | None:
     """Crossings of a Schmitt trigger: armed beyond the band, fires at the level."""
     y = (x.astype(np.float32).astype(float) - level) * (1 if rising else -1)

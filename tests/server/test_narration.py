@@ -6,9 +6,13 @@ from typing import Any
 
 import pytest
 
+from core.board.commands import Heal
 from scenarios.library import get
 from scenarios.run import run
-from server.bench.blind import OF_A_DIAGNOSER, SIGNALS
+from server.bench.blind import ACTOR, OF_A_DIAGNOSER, SIGNALS, hide
+from server.bench.commands import parse
+from server.bench.narration import Mark
+from tests.server.bench.test_session import advance, session
 from tests.server.people.group import join, open_class
 
 
@@ -122,6 +126,28 @@ def test_nothing_is_said_that_tells_a_hidden_fault(live: Any, shows: bool, seeds
         whole = narration(live, bench)["sentences"]
         assert len(whole) >= len(sentences)
         live.http.delete(f"/api/v1/benches/{bench}")
+
+
+def test_a_view_that_hides_a_fault_says_nothing_of_the_error() -> None:
+    """The controller drives without an error until the fault comes, and again once it is healed."""
+    bench = session("ch5-seven-step", events=[], samples=10_000)
+    question = hide(bench.board, bench.scenario.document, "q", False, 0, 0.0)
+    fault = {"fault": "added_mass", "severity": 0.5}
+    bench.hiding.begin(question.model_copy(update={"faults": [fault], "came_tick": 2000}))
+    bench.hiding.clear()
+    bench.hiding.inject("board")
+    advance(bench, 1000)
+    bench.execute(parse({"switch": "mrac"}), "test")
+    advance(bench, 3000)
+    bench.board.apply(Heal(heal="all"), ACTOR)
+    advance(bench, 4000)
+    view = bench.hiding.view
+    assert view is not None
+    whole, told = (one.narration.after(Mark())[2] for one in (bench, view))
+    since = [said.text.rpartition(" ")[2] for said in whole if said.kind == "settled"]
+    assert since == ["fault.", "healing."]
+    assert [(said.kind, said.tick, said.signals) for said in told] == [("switch", 1000, [])]
+    assert all("error" not in said.text and "error_um" not in said.numbers for said in told)
 
 
 def test_a_teacher_hears_all_of_the_bench_of_a_student(live: Any) -> None:

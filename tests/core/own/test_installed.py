@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Iterator
 from importlib.metadata import EntryPoint
 from pathlib import Path
+from typing import Any
 
 import pytest
+from typer.testing import CliRunner
 
 from core import registry
+from core.board.packages import packages
 from core.errors import InputError
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
+from server.cli import app
 from tests.core.own.installed import TEMPLATE, Installed
 from tests.core.own.test_own_units import with_unit
 
@@ -67,12 +72,38 @@ def test_a_package_that_cannot_be_loaded_is_refused_by_its_name() -> None:
     assert "names no_such_module:None, which cannot be loaded" in str(raised.value)
 
 
-@pytest.mark.long
-def test_the_command_line_names_a_package_that_cannot_be_loaded(installed: Installed, tmp_path: Path) -> None:
-    info = tmp_path / "broken-1.0.dist-info"
+def break_one(folder: Path, family: str) -> None:
+    """Put a package into a folder that names a module that is not there."""
+    info = folder / "broken-1.0.dist-info"
     info.mkdir()
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: broken\nVersion: 1.0\n", "utf-8")
-    (info / "entry_points.txt").write_text("[combbench.control]\nnone = no_such_module:None\n", "utf-8")
+    (info / "entry_points.txt").write_text(f"[combbench.{family}]\nnone = no_such_module:None\n", "utf-8")
+
+
+@pytest.fixture(params=["control", "readout"])
+def broken(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
+    """The family of such a package, which this Python finds until the end of the test."""
+    break_one(tmp_path, request.param)
+    known: list[Any] = [registry._all, registry.blocks, registry.apart, packages]
+    with pytest.MonkeyPatch.context() as patched:
+        patched.syspath_prepend(tmp_path)
+        for one in known:
+            one.cache_clear()
+        yield request.param
+    for one in known:
+        one.cache_clear()
+
+
+def test_a_run_is_refused_in_one_line_where_a_package_cannot_be_loaded(broken: str) -> None:
+    done = CliRunner().invoke(app, ["run", "first-look", "--set", "controller.kind=none"])
+    assert (done.exit_code, done.stdout) == (2, "")
+    (line,) = done.stderr.splitlines()
+    assert line.startswith(f"combbench: combbench.{broken}.none: broken names no_such_module:None")
+
+
+@pytest.mark.long
+def test_the_command_line_names_a_package_that_cannot_be_loaded(installed: Installed, tmp_path: Path) -> None:
+    break_one(tmp_path, "control")
     path = f"{tmp_path}:{installed.environment['PYTHONPATH']}"
     command = [sys.executable, "-m", "server.cli", "catalog", "control"]
     environment = {**installed.environment, "PYTHONPATH": path}

@@ -11,6 +11,7 @@ from scipy import signal
 
 from core.device.catalogue import devices
 from core.device.oscillator import held
+from core.device.transfer_function import of_coefficients, slowest_pole
 from core.errors import InputError
 from tests.lab import inject, make, play
 
@@ -96,6 +97,14 @@ def test_figures_are_those_that_mean_something():
     assert PLANTS["double-integrator"].metrics() == {"slowest_pole_per_s": 0.0}
     found = PLANTS["second-order-gain"].metrics()
     assert found["f0_hz"] == pytest.approx(1 / (2 * math.pi)) and found["slowest_pole_per_s"] == pytest.approx(-0.5)
+
+
+@pytest.mark.parametrize("fast", [0.7e6, 0.7e9, 0.7e12])
+def test_the_slow_one_of_two_poles_far_apart_has_all_its_digits(fast):
+    """The roots of s^2 + (slow + fast) s + slow fast are -slow and -fast."""
+    slow = 0.3
+    plant = of_coefficients(1.0, [1.0, slow + fast, slow * fast], 1.0)
+    assert slowest_pole(plant) == pytest.approx(-slow, rel=1e-14)
 
 
 @pytest.mark.parametrize("name", sorted(PLANTS))

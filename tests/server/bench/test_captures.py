@@ -136,6 +136,18 @@ def test_the_51st_drops_the_first_and_all_outlive_the_history() -> None:
     assert bench.captures.covering([1], oldest.start, oldest.stop + 1) is None
 
 
+@pytest.mark.parametrize("step", [4000, 4096, 10_000])
+def test_a_long_step_between_two_looks_loses_no_capture_that_the_history_still_has(step: int) -> None:
+    bench = Bench()
+    view, kept = opened(bench)
+    for _ in range(4):
+        bench.run(step)
+        bench.look(view)
+        head = bench.end_tick
+        whole = [at for at in range(50, head, 100) if at - BEFORE >= bench.first_tick and at - BEFORE + WINDOW <= head]
+        assert ticks_of(kept)[-len(whole) :] == whole
+
+
 def test_columns_join_captures_and_history_and_leave_gaps() -> None:
     bench = Bench()
     view, kept = opened(bench)

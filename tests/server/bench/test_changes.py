@@ -100,6 +100,17 @@ def test_a_command_that_waits_waits_no_more_and_one_that_took_effect_is_refused(
         do(bench, {"kind": "undo"})
 
 
+def test_of_two_commands_that_wait_the_newest_is_taken_back_first() -> None:
+    bench = bench_at(100)
+    for at, fault in ((600, "added_mass"), (400, "damping")):
+        do(bench, {"fault": fault, "severity": 0.05, "at_sample": at})
+    do(bench, {"kind": "undo"})
+    assert [entry.command.fault for entry in bench.board.pending] == ["added_mass"]  # type: ignore[union-attr]
+    do(bench, {"kind": "redo"})
+    advance(bench, 500)
+    assert set(bench.board.faults) == {"damping"} and len(bench.board.pending) == 1
+
+
 def test_a_reset_is_taken_back_with_what_was_seen_before_it() -> None:
     bench = bench_at(3000)
     do(bench, {"fault": "added_mass", "severity": 0.05})

@@ -15,6 +15,7 @@ from scenarios.library import get
 from scenarios.run import build
 from server.bench.commands import parse
 from server.bench.session import Session
+from server.bench.status import Company, Somebody
 from server.metrics import Metrics
 from server.settings import Settings
 from server.stream import client as client_module
@@ -163,6 +164,30 @@ async def test_parameters_are_told_when_they_have_changed() -> None:
     assert told() == [False]  # an event, but nothing of the scenario
     bench.session.execute(parse({"set": {"reference.amplitude_v": 3.0}}), "test")
     assert [told(), told()] == [[True], [False]]
+
+
+@on_loop
+async def test_pages_of_a_paused_bench_are_told_who_comes_and_who_drives() -> None:
+    bench = Bench()
+    bench.session.execute(parse({"kind": "pause"}), "test")
+    pages = [bench.page(), bench.page()]
+    ada, ben = Somebody(id="a", name="Ada"), Somebody(id="b", name="Ben")
+
+    def told() -> list[Any]:
+        for client, _ in pages:
+            client.offer(status=True)
+        said = [[m for m in line.messages() if m["type"] == "status"][-1] for _, line in pages]
+        assert said[0] == {**said[1], "parameters": said[0]["parameters"]}
+        return [said[0]["watchers"], said[0]["company"] and said[0]["company"]["driver"]]
+
+    assert told() == [2, None]
+    around = {"is_leased": True, "drivers": [ada, ben], "asking": [], "lent_by": "", "more_watching": 0, "links": 0}
+    for driver in (ada, ben, None):
+        company = Company(**around, driver=driver, watching=["Cy"])
+        bench.hub.company = lambda _bench_id, company=company: company  # type: ignore[misc]
+        pages.append(bench.page())
+        bench.hub.tell(bench.session.id)
+        assert told() == [len(pages), driver and driver.model_dump()]
 
 
 @on_loop

@@ -49,6 +49,22 @@ def walk(values: Any, edge: str, level: float, hysteresis: float, upper: float =
     return sorted(set(found))
 
 
+class Moving(Samples):
+    """A history that has lost its oldest ticks when it is read, because its bench goes on; it does so until tick 10."""
+
+    def read(self, signals: list[int], start: int, stop: int) -> NDArray[np.float32]:
+        self.first_tick = min(self.first_tick + 3, 10)
+        return self.values[None, max(start, self.first_tick) : stop]
+
+
+@pytest.mark.parametrize("block", [2, 5, 50])
+def test_a_history_that_goes_on_during_a_scan_moves_no_crossing(block: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "BLOCK", block)
+    values = np.tile([-1.0, -1.0, 1.0, 1.0, 1.0], 10)
+    found = Trigger(0, "rising", 0.0, 0.5, 0).scan(Moving(values, first=4))
+    assert found == list(range(12, 50, 5)) == walk(values, "rising", 0.0, 0.5)[2:]
+
+
 signals = st.lists(st.sampled_from([-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, float("nan")]), max_size=60)
 
 

@@ -65,6 +65,14 @@ def test_severities_have_their_unit_as_people_write_it() -> None:
     assert words(active("added_mass", 0.05)) == "Added mass"
 
 
+def test_the_label_of_a_shock_ends_within_a_wide_picture() -> None:
+    """There the y axis goes across. It may be 320 px wide; a letter is 7 px wide."""
+    for severity, axis in ((-20.0, "x"), (5000.0, "y")):
+        (((_, y, _), (text,)),) = shown("shock", severity, axis=axis).labels.items()
+        beside_px = (1.0 - abs(y) / LAYOUT.half_width_um) * 320 / 2
+        assert beside_px >= 7 * len(text) / 2, text
+
+
 def test_faults_at_one_place_share_a_label() -> None:
     found = marks([active("stiffness"), active("ageing")], LAYOUT)
     assert [len(lines) for lines in found.labels.values()] == [2]
