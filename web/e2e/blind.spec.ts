@@ -34,7 +34,9 @@ const panelOf = (page: Page) => page.getByRole("region", { name: "Blind diagnosi
 /** Commit an answer of which the student is as sure as can be. */
 async function answer(page: Page, hypothesis: string): Promise<void> {
   await page.getByRole("button", { name: "Answer", exact: true }).click();
-  await panelOf(page).getByRole("radio", { name: inWords(hypothesis), exact: true }).check();
+  await panelOf(page)
+    .getByRole("radio", { name: inWords(hypothesis), exact: true })
+    .check();
   await panelOf(page).getByRole("slider").focus();
   await page.keyboard.press("End");
   await panelOf(page).getByRole("button", { name: "Commit the answer" }).click();

@@ -47,8 +47,7 @@ test("a class runs from its code to its end", async ({ page, server, elsewhere }
   await all.getByLabel("Scenario", { exact: true }).selectOption("ch5-seven-step");
   await all.getByRole("button", { name: "Begin on all" }).click();
   await expect.poll(() => benchOf(ada)).not.toBe(before);
-  for (const one of [ada, emmy])
-    await expect(one.getByRole("region", { name: "Steps of the scenario" })).toBeVisible();
+  for (const one of [ada, emmy]) await expect(one.getByRole("region", { name: "Steps of the scenario" })).toBeVisible();
   await all.getByRole("button", { name: "Start all together" }).click();
   await expect(all.getByText("Start all together: 2 done.")).toBeVisible();
   await tile("Ada").getByRole("button", { name: "Ada", exact: true }).click();

@@ -62,7 +62,9 @@ function refusals(page: Page): string[] {
   return refused;
 }
 
-test("a launch in a frame has bench, stream and 3D view without a cookie, a launch in a tab has the usual cookie", async ({ page }) => {
+test("a launch in a frame has bench, stream and 3D view without a cookie, a launch in a tab has the usual cookie", async ({
+  page,
+}) => {
   const refused = refusals(page);
   await page.goto(`${course}/course`);
   const frame = page.frameLocator("iframe[title='Exercise']");

@@ -68,7 +68,10 @@ test("a full server says what to do, and a bench that it closed while idle opens
     await page.getByRole("button", { name: "Pause" }).click();
     await expect(page.getByTestId("bench-state")).toHaveText("paused");
     const address = page.url();
-    const { tick } = await server.ask<{ tick: number }>("GET", `/benches/${new URL(address).searchParams.get("bench")}`);
+    const { tick } = await server.ask<{ tick: number }>(
+      "GET",
+      `/benches/${new URL(address).searchParams.get("bench")}`,
+    );
     expect(tick).toBeGreaterThan(0);
     const shownTick = async () =>
       Number((await page.getByRole("timer", { name: "Device time" }).locator("small").innerText()).replace(/\D/g, ""));

@@ -44,7 +44,7 @@ const dockFollows = (page: Page): Promise<boolean> =>
 
 /** Nothing overlaps or is cut in either scheme; what comes or goes may do so for a moment. */
 export async function expectClean(page: Page, where: string, within?: string): Promise<void> {
-  await expect.soft.poll(() => faultsInBothSchemes(page, within), { message: where, timeout: 120_000 }).toEqual([]);
+  await expect.soft.poll(() => faultsInBothSchemes(page, within), { message: where }).toEqual([]);
 }
 
 /** Whatever is written can be read in a scheme. */

@@ -1,6 +1,6 @@
 import type { Locator } from "@playwright/test";
-import { expect, test } from "./lab";
-import { expectClean, expectFits, expectReadable, isPhone, nameOf, SCHEMES, SCREENS, showOn } from "./screens";
+import { expect, test } from "../lab";
+import { expectClean, expectFits, expectReadable, isPhone, nameOf, SCHEMES, SCREENS, showOn } from "../screens";
 
 /** Dialogs, by the key that opens them. */
 const DIALOGS = [
@@ -9,8 +9,6 @@ const DIALOGS = [
   { key: "S", title: "Share this experiment" },
 ];
 const MENUS = [/: change bench$/, /: change it$/, "Add or close panels", "Choose signals", /^Export/];
-
-test.describe.configure({ timeout: 480_000 });
 
 test("no page overlaps or is cut, on any screen", async ({ page, server }) => {
   const { id: run } = await server.ask<{ id: string }>("POST", "/runs", { scenario: "ch5-seven-step", seed: 1 });
@@ -24,9 +22,7 @@ test("no page overlaps or is cut, on any screen", async ({ page, server }) => {
     },
   });
   for (const job of [`/runs/${run}`, `/runs/${other}`, `/sweeps/${sweep}`])
-    await expect
-      .poll(() => server.ask<{ state: string }>("GET", job).then(({ state }) => state), { timeout: 120_000 })
-      .toBe("done");
+    await expect.poll(() => server.ask<{ state: string }>("GET", job).then(({ state }) => state)).toBe("done");
   await page.request.get(server.url);
   const show = async (address: string, whole: Locator) => {
     await page.goto(`${server.origin}/?${address}`);
