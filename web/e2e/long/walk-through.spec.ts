@@ -73,7 +73,7 @@ test("the walk-through of the documents can be walked, in as many clicks as it s
     benches.push(benchOf(page));
     await server.advance(0.01); // its quiet beginning has run by itself
     const { tick } = await server.ask<{ tick: number }>("GET", `/benches/${benches[1]}`);
-    await server.advanceTicks(benches[1], 3100 - tick);
+    await server.advanceTicks(benches[1], 2500 - tick);
     await expect(steps).toContainText(/3 of 7/);
   });
   await part("Compare with what was printed", "gallery", 1, async () => {
