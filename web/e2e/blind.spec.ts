@@ -31,7 +31,7 @@ const HIDDEN = "A fault is hidden here, or none";
 
 const panelOf = (page: Page) => page.getByRole("region", { name: "Blind diagnosis" });
 
-/** Commit an answer of which the student is as sure as can be. */
+/** Commit an answer at the highest confidence. */
 async function answer(page: Page, hypothesis: string): Promise<void> {
   await page.getByRole("button", { name: "Answer", exact: true }).click();
   await panelOf(page)

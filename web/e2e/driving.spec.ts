@@ -33,7 +33,7 @@ test("one person drives a bench: asks, hands over, takes back, and drives no mor
   await ada.close();
   const watchers = () => server.ask<{ watchers: number }>("GET", `/benches/${bench}`).then((one) => one.watchers);
   await expect.poll(watchers).toBe(1);
-  await server.advance(6); // the lease of a driver who is not heard lasts 5 s
+  await server.advance(6); // without an answer of the driver the lease lasts 5 s
   await expect(theirs).toHaveCount(0);
   await page.getByRole("button", { name: "Run", exact: true }).click();
   await expect(page.getByTestId("bench-state")).toHaveText("running");
