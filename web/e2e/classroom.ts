@@ -1,5 +1,5 @@
 import type { BrowserContext, Page } from "@playwright/test";
-import { test as base, expect } from "./lab";
+import { test as base, expect, withoutScene } from "./lab";
 import type { LabServer } from "./lab-server";
 import { SCREENS, type Screen } from "./screens";
 
@@ -29,7 +29,7 @@ export const test = base.extend<ClassFixtures>({
       const context = await browser.newContext({ viewport });
       contexts.push(context);
       const page = await context.newPage();
-      await page.route("**/3d/", (route) => route.fulfill({ contentType: "text/html", body: "" }));
+      await withoutScene(page);
       page.on("dialog", (dialog) => dialog.accept());
       return page;
     });

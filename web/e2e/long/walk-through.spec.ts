@@ -27,7 +27,7 @@ test("the walk-through of the documents can be walked, in as many clicks as it s
     expect(clicks, heading).toBe(most);
     walked.push(heading);
     expect(TEXT).toContain(`pictures/${picture}.jpg`);
-    // `PICTURES=docs npm run e2e walk-through` takes the pictures of the documents anew
+    // `SUITE=all PICTURES=docs npm run e2e -- walk-through` takes the pictures of the documents anew
     const path = process.env.PICTURES ? join(DOCS, "pictures", `${picture}.jpg`) : info.outputPath(`${picture}.jpg`);
     await page.screenshot({ path, type: "jpeg", quality: 82 });
   };
