@@ -29,7 +29,13 @@ async function open(page: Page, server: LabServer, bench: object): Promise<strin
 async function openFound(page: Page, server: LabServer, bench: object): Promise<void> {
   await open(page, server, bench);
   await page.getByRole("button", { name: "Skip" }).click();
-  await expect(page.getByRole("region", { name: "Steps of the scenario" })).toContainText(/[3-9] of \d/);
+  const steps = page.getByRole("region", { name: "Steps of the scenario" });
+  const later = async () => {
+    await server.advance(2);
+    return steps.textContent();
+  };
+  await expect.poll(later).toMatch(/[3-9] of \d/);
+  await server.advance(1);
   await page.keyboard.press("w");
 }
 
