@@ -1,38 +1,64 @@
-import type { Browser, Page } from "@playwright/test";
-import { expect } from "./lab";
+import type { BrowserContext, Page } from "@playwright/test";
+import { test as base, expect, withoutScene } from "./lab";
 import type { LabServer } from "./lab-server";
-import type { Screen } from "./screens";
+import { SCREENS, type Screen } from "./screens";
 
 export interface Group {
   id: string;
   code: string;
 }
 
-/** Open a class, as the teacher's page does. */
-export const openClass = (server: LabServer, name = "Tuesday"): Promise<Group> =>
-  server.ask<Group>("POST", "/classes", { name });
+interface ClassFixtures {
+  /** The class Tuesday; it ends with the test. */
+  group: Group;
+  /** Open a page in another browser, without the 3D view; it closes with the test. */
+  elsewhere(viewport?: Screen): Promise<Page>;
+  /** Open the page of a student who joins the class. */
+  student(name: string, viewport?: Screen): Promise<Page>;
+}
 
-/** The page of a student who has joined, without the 3D view. */
-export async function student(
-  browser: Browser,
-  server: LabServer,
-  group: Group,
-  name: string,
-  viewport: Screen = { width: 1366, height: 768 },
-): Promise<Page> {
-  const context = await browser.newContext({ viewport });
-  const page = await context.newPage();
-  await page.route("**/3d/", (route) => route.fulfill({ contentType: "text/html", body: "" }));
-  const answer = await page.request.post(`${server.origin}/join`, {
-    form: { code: group.code, name },
-    headers: { origin: server.origin },
-    maxRedirects: 0,
-  });
-  expect(answer.status()).toBe(303);
-  await page.goto(server.origin);
+export const test = base.extend<ClassFixtures>({
+  group: async ({ server }, use) => {
+    const group = await server.ask<Group>("POST", "/classes", { name: "Tuesday" });
+    await use(group);
+    await server.ask("DELETE", `/classes/${group.id}`);
+  },
+  elsewhere: async ({ browser }, use) => {
+    const contexts: BrowserContext[] = [];
+    await use(async (viewport = SCREENS[0]) => {
+      const context = await browser.newContext({ viewport });
+      contexts.push(context);
+      const page = await context.newPage();
+      await withoutScene(page);
+      page.on("dialog", (dialog) => dialog.accept());
+      return page;
+    });
+    await Promise.all(contexts.map((context) => context.close()));
+  },
+  student: async ({ elsewhere, group, server }, use) => {
+    await use(async (name, viewport) => {
+      const page = await elsewhere(viewport);
+      await join(page, server, group.code, name);
+      return page;
+    });
+  },
+});
+
+export { expect };
+
+export const PHONE = SCREENS[3];
+
+/** Join a class by the form, as a student does. */
+export async function join(page: Page, server: LabServer, code: string, name: string): Promise<void> {
+  await page.goto(`${server.origin}/join`);
+  await page.getByLabel("Code on the wall").fill(code);
+  await page.getByLabel("Your name").fill(name);
+  await page.getByRole("button", { name: "Join" }).click();
   await expect(page.getByTestId("bench-state")).toHaveText("running");
-  return page;
 }
 
 /** The bench that a page shows, as its address says. */
 export const benchOf = (page: Page): string => new URL(page.url()).searchParams.get("bench") ?? "";
+
+/** The line about the class above a bench. */
+export const classLine = (page: Page) => page.getByRole("region", { name: "Class", exact: true });

@@ -31,7 +31,7 @@ export const test = base.extend<LabFixtures, { server: LabServer }>({
   ],
   drawn: [Boolean(process.env.PICTURES), { option: true }],
   page: async ({ page, drawn }, use) => {
-    if (!drawn) await page.route("**/3d/", (route) => route.fulfill({ contentType: "text/html", body: "" }));
+    if (!drawn) await withoutScene(page);
     const refused: string[] = [];
     page.on("console", (message) => {
       const text = message.text();
@@ -68,6 +68,10 @@ async function open(page: Page, server: LabServer, bench: object, layout: string
 }
 
 export { expect };
+
+/** Leave the 3D view of a page empty. */
+export const withoutScene = (page: Page): Promise<unknown> =>
+  page.route(/\/3d\/(\?|$)/, (route) => route.fulfill({ contentType: "text/html", body: "" }));
 
 /** What a canvas shows, as text that can be compared. */
 export const pictureOf = (page: Page, selector: string): Promise<string> =>

@@ -1,12 +1,19 @@
-import type { FrameLocator, Page } from "@playwright/test";
+import { createHash } from "node:crypto";
+import type { Page } from "@playwright/test";
 import { expect } from "./lab";
 
 /** The view of the device in 3D. */
-export const sceneOf = (page: Page | FrameLocator) => page.locator("iframe[title='The device in 3D']");
+export const sceneOf = (page: Pick<Page, "locator">) => page.locator("iframe[title='The device in 3D']");
 
-/** What it shows, as text that can be compared; the buttons over it are not drawn to the bit. */
+/** The bytes of its picture; the buttons over it are not drawn to the bit. */
+export const scenePicture = (page: Page): Promise<Buffer> =>
+  sceneOf(page).screenshot({ mask: [page.getByRole("group", { name: "Camera" })] });
+
+/** The picture as a short text that can be compared. */
 export const sceneShown = async (page: Page): Promise<string> =>
-  (await sceneOf(page).screenshot({ mask: [page.getByRole("group", { name: "Camera" })] })).toString("base64");
+  createHash("sha256")
+    .update(await scenePicture(page))
+    .digest("hex");
 
 /** The same, once two pictures in a row are alike. */
 export async function sceneAtRest(page: Page): Promise<string> {
@@ -19,3 +26,18 @@ export async function sceneAtRest(page: Page): Promise<string> {
   await expect.poll(rests).toBe(true);
   return shown;
 }
+
+/** A browser that draws WebGL by software. */
+export const WEBGL_BROWSER = {
+  launchOptions: {
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: [
+      "--no-sandbox",
+      "--disable-gpu",
+      "--use-gl=angle",
+      "--use-angle=swiftshader",
+      "--enable-unsafe-swiftshader",
+      "--ignore-gpu-blocklist",
+    ],
+  },
+};

@@ -1,6 +1,7 @@
-import type { Locator } from "@playwright/test";
-import { expect, test } from "./lab";
-import { expectClean, expectFits, expectReadable, isPhone, nameOf, SCHEMES, SCREENS, showOn } from "./screens";
+import type { Locator, Page } from "@playwright/test";
+import { expect, test } from "../lab";
+import type { LabServer } from "../lab-server";
+import { expectClean, expectFits, expectReadable, isPhone, nameOf, SCHEMES, SCREENS, showOn } from "../screens";
 
 /** Dialogs, by the key that opens them. */
 const DIALOGS = [
@@ -10,12 +11,38 @@ const DIALOGS = [
 ];
 const MENUS = [/: change bench$/, /: change it$/, "Add or close panels", "Choose signals", /^Export/];
 
-test.describe.configure({ timeout: 480_000 });
+const PAGES: [string, (page: Page) => Locator][] = [
+  ["benchmark", (page) => page.getByRole("region", { name: "Curves" })],
+  ["designer", (page) => page.getByRole("img", { name: /^Bode diagram/ })],
+  ["theory", (page) => page.getByText(/of the map is unstable/)],
+  ["gallery", (page) => page.getByRole("list", { name: "Experiments" }).getByRole("listitem").nth(5)],
+];
 
-test("no page overlaps or is cut, on any screen", async ({ page, server }) => {
-  const { id: run } = await server.ask<{ id: string }>("POST", "/runs", { scenario: "ch5-seven-step", seed: 1 });
-  const { id: other } = await server.ask<{ id: string }>("POST", "/runs", { scenario: "ch5-seven-step", seed: 2 });
-  const { id: sweep } = await server.ask<{ id: string }>("POST", "/sweeps", {
+async function show(page: Page, server: LabServer, address: string): Promise<void> {
+  await page.request.get(server.url);
+  await page.goto(`${server.origin}/?${address}`);
+}
+
+for (const [name, whole] of PAGES)
+  test(`the page ${name} fits every screen`, async ({ page, server }) => {
+    await show(page, server, `page=${name}`);
+    await expect(whole(page)).toBeVisible();
+    if (name === "gallery") await page.getByRole("button", { name: "notes" }).first().click();
+    await expectFits(page, name);
+  });
+
+test("the designer of a gyroscope fits every screen", async ({ page, server }) => {
+  await show(page, server, "page=designer");
+  await page.getByRole("combobox", { name: "Device" }).selectOption("gyro-a");
+  await expect(page.getByText("Angle random walk")).toBeVisible();
+  await expectFits(page, "the designer of a gyroscope");
+});
+
+test("the pages of a run, a comparison and a campaign fit every screen", async ({ page, server }) => {
+  const start = (path: string, body: object) => server.ask<{ id: string }>("POST", path, body).then(({ id }) => id);
+  const run = await start("/runs", { scenario: "ch5-seven-step", seed: 1 });
+  const other = await start("/runs", { scenario: "ch5-seven-step", seed: 2 });
+  const sweep = await start("/sweeps", {
     sweep: {
       schema: 1,
       scenario: "ch5-seven-step",
@@ -24,38 +51,21 @@ test("no page overlaps or is cut, on any screen", async ({ page, server }) => {
     },
   });
   for (const job of [`/runs/${run}`, `/runs/${other}`, `/sweeps/${sweep}`])
-    await expect
-      .poll(() => server.ask<{ state: string }>("GET", job).then(({ state }) => state), { timeout: 120_000 })
-      .toBe("done");
-  await page.request.get(server.url);
-  const show = async (address: string, whole: Locator) => {
-    await page.goto(`${server.origin}/?${address}`);
-    await expect(whole).toBeVisible();
-  };
+    await expect.poll(() => server.ask<{ state: string }>("GET", job).then(({ state }) => state)).toBe("done");
   const result = page.getByRole("region", { name: "Result" });
-
-  await show(`page=runs&run=${run}`, result.getByText(/^digest/));
+  await show(page, server, `page=runs&run=${run}`);
+  await expect(result.getByText(/^digest/)).toBeVisible();
   await page.getByText("Campaign", { exact: true }).click();
   await expectFits(page, "a run");
-  await show(`page=runs&sweep=${sweep}`, result.getByRole("figure").first());
+  await show(page, server, `page=runs&sweep=${sweep}`);
+  await expect(result.getByRole("figure").first()).toBeVisible();
   await expectFits(page, "a campaign");
-  await show(`page=runs&compare=${run},${other}`, result.getByRole("table"));
+  await show(page, server, `page=runs&compare=${run},${other}`);
+  await expect(result.getByRole("table")).toBeVisible();
   await expectFits(page, "a comparison");
-  await show("page=benchmark", page.getByRole("region", { name: "Curves" }));
-  await expectFits(page, "the benchmark");
-  await show("page=designer", page.getByRole("img", { name: /^Bode diagram/ }));
-  await expectFits(page, "the designer");
-  await page.getByRole("combobox", { name: "Device" }).selectOption("gyro-a");
-  await expect(page.getByText("Angle random walk")).toBeVisible();
-  await expectFits(page, "the designer of a gyroscope");
-  await show("page=theory", page.getByText(/of the map is unstable/));
-  await expectFits(page, "theory");
-  await show("page=gallery", page.getByRole("list", { name: "Experiments" }).getByRole("listitem").nth(5));
-  await page.getByRole("button", { name: "notes" }).first().click();
-  await expectFits(page, "the gallery");
 });
 
-test("no dialog, menu or notice overlaps or is cut, on any screen", async ({ page, openBench }) => {
+test("no dialog overlaps or is cut, on any screen", async ({ page, openBench }) => {
   await openBench("lab");
   await page.getByRole("button", { name: "Pause" }).click();
   for (const { key, title } of DIALOGS) {
@@ -71,6 +81,10 @@ test("no dialog, menu or notice overlaps or is cut, on any screen", async ({ pag
     await page.keyboard.press("Escape");
     await expect(page.getByRole("dialog")).toHaveCount(0);
   }
+});
+
+test("no menu overlaps or is cut, on any screen", async ({ page, openBench }) => {
+  await openBench("lab");
   for (const screen of SCREENS.filter((screen) => !isPhone(screen))) {
     await showOn(page, screen);
     for (const name of [...MENUS, screen.width < 1400 ? "More" : "Layout"]) {
@@ -86,14 +100,17 @@ test("no dialog, menu or notice overlaps or is cut, on any screen", async ({ pag
       await expect(open).toBeHidden();
     }
   }
-  // a notice goes by itself, so each screen has its own
+});
+
+test("no notice overlaps or is cut, on any screen", async ({ page, openBench }) => {
+  await openBench("lab");
   const undo = page.locator(".mantine-Notification-root").getByRole("button", { name: "Undo" }).last();
   const tab = page.getByRole("tab", { name: "Voltage" });
   for (const screen of SCREENS) {
     await showOn(page, isPhone(screen) ? SCREENS[0] : screen);
     await tab.focus();
     await page.keyboard.press("Delete");
-    await expect(undo).toBeVisible();
+    await undo.hover(); // the notice stays while the pointer rests on it
     if (isPhone(screen)) await showOn(page, screen);
     await expectClean(page, `a notice at ${nameOf(screen)}`);
     if (isPhone(screen)) break;

@@ -1,6 +1,6 @@
 import { expect, test } from "@playwright/test";
-import { layoutFaults } from "./layout-faults";
-import { SCREENS, showOn } from "./screens";
+import { layoutFaults } from "../layout-faults";
+import { SCREENS, showOn } from "../screens";
 
 /** A page with one thing wrong, and what is to be said of it. */
 const WRONG: [string, RegExp][] = [

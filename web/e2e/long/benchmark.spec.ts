@@ -1,5 +1,5 @@
-import { expect, test } from "./lab";
-import { seriousViolations } from "./serious-violations";
+import { expect, test } from "../lab";
+import { seriousViolations } from "../serious-violations";
 
 interface Detail {
   results: { id: string; title: string; question: string; rows: { unit: string; digest: string }[] }[];

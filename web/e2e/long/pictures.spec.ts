@@ -1,6 +1,6 @@
 import { readFileSync } from "node:fs";
 import type { Locator, Page } from "@playwright/test";
-import { expect, HYPOTHESES, inWords, pictureOf, test } from "./lab";
+import { expect, HYPOTHESES, inWords, pictureOf, test } from "../lab";
 
 test.use({ colorScheme: "dark" });
 
@@ -56,6 +56,7 @@ const svgOf = async (page: Page, within: Locator) => examine(page, (await keep(p
 test("spectrum, phase plane and lanes are kept with titled axes, and lanes with their events", async ({
   page,
   openBench,
+  server,
 }) => {
   await openBench("lab");
   const front = async (tab: string) => {
@@ -64,6 +65,8 @@ test("spectrum, phase plane and lanes are kept with titled axes, and lanes with 
   };
   const lanes = page.getByRole("region", { name: "Diagnosis by kalman" });
   await page.getByRole("button", { name: /^Inject \+5.*Added mass$/ }).click();
+  await expect(page.getByText("1 fault acts")).toBeVisible();
+  await server.advance(4);
   await expect(lanes.getByText(/^mass \+5/).first()).toBeVisible();
   const told = await svgOf(page, lanes);
   expect(told).toEqual(expect.arrayContaining(["probability of each hypothesis, 0 to 1", "time of the device, ms"]));
@@ -82,6 +85,10 @@ test("spectrum, phase plane and lanes are kept with titled axes, and lanes with 
 
   const phase = await front("Phase plane");
   await phase.getByRole("button", { name: "Use the planar plant" }).click();
+  await expect(phase.getByRole("button", { name: "Use the planar plant" })).toHaveCount(0);
+  await front("Spectrum");
+  await server.advance(1); // the map belongs to a plant that has run
+  await front("Phase plane");
   await expect(phase.getByText(/a slow drive folds/)).toBeVisible();
   const plane = await svgOf(page, phase);
   expect(plane).toContain("unstable");
@@ -121,13 +128,13 @@ test("Bode diagrams, charts of a campaign and plots of theory are kept, in light
     },
   });
   const state = () => server.ask<{ state: string }>("GET", `/sweeps/${id}`).then((found) => found.state);
-  await expect.poll(state, { timeout: 120_000 }).toBe("done");
+  await expect.poll(state).toBe("done");
   await page.goto(`${server.origin}/?page=runs&sweep=${id}`);
   const chart = page.getByRole("figure").filter({ hasText: "Detection delay" });
   expect(await svgOf(page, chart)).toEqual(expect.arrayContaining(["delay, samples", "share found by then"]));
 });
 
-test("a race, what adapts, aliases and a swept sine are kept", async ({ page, openBench }) => {
+test("a race, what adapts, aliases and a swept sine are kept", async ({ page, openBench, server }) => {
   await openBench("lab", { "diagnosers.imm": { kind: "imm", hypotheses: HYPOTHESES } });
   const front = async (tab: string) => {
     await page.getByRole("tab", { name: tab, exact: true }).click();
@@ -138,6 +145,7 @@ test("a race, what adapts, aliases and a swept sine are kept", async ({ page, op
     .filter({ has: page.getByRole("button", { name: "LIVE" }) })
     .last();
   await expect(page.getByRole("region", { name: "Diagnosis by imm" })).toBeAttached();
+  await server.advance(1);
   await page.waitForFunction(() => document.querySelectorAll("canvas[aria-label$='over time']").length >= 3);
   const field = await svgOf(page, race);
   expect(field).toEqual(expect.arrayContaining(["truth", "kalman", "imm", "time of the device, ms"]));
@@ -146,6 +154,7 @@ test("a race, what adapts, aliases and a swept sine are kept", async ({ page, op
   const adaptation = await front("Adaptation");
   const canvas = "section[aria-label='Adaptation'] canvas";
   const blank = await pictureOf(page, canvas);
+  await server.advance(1);
   await expect.poll(() => pictureOf(page, canvas)).not.toBe(blank);
   expect(await svgOf(page, adaptation)).toEqual(expect.arrayContaining(["now", "ideal", "time of the device, ms"]));
 

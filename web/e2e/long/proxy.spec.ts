@@ -1,0 +1,10 @@
+import { test } from "@playwright/test";
+import { PROXY_BROWSER, walkBehindProxy } from "../proxy-server";
+
+test.use(PROXY_BROWSER);
+
+test("behind a proxy with TLS, without a path, the page, its stream, its 3D view and its links work", async ({
+  page,
+}) => {
+  await walkBehindProxy(page, "");
+});
