@@ -42,7 +42,6 @@ NOW = "2026-01-01T00:00:00Z"
 MOMENT = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(?:\.\d+)?(?:Z|[+-]\d\d:\d\d)")
 DIGEST = re.compile(r'"(?:[0-9a-f]{64}|[0-9a-f]{16})"')
 MEASURED = ("achieved_scale", "loop_lag_ms", "wake_late_ms", "let_go_in_s", "elapsed_s", "overruns", "given_up_ms")
-FAMILIES = ("control", "diagnose", "faults", "sense")
 
 
 class Recorder:
@@ -169,8 +168,7 @@ def _plots(bench: dict[str, Any]) -> dict[str, list[str]]:
 
 def record_library(recorder: Recorder, folder: Path) -> None:
     """Record the library: its blocks, its scenarios, its devices, entries of its gallery."""
-    blocks = recorder.get("/catalog")["blocks"]
-    recorder.write(folder, "catalog", {"blocks": [block for block in blocks if block["family"] in FAMILIES]})
+    recorder.write(folder, "catalog", {"blocks": recorder.get("/catalog")["blocks"]})
     recorder.write(folder, "scenarios", recorder.get("/scenarios"))
     recorder.write(folder, "devices", recorder.get("/devices"))
     gallery = recorder.get("/gallery")

@@ -115,6 +115,11 @@ class PageRequest extends Request {
   }
 }
 
+/** The style of an element of a formula, which has none in jsdom, is that of the page. */
+const styleOf = globalThis.getComputedStyle;
+const formulaStyle: typeof styleOf = (element, pseudo) =>
+  styleOf("style" in element ? element : document.documentElement, pseudo);
+
 const noMedia = (media: string) =>
   ({
     media,
@@ -135,6 +140,7 @@ function fillGaps(): void {
     Path2D: FakePath2D,
     Request: PageRequest,
     matchMedia: noMedia,
+    getComputedStyle: formulaStyle,
     scrollTo: () => undefined,
     requestAnimationFrame: (draw: FrameRequestCallback) => {
       frames.set(++lastFrame, draw);
