@@ -93,8 +93,8 @@ it("leaves Space to a button that has the focus", async () => {
 it.each([
   [".", { kind: "step", ticks: 1 }],
   [",", { kind: "step_period" }],
-  ["]", { kind: "time_scale", value: 2 * bench.time_scale }],
-  ["[", { kind: "time_scale", value: bench.time_scale / 2 }],
+  ["]", { kind: "time_scale", value: 2 * Number(bench.time_scale) }],
+  ["[", { kind: "time_scale", value: Number(bench.time_scale) / 2 }],
   ["R", { kind: "reset" }],
   ["h", { heal: "all" }],
 ])("%s sends its command", async (key, command) => {
