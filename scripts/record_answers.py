@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx
+from record_panels import record_questions
 from websockets.sync.client import connect
 from websockets.sync.connection import Connection
 
@@ -175,22 +176,6 @@ def record_library(recorder: Recorder, folder: Path) -> None:
     recorder.write(folder, "gallery", {**gallery, "cards": gallery["cards"][:GALLERY_ENTRIES]})
 
 
-def record_questions(recorder: Recorder, folder: Path, bench: str) -> None:
-    """Record what panels ask of a bench: aliases, a sweep, a turn of the verdict, the unstable region, sets of values."""
-    path = f"/benches/{bench}"
-    recorder.write(folder, "aliases", recorder.post(f"{path}/diagnosers/kalman/aliases"))
-    recorder.write(folder, "turn", recorder.get(f"{path}/diagnosers/kalman/turn", tick=FIRST_TICKS + NEXT_TICKS - 1))
-    recorder.write(folder, "identification", recorder.post(f"{path}/identification", points=4, cycles=4, settle=4))
-    planar = recorder.post(f"{path}/variant", set={"plant.model": "planar"})["id"]
-    recorder.step(planar, 10)
-    recorder.write(folder, "unstable-region", recorder.get(f"/benches/{planar}/unstable-region", drive_v=0))
-    kept = recorder.post(f"{path}/parameter-sets", name="soft")
-    recorder.name(kept["id"], "set-1")
-    recorder.post(f"{path}/commands", set={"sensor.noise_um": 0.2})
-    difference = recorder.get(f"/parameter-sets/{kept['id']}/difference", bench=bench)
-    recorder.write(folder, "parameter-sets", {**recorder.get("/parameter-sets"), "difference": difference})
-
-
 def record_runs(recorder: Recorder, folder: Path) -> None:
     """Record a run that has ended, and a campaign of four."""
     run = recorder.post("/runs", scenario="first-look", set={"samples": 500})
@@ -252,7 +237,7 @@ def record(folder: Path = FOLDER) -> None:
                 sheet = recorder.post("/sheets/first-look/begin")
                 recorder.name(sheet["bench"], "bench-of-sheet")
                 recorder.write(folder, "sheet", sheet)
-                record_questions(recorder, folder, bench)
+                record_questions(recorder, folder, bench, FIRST_TICKS + NEXT_TICKS - 1)
             elif name == "seven-steps":
                 recorder.write(folder, "claims", recorder.get(f"/benches/{bench}/claims"))
         record_class(recorder, folder)

@@ -34,15 +34,23 @@ it("draws the gains of a controller beside their ideal values, V and the errors,
   await user.selectOptions(adapts, "mrac");
   const plot = screen.getByRole("img", { name: /^mrac: gain r, .*V, dV\/dt by theory, error, augmented error/ });
   const [{ signals }] = board.subscriptions;
-  expect(signals).toEqual(expect.arrayContaining(["mrac.gain.r", "mrac.gain_ideal.r", "mrac.lyapunov", "mrac.lyapunov_rate"]));
+  expect(signals).toEqual(
+    expect.arrayContaining(["mrac.gain.r", "mrac.gain_ideal.r", "mrac.lyapunov", "mrac.lyapunov_rate"]),
+  );
   const still = Object.fromEntries(signals.map((name) => [name, () => 1.5]));
   board.frame(still, { head: 3000 });
   await drawOnce();
   expect(penOf(plot).words).toEqual(expect.arrayContaining(["gain r", "V"]));
-  const before = penOf(plot).lines().map(({ points }) => points);
+  const before = penOf(plot)
+    .lines()
+    .map(({ points }) => points);
   board.frame({ ...still, "mrac.gain.r": (tick) => Math.sin(tick / 50) }, { head: 3100 });
   await drawOnce();
-  expect(penOf(plot).lines().map(({ points }) => points)).not.toEqual(before);
+  expect(
+    penOf(plot)
+      .lines()
+      .map(({ points }) => points),
+  ).not.toEqual(before);
 });
 
 it("gives a controller in shadow the drive, and says that it drives", async () => {

@@ -10,14 +10,26 @@ import { AllanPanel } from "./allan-panel";
 
 const { bench } = await recordedBench("gyroscope");
 const measured = { ...bench, parameters: { ...bench.parameters, readouts: { noise: { kind: "allan" } } } };
-const octaves = Array.from({ length: 9 }, (_, i) => ({ tau_s: 0.01 * 2 ** i, deviation_deg_h: 900 / 2 ** (i / 2), pairs: 100 }));
+const octaves = Array.from({ length: 9 }, (_, i) => ({
+  tau_s: 0.01 * 2 ** i,
+  deviation_deg_h: 900 / 2 ** (i / 2),
+  pairs: 100,
+}));
 const readout: RateReadout = {
   tick: 2000,
   record_s: 12.345,
   octaves,
   figures: [
     { letter: "N", name: "angle random walk", unit: "deg/h^(1/2)", value: 0.2, error: 0.02, reason: "", true: 0.19 },
-    { letter: "B", name: "bias instability", unit: "deg/h", value: null, error: null, reason: "the record is too short", true: 3 },
+    {
+      letter: "B",
+      name: "bias instability",
+      unit: "deg/h",
+      value: null,
+      error: null,
+      reason: "the record is too short",
+      true: 3,
+    },
   ],
   from_s: 0.01,
   to_s: 1,

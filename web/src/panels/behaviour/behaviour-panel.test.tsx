@@ -47,7 +47,7 @@ beforeEach(() => {
 });
 
 function mountPanel(of = drawn) {
-  vi.useFakeTimers({ shouldAdvanceTime: true });
+  vi.useFakeTimers({ toFake: ["performance"] });
   const board = connect(of);
   const { user } = mount(<BehaviourPanel />);
   const draw = async (values: Record<string, () => number>) => {
@@ -57,6 +57,12 @@ function mountPanel(of = drawn) {
   };
   return { board, user, draw, pen: () => penOf(screen.getByRole("img")) };
 }
+const textOf = (file: Blob) =>
+  new Promise<string>((done) => {
+    const reader = new FileReader();
+    reader.onload = () => done(String(reader.result));
+    reader.readAsText(file);
+  });
 const said = () => screen.getByTestId("behaviour-words");
 
 it("says to which behaviour input and output belong, and the verdict", async () => {
@@ -65,7 +71,9 @@ it("says to which behaviour input and output belong, and the verdict", async () 
   expect(said()).toHaveTextContent("Input and output belong to the behaviour: healthy. The verdict: no fault.");
   const before = pen().marks.map(({ points }) => points);
   await draw(sets(2, [5, 0.3]));
-  expect(said()).toHaveTextContent(/^Input and output belong to the behaviour: damping \+30\s%\. The verdict: a fault is isolated\.$/);
+  expect(said()).toHaveTextContent(
+    /^Input and output belong to the behaviour: damping \+30\s%\. The verdict: a fault is isolated\.$/,
+  );
   expect(pen().marks.map(({ points }) => points)).not.toEqual(before);
 });
 
@@ -78,7 +86,7 @@ it("titles its axes and names its behaviours, on the page and as a picture", asy
   await waitFor(() => expect(saveFile).toHaveBeenCalled());
   const [name, content] = vi.mocked(saveFile).mock.calls[0];
   expect(name).toMatch(/\.svg$/);
-  const svg = await content.text();
+  const svg = await textOf(content);
   expect(svg).toContain("output by its cosine, in limits");
   expect(svg).toContain("b+30");
 });
@@ -88,7 +96,9 @@ it("says in which region of performance the device is, with the limits drawn", a
   await user.selectOptions(screen.getByRole("combobox", { name: "Diagnoser drawn" }), "regions");
   expect(board.subscriptions[0].signals).toEqual(["regions.loss", "regions.region", "sensor.displacement"]);
   await draw({ "regions.loss": () => 0.115, "regions.region": () => 1, "sensor.displacement": () => -2.25 });
-  expect(said()).toHaveTextContent(/^Performance is degraded: 11\.5\s% from the healthy motion, at most 2\.25\sµm from rest\.$/);
+  expect(said()).toHaveTextContent(
+    /^Performance is degraded: 11\.5\s% from the healthy motion, at most 2\.25\sµm from rest\.$/,
+  );
   await draw({ "regions.loss": () => 0.9, "regions.region": () => 3, "sensor.displacement": () => 7 });
   expect(said()).toHaveTextContent(/^The device is in danger: 90\.0\s%/);
 });

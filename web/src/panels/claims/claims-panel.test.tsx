@@ -11,8 +11,33 @@ import { ClaimsPanel } from "./claims-panel";
 const { bench } = await recordedBench("seven-steps");
 const claims = await recordedAnswer("claims");
 const [correct] = claims.claims;
-const judged = { ...correct, state: "holds", as_expected: true, verdict: "confirmed", knobs: [{ path: "sensor.noise_um", label: "True noise", unit: "um", value: 0.05, low: 0.001, high: 1, is_log: true, is_live: true, is_fitted: false, fault: "" }] } as unknown as typeof correct;
-const started = { id: "threshold-1", state: "running", progress: 0.25, error: null, found: null } as unknown as ThresholdRun;
+const judged = {
+  ...correct,
+  state: "holds",
+  as_expected: true,
+  verdict: "confirmed",
+  knobs: [
+    {
+      path: "sensor.noise_um",
+      label: "True noise",
+      unit: "um",
+      value: 0.05,
+      low: 0.001,
+      high: 1,
+      is_log: true,
+      is_live: true,
+      is_fitted: false,
+      fault: "",
+    },
+  ],
+} as unknown as typeof correct;
+const started = {
+  id: "threshold-1",
+  state: "running",
+  progress: 0.25,
+  error: null,
+  found: null,
+} as unknown as ThresholdRun;
 
 beforeEach(() => server.on("GET", "/benches/:id/claims", claims));
 
@@ -31,14 +56,19 @@ it("shows each claim with what is printed, expected and measured", async () => {
   expect(screen.getByText(claims.claim)).toBeVisible();
   expect(card()).toHaveAccessibleName(/: not yet$/);
   expect(number("printed")).toHaveTextContent(correct.published);
-  expect(number("expected")).toHaveTextContent(/at least 98/);
-  expect(number("measured")).toHaveTextContent(/98\.3/);
-  expect(card()).toHaveTextContent(`Why: ${correct.note.replace("psi", "psi")}`);
+  expect(number("expected")).toHaveTextContent("at least 0.9800");
+  expect(number("measured")).toHaveTextContent("0.9830");
+  expect(card()).toHaveTextContent(`Why: ${correct.note}`);
   expect(screen.getByText(/^Measured over 40\.?0*\sms of 180\.?0*\sms; judged at the end\.$/)).toBeVisible();
 });
 
 it("says whether a claim holds as printed once the run is over", async () => {
-  server.on("GET", "/benches/:id/claims", { ...claims, tick: 9000, is_over: true, claims: [judged, { ...judged, metric: "other", state: "fails" }] });
+  server.on("GET", "/benches/:id/claims", {
+    ...claims,
+    tick: 9000,
+    is_over: true,
+    claims: [judged, { ...judged, metric: "other", state: "fails" }],
+  });
   await mountPanel();
   const [first, second] = screen.getAllByRole("listitem");
   expect(first).toHaveAccessibleName(/: holds as printed$/);
@@ -77,12 +107,13 @@ it("finds where a claim holds, and changes the bench with the slider", async () 
   server.on("POST", "/thresholds", started);
   server.on("GET", "/thresholds/:id", started);
   server.on("DELETE", "/thresholds/:id");
-  server.on("POST", "/thresholds/:id/cancel", { ...started, state: "cancelled" });
   const { board, user } = await mountPanel();
   await user.click(screen.getByRole("button", { name: "Where does it hold?" }));
   await user.click(screen.getByRole("button", { name: "Find where it holds" }));
   expect(await screen.findByRole("button", { name: /^Cancel, 25\s% done$/ })).toBeVisible();
-  expect(server.requests.find(({ method }) => method === "POST")?.body).toEqual({
+  await user.click(screen.getByRole("button", { name: /^Cancel/ }));
+  expect(server.asked("DELETE", "/thresholds/threshold-1")).toHaveLength(1);
+  expect(server.asked("POST", "/thresholds")[0].body).toEqual({
     bench: bench.id,
     metric: judged.metric,
     path: "sensor.noise_um",
@@ -98,16 +129,33 @@ it("finds where a claim holds, and changes the bench with the slider", async () 
   expect(board.commands[1]).toEqual({ kind: "reset", values: { "sensor.noise_um": 0.2 } });
 });
 
-it("says where a claim holds when it is found", async () => {
-  const found = { words: "holds below 0.31", tried: [{ value: 0.2, measured: 0.97, holds: true }], crossings: [] };
+it("says where a claim holds, draws it, and says why a search failed", async () => {
+  const found = {
+    metric: judged.metric,
+    path: "sensor.noise_um",
+    low: 0.001,
+    high: 1,
+    scale: "log",
+    tried: [
+      { value: 0.05, measured: 0.983, holds: true },
+      { value: 0.6, measured: 0.7, holds: false },
+    ],
+    turns: [],
+    words: "holds below 0.31",
+  };
   server.on("GET", "/benches/:id/claims", { ...claims, claims: [judged] });
   server.on("POST", "/thresholds", started);
-  server.on("GET", "/thresholds/:id", { ...started, state: "done", error: { message: "Too far." }, found: null });
+  server.on("GET", "/thresholds/:id", { ...started, state: "done", found });
   const { user } = await mountPanel();
   await user.click(screen.getByRole("button", { name: "Where does it hold?" }));
   await user.click(screen.getByRole("button", { name: "Find where it holds" }));
+  expect(await screen.findByText("It holds below 0.31, in µm.")).toBeVisible();
+  expect(screen.getByRole("img", { name: /over True noise: holds below 0\.31$/ })).toBeVisible();
+  expect(screen.getByText(/measured at 50\snm: holds$/)).toBeVisible();
+  server.on("GET", "/thresholds/:id", { ...started, state: "failed", error: { message: "Too far." } });
+  server.on("POST", "/thresholds", { ...started, id: "threshold-2" });
+  await user.click(screen.getByRole("button", { name: "Find where it holds" }));
   expect(await screen.findByText("Too far.")).toBeVisible();
-  expect(found.words).toBeTruthy();
 });
 
 it("offers the search to who teaches only", async () => {

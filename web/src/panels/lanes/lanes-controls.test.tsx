@@ -20,8 +20,12 @@ const rivals = {
   diagnosers: { kalman, second: { ...kalman, kind: "imm" } },
   signals: [
     ...bench.signals,
-    ...bench.signals.flatMap((s) => (s.block === "kalman" ? { ...s, name: s.name.replace("kalman", "second"), block: "second" } : [])),
-    ...bench.signals.flatMap((s) => (s.name.startsWith("kalman.") && s.block !== "kalman" ? { ...s, name: s.name.replace("kalman", "second") } : [])),
+    ...bench.signals.flatMap((s) =>
+      s.block === "kalman" ? { ...s, name: s.name.replace("kalman", "second"), block: "second" } : [],
+    ),
+    ...bench.signals.flatMap((s) =>
+      s.name.startsWith("kalman.") && s.block !== "kalman" ? { ...s, name: s.name.replace("kalman", "second") } : [],
+    ),
   ],
 };
 
@@ -98,7 +102,12 @@ it("races several diagnosers under one truth, with their delays and places", asy
   const board = connect(rivals);
   board.status({ ...status, scores: { kalman: score, second: { ...score, correct_fraction: 0.5 } } });
   mount(<LanesPanel />);
-  const late = events.map((event) => ({ ...event, seq: event.seq + 10, text: event.text.replace("kalman", "second").replace(/30\s/, "45 "), old: event.kind === "recognised" ? Number(event.old) + 15 : event.old }));
+  const late = events.map((event) => ({
+    ...event,
+    seq: event.seq + 10,
+    text: event.text.replace("kalman", "second").replace(/30\s/, "45 "),
+    old: event.kind === "recognised" ? Number(event.old) + 15 : event.old,
+  }));
   await board.events([...events, ...late]);
   const row = (id: string) => screen.getByRole("region", { name: `Diagnosis by ${id}` });
   expect(screen.getAllByRole("region", { name: /^Diagnosis by/ })).toHaveLength(2);

@@ -14,7 +14,7 @@ const swing = (tiltDeg: number, turn = 0) => ({
 });
 
 function mountPanel(of = bench) {
-  vi.useFakeTimers({ shouldAdvanceTime: true });
+  vi.useFakeTimers({ toFake: ["performance"] });
   const board = connect(of);
   return { board, ...mount(<LocusPanel />), pen: () => penOf(screen.getByRole("img")) };
 }
@@ -53,7 +53,11 @@ it("stretches y to its own scale", async () => {
   board.frame(swing(1), { head: 1000 });
   await drawOnce();
   const height = () => {
-    const ys = pen().lines().flatMap(({ points, dashes, colour }) => (dashes.length === 0 && points.length > 20 && colour ? points.map(([, y]) => y) : []));
+    const ys = pen()
+      .lines()
+      .flatMap(({ points, dashes, colour }) =>
+        dashes.length === 0 && points.length > 20 && colour ? points.map(([, y]) => y) : [],
+      );
     return Math.max(...ys) - Math.min(...ys);
   };
   const flat = height();

@@ -1,7 +1,7 @@
 import { act, screen, within } from "@testing-library/react";
 import { expect, it } from "vitest";
-import type { Sentence } from "../../api/types";
 import { useMe } from "../../api/me";
+import type { Sentence } from "../../api/types";
 import { connect } from "../../testing/fake-transport";
 import { recordedBench } from "../../testing/recorded";
 import { be, mount } from "../../testing/render";
@@ -11,7 +11,14 @@ import { NarratorPanel } from "./narrator-panel";
 const { bench } = await recordedBench("first-look");
 const sentences = Array.from(
   { length: 15 },
-  (_, i) => ({ tick: 100 * i, text: `Sentence ${i + 1} <b>`, kind: "inject", signals: [], span: [100 * i - 10, 100 * i + 10] }) as unknown as Sentence,
+  (_, i) =>
+    ({
+      tick: 100 * i,
+      text: `Sentence ${i + 1} <b>`,
+      kind: "inject",
+      signals: [],
+      span: [100 * i - 10, 100 * i + 10],
+    }) as unknown as Sentence,
 );
 
 /** The panel of a bench that has told sentences. */
@@ -31,7 +38,11 @@ it("says that there is nothing to tell yet", () => {
 
 it("lists every sentence, the newest last", () => {
   mountPanel();
-  expect(list().getAllByRole("button").map((one) => one.textContent)).toEqual(sentences.map(({ text }) => text));
+  expect(
+    list()
+      .getAllByRole("button")
+      .map((one) => one.textContent),
+  ).toEqual(sentences.map(({ text }) => text));
   expect(list().getAllByRole("button").at(-1)).toHaveAttribute("aria-current", "step");
 });
 

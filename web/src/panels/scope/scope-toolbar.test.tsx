@@ -124,7 +124,7 @@ it("says that nothing is on it", () => {
 });
 
 it("says that a band is the envelope of a fast tone, and no longer in a short window", async () => {
-  vi.useFakeTimers({ shouldAdvanceTime: true });
+  vi.useFakeTimers({ toFake: ["performance"] });
   const { board, user } = mountScope([VOLTAGE], { windowMs: 500 });
   board.frame({ [VOLTAGE]: (tick) => 10 * Math.sin(tick / 3) }, { head: 60_000 });
   await drawOnce();

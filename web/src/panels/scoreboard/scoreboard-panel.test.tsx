@@ -8,7 +8,9 @@ import { ScoreboardPanel } from "./scoreboard-panel";
 const { bench, status } = await recordedBench("first-look");
 const { kalman } = status.scores;
 const cells = (name: string) =>
-  within(screen.getByRole("row", { name: new RegExp(`^${name} `) })).getAllByRole("cell").map((cell) => cell.textContent?.replace(/\s/g, " "));
+  within(screen.getByRole("row", { name: new RegExp(`^${name} `) }))
+    .getAllByRole("cell")
+    .map((cell) => cell.textContent?.replace(/\s/g, " "));
 
 it("shows each diagnoser with its delays in samples and in time", () => {
   const board = connect(bench);

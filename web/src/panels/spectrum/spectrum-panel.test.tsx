@@ -56,7 +56,7 @@ it("has frequency in kHz across, and amplitudes with their unit upwards", async 
 });
 
 it("reaches up to the band that is chosen", async () => {
-  vi.useFakeTimers({ shouldAdvanceTime: true });
+  vi.useFakeTimers({ toFake: ["performance"] });
   const { board, choose, pen } = await mountPanel("reference.voltage");
   await choose("Band", "1");
   await choose("Length of the record", "1024");

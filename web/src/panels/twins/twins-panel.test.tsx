@@ -10,10 +10,14 @@ import { TwinsPanel } from "./twins-panel";
 const { bench } = await recordedBench("first-look");
 const gyroscope = await recordedBench("gyroscope");
 const catalog = await recordedAnswer("catalog");
-const ofTwin = (twin: string) => bench.signals.map((s) => ({ ...s, name: `${twin}:${s.name}`, block: `${twin}:${s.block}` }));
+const ofTwin = (twin: string) =>
+  bench.signals.map((s) => ({ ...s, name: `${twin}:${s.name}`, block: `${twin}:${s.block}` }));
 const twins = {
   ...bench,
-  parameters: { ...bench.parameters, twins: { mrac: { controller: { kind: "mrac" } }, stvsc: { controller: { kind: "stvsc" } } } },
+  parameters: {
+    ...bench.parameters,
+    twins: { mrac: { controller: { kind: "mrac" } }, stvsc: { controller: { kind: "stvsc" } } },
+  },
   signals: [...bench.signals, ...ofTwin("mrac"), ...ofTwin("stvsc")],
 };
 
@@ -54,11 +58,12 @@ it("has three twins at the most", async () => {
 });
 
 it("compares every board by its error and its effort, with units, and marks the best", async () => {
-  vi.useFakeTimers({ shouldAdvanceTime: true });
+  vi.useFakeTimers({ toFake: ["performance"] });
   const { board } = await mountPanel(twins);
   vi.advanceTimersByTime(600);
   const value = (name: string) => (tick: number) =>
-    (name.startsWith("mrac:") ? 1.01 : name.startsWith("stvsc:") ? 1.2 : name.startsWith("plant") ? 1.5 : 1) * Math.sin(tick / 8);
+    (name.startsWith("mrac:") ? 1.01 : name.startsWith("stvsc:") ? 1.2 : name.startsWith("plant") ? 1.5 : 1) *
+    Math.sin(tick / 8);
   const signals = board.subscriptions.flatMap((one) => one.signals);
   board.frame(Object.fromEntries(signals.map((name) => [name, value(name)])), { head: 3000 });
   await drawOnce();
@@ -75,7 +80,9 @@ it("compares every board by its error and its effort, with units, and marks the 
 
 it("draws displacement and effort of all boards, then the gains of each", async () => {
   await mountPanel(twins);
-  expect(screen.getByRole("img", { name: /^this bench, mrac, stvsc: displacement, effort, mrac: gain r/ })).toBeVisible();
+  expect(
+    screen.getByRole("img", { name: /^this bench, mrac, stvsc: displacement, effort, mrac: gain r/ }),
+  ).toBeVisible();
 });
 
 it("begins again alone when every twin is left out", async () => {
@@ -111,13 +118,24 @@ it("offers a gyroscope a controller for each of its slots", async () => {
 });
 
 it("begins with the controllers of a gyroscope that are worth seeing and do not drive", async () => {
-  await mountPanel({ ...gyroscope.bench, controller: "open_loop_rate", slots: { drive: "drive_loop", sense: "open_loop_rate" } });
-  expect([twin(1), twin(2)].map((one) => (one as HTMLSelectElement).value)).toEqual(["force_to_rebalance", "drive_tracking"]);
+  await mountPanel({
+    ...gyroscope.bench,
+    controller: "open_loop_rate",
+    slots: { drive: "drive_loop", sense: "open_loop_rate" },
+  });
+  expect([twin(1), twin(2)].map((one) => (one as HTMLSelectElement).value)).toEqual([
+    "force_to_rebalance",
+    "drive_tracking",
+  ]);
 });
 
 it("compares gyroscopes by the rate in deg/s and the forces in N", async () => {
-  vi.useFakeTimers({ shouldAdvanceTime: true });
-  const signals = gyroscope.bench.signals.map((s) => ({ ...s, name: `tracking:${s.name}`, block: `tracking:${s.block}` }));
+  vi.useFakeTimers({ toFake: ["performance"] });
+  const signals = gyroscope.bench.signals.map((s) => ({
+    ...s,
+    name: `tracking:${s.name}`,
+    block: `tracking:${s.block}`,
+  }));
   const { board } = await mountPanel({
     ...gyroscope.bench,
     parameters: { ...gyroscope.bench.parameters, twins: { tracking: { slots: { drive: "drive_tracking" } } } },
@@ -125,7 +143,9 @@ it("compares gyroscopes by the rate in deg/s and the forces in N", async () => {
   });
   vi.advanceTimersByTime(600);
   const asked = board.subscriptions.flatMap((one) => one.signals);
-  board.frame(Object.fromEntries(asked.map((name, i) => [name, (tick: number) => (1 + i) * Math.sin(tick / 5)])), { head: 3000 });
+  board.frame(Object.fromEntries(asked.map((name, i) => [name, (tick: number) => (1 + i) * Math.sin(tick / 5)])), {
+    head: 3000,
+  });
   await drawOnce();
   expect(screen.getByRole("row", { name: /^tracking/ })).toHaveTextContent(/\d\sdeg\/s.*\d\s[nµm]?N/);
   expect(screen.getByRole("img", { name: /: rate, x, y, force along x, force along y/ })).toBeVisible();

@@ -107,7 +107,7 @@ it("says that the verdict has not turned before any fault", async () => {
 });
 
 it("follows a pointer that rests, and goes back to the sample that was chosen", async () => {
-  vi.useFakeTimers({ shouldAdvanceTime: true });
+  vi.useFakeTimers();
   mountWhy();
   await row("m+5");
   const source = {};
