@@ -34,7 +34,7 @@ interface RecordedAnswers {
   turn: Schemas["Turn"];
   aliases: Schemas["AliasReport"];
   identification: Schemas["Identification"];
-  "unstable-region": Schemas["UnstableRegion"];
+  "unstable-region": Schemas["UnstableRegionMap"];
   "parameter-sets": { sets: Schemas["ParameterSet"][]; difference: Schemas["Difference"] };
   claims: Schemas["ClaimList"];
 }

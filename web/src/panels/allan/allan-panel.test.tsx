@@ -9,7 +9,10 @@ import { be, mount } from "../../testing/render";
 import { AllanPanel } from "./allan-panel";
 
 const { bench } = await recordedBench("gyroscope");
-const measured = { ...bench, parameters: { ...bench.parameters, readouts: { noise: { kind: "allan" } } } };
+const measured: typeof bench = {
+  ...bench,
+  parameters: { ...bench.parameters, readouts: { noise: { kind: "allan" } } },
+};
 const octaves = Array.from({ length: 9 }, (_, i) => ({
   tau_s: 0.01 * 2 ** i,
   deviation_deg_h: 900 / 2 ** (i / 2),

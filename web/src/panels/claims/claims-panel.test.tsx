@@ -58,7 +58,7 @@ it("shows each claim with what is printed, expected and measured", async () => {
   expect(number("printed")).toHaveTextContent(correct.published);
   expect(number("expected")).toHaveTextContent("at least 0.9800");
   expect(number("measured")).toHaveTextContent("0.9830");
-  expect(card()).toHaveTextContent(`Why: ${correct.note}`);
+  expect(card()).toHaveTextContent("Why: with psi = HP-H' + R, a probability floor and h = 20 µs");
   expect(screen.getByText(/^Measured over 40\.?0*\sms of 180\.?0*\sms; judged at the end\.$/)).toBeVisible();
 });
 

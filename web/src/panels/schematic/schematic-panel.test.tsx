@@ -67,9 +67,9 @@ it("shows the card of a box on Enter and on a click", async () => {
   box(/^Augmentation/).focus();
   await user.keyboard("{Enter}");
   expect(useView.getState().card).toBe("controllers.mrac");
-  await user.click(box(/^Sensor/));
+  await user.click(box(/^Sensor .*: show/));
   expect(useView.getState().card).toBe("sensor");
-  expect(box(/^Sensor/)).toHaveAttribute("data-chosen", "true");
+  expect(box(/^Sensor .*: show/)).toHaveAttribute("data-chosen", "true");
 });
 
 it("shows the newest values with their units, and the verdict in words", async () => {
@@ -86,10 +86,10 @@ it("shows the newest values with their units, and the verdict in words", async (
 it("marks the box a fault is seen on, and names the fault", async () => {
   const { board } = await mountPanel();
   await within(loop()).findByText("Added mass", { selector: "text" });
-  expect(box(/^Device/)).toHaveAttribute("data-faulty", "true");
-  expect(box(/^Sensor/)).toHaveAttribute("data-faulty", "false");
+  expect(box(/^Device .*: show/)).toHaveAttribute("data-faulty", "true");
+  expect(box(/^Sensor .*: show/)).toHaveAttribute("data-faulty", "false");
   board.status({ faults: [{ ...bench.faults[0], name: "sensor_bias" }] });
-  expect(box(/^Sensor/)).toHaveAttribute("data-faulty", "true");
+  expect(box(/^Sensor .*: show/)).toHaveAttribute("data-faulty", "true");
   expect(within(loop()).queryByText("Added mass", { selector: "text" })).not.toBeInTheDocument();
 });
 

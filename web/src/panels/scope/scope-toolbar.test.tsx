@@ -11,12 +11,15 @@ import { ScopePanel } from "./scope-panel";
 
 const { bench } = await recordedBench("first-look");
 const VOLTAGE = "drive.voltage";
+const NAMES = ["plant.displacement", "plant.velocity", "reference.voltage", VOLTAGE, "kalman.winner"];
+/** The bench with few signals: a list of all is long. */
+const small = { ...bench, signals: bench.signals.filter(({ name }) => NAMES.includes(name)) };
 
 beforeEach(() => server.on("GET", "/benches/:id/printed", { marks: [] }));
 
 /** A scope, and the settings it was given last. */
 function mountScope(signals = [VOLTAGE], rest: Partial<ScopeConfig> = {}) {
-  const board = connect(bench);
+  const board = connect(small);
   let kept = scopeConfig(signals, rest);
   function Scope() {
     const [config, keep] = useState(kept);
@@ -99,6 +102,16 @@ it("adds and removes signals, found by name or meaning", async () => {
   expect(screen.getByText("No signal of this bench matches.")).toBeVisible();
   await user.click(screen.getByRole("button", { name: `Remove ${VOLTAGE}` }));
   expect(board.subscriptions[0].signals).toEqual(["plant.displacement"]);
+});
+
+it("finds no verdict among the signals while a fault is hidden", async () => {
+  const board = connect(small);
+  const hidden = small.signals.filter(({ name }) => !name.startsWith("kalman."));
+  board.hello({ ...small, signals: hidden, blind: { id: "question-1" } as never });
+  const { user } = mount(<ScopePanel config={scopeConfig([VOLTAGE])} onChange={() => undefined} />);
+  await user.click(screen.getByRole("button", { name: "Choose signals" }));
+  await user.type(screen.getByLabelText("Search signals"), "winner");
+  expect(screen.getByText("No signal of this bench matches.")).toBeVisible();
 });
 
 it("keeps the logarithmic scale", async () => {

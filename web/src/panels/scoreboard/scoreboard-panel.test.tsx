@@ -35,3 +35,11 @@ it("says that there is no score yet", () => {
   mount(<ScoreboardPanel />);
   expect(screen.getByText("No score yet")).toBeVisible();
 });
+
+it("is a region that keys reach, for it scrolls", async () => {
+  const board = connect(bench);
+  const { user } = mount(<ScoreboardPanel />);
+  board.status(status);
+  await user.tab();
+  expect(screen.getByRole("region", { name: "Scores" })).toHaveFocus();
+});

@@ -15,7 +15,8 @@ export function ScoreboardPanel() {
       <EmptyState title="No score yet">A diagnoser is scored from its first sample on; this bench has none.</EmptyState>
     );
   return (
-    <div className={styles.panel}>
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: a region that scrolls is reached by the keyboard
+    <section className={styles.panel} aria-label="Scores" tabIndex={0}>
       <table className={styles.table}>
         <thead>
           <tr>
@@ -53,6 +54,6 @@ export function ScoreboardPanel() {
             <Confusion key={id} id={id} names={score.names ?? diagnosers?.[id]?.names ?? []} counts={score.confusion} />
           ),
       )}
-    </div>
+    </section>
   );
 }

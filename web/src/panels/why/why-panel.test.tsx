@@ -132,6 +132,36 @@ it("asks another diagnoser of the bench about the same sample", async () => {
   expect(server.asked("GET", "/benches/first-look/diagnosers/second/explain")[0].query).toEqual({ tick: "1999" });
 });
 
+it("shows a bank of two displacements each residual and its deviation along its axis", async () => {
+  const models = account.models.map((model) => ({
+    ...model,
+    residual_um: [0.002, -0.5],
+    covariance_um2: [
+      [0.04, 0],
+      [0, 4],
+    ],
+    gain: [
+      [0.1, 0],
+      [0, 0.25],
+      [1, 0],
+      [0, 2],
+    ],
+  }));
+  server.on("GET", EXPLAIN, {
+    ...account,
+    models,
+    residuals: ["residual_x", "residual_y"],
+    gain_units: ["1", "1", "1/ms", "1/ms"],
+    weighed: "the winner raised by the least evidence",
+  });
+  mountWhy();
+  const healthy = await row("healthy");
+  expect(screen.getByRole("columnheader", { name: "Residual along x, y" })).toBeVisible();
+  expect(healthy).toHaveTextContent(/2\.00\snm−500\snm/);
+  expect(healthy).toHaveTextContent(/200\snm2\.00\sµm/);
+  expect(screen.getByText("Weighed by the winner raised by the least evidence")).toBeVisible();
+});
+
 it("says that a bench has no diagnoser that weighs hypotheses", () => {
   connect({ ...bench, diagnosers: {} });
   mount(<WhyPanel />);
