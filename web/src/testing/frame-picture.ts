@@ -1,6 +1,6 @@
 import type { Subscription } from "../stream/wire";
 
-/** Values of signals by tick; those of a bench behind by its id, a slash and the signal. */
+/** Values of signals by tick; a signal of a bench behind has the id of the bench and a slash before its name. */
 export type Values = Record<string, (tick: number) => number>;
 
 /** Where the board is, and what its trigger does. */

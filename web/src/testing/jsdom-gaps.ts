@@ -115,7 +115,7 @@ class PageRequest extends Request {
   }
 }
 
-/** The style of an element of a formula, which has none in jsdom, is that of the page. */
+/** An element of a formula, which has no style in jsdom, has the style of the page. */
 const styleOf = globalThis.getComputedStyle;
 const formulaStyle: typeof styleOf = (element, pseudo) =>
   styleOf("style" in element ? element : document.documentElement, pseudo);

@@ -30,7 +30,7 @@ const drawn = {
   ],
 } as unknown as typeof bench;
 
-/** Where the measured output lies from each behaviour. */
+/** The distance of the measured output from each behaviour. */
 const sets = (verdict: number, [healthy, damped]: readonly [number, number]) => ({
   "consistency.verdict": () => verdict,
   "consistency.sine.healthy": () => healthy,

@@ -116,6 +116,8 @@ it("races several diagnosers under one truth, with their delays and places", asy
   expect(last("kalman")).toHaveTextContent("300 µs1st");
   expect(last("second")).toHaveTextContent("450 µs2nd");
   expect(row("second")).toHaveTextContent("50.0 %");
+  const mean = within(row("kalman")).getByText("mean delay").nextElementSibling;
+  expect(mean).toHaveTextContent("280 µs"); // of 26 and 30 samples
 });
 
 it("shows one of several diagnosers in full", async () => {

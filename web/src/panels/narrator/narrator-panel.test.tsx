@@ -21,7 +21,7 @@ const sentences = Array.from(
     }) as unknown as Sentence,
 );
 
-/** The panel of a bench that has told sentences. */
+/** The panel of a bench with sentences of its narrator. */
 function mountPanel(of = bench, told = sentences, after = 0) {
   const board = connect(of);
   const { user } = mount(<NarratorPanel />);

@@ -23,7 +23,7 @@ function Scope() {
   return <ScopePanel config={config} onChange={keep} />;
 }
 
-/** A triggered scope that has been told of three captures. */
+/** A triggered scope with three captures. */
 async function mountScope() {
   const board = connect({ ...bench, tick: 2000 });
   const { user } = mount(<Scope />);
