@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx
+from record_panels import record_questions
 from websockets.sync.client import connect
 from websockets.sync.connection import Connection
 
@@ -42,7 +43,6 @@ NOW = "2026-01-01T00:00:00Z"
 MOMENT = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(?:\.\d+)?(?:Z|[+-]\d\d:\d\d)")
 DIGEST = re.compile(r'"(?:[0-9a-f]{64}|[0-9a-f]{16})"')
 MEASURED = ("achieved_scale", "loop_lag_ms", "wake_late_ms", "let_go_in_s", "elapsed_s", "overruns", "given_up_ms")
-FAMILIES = ("control", "diagnose", "faults", "sense")
 
 
 class Recorder:
@@ -169,8 +169,7 @@ def _plots(bench: dict[str, Any]) -> dict[str, list[str]]:
 
 def record_library(recorder: Recorder, folder: Path) -> None:
     """Record the library: its blocks, its scenarios, its devices, entries of its gallery."""
-    blocks = recorder.get("/catalog")["blocks"]
-    recorder.write(folder, "catalog", {"blocks": [block for block in blocks if block["family"] in FAMILIES]})
+    recorder.write(folder, "catalog", {"blocks": recorder.get("/catalog")["blocks"]})
     recorder.write(folder, "scenarios", recorder.get("/scenarios"))
     recorder.write(folder, "devices", recorder.get("/devices"))
     gallery = recorder.get("/gallery")
@@ -238,6 +237,9 @@ def record(folder: Path = FOLDER) -> None:
                 sheet = recorder.post("/sheets/first-look/begin")
                 recorder.name(sheet["bench"], "bench-of-sheet")
                 recorder.write(folder, "sheet", sheet)
+                record_questions(recorder, folder, bench, FIRST_TICKS + NEXT_TICKS - 1)
+            elif name == "seven-steps":
+                recorder.write(folder, "claims", recorder.get(f"/benches/{bench}/claims"))
         record_class(recorder, folder)
         record_runs(recorder, folder)
 

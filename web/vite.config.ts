@@ -48,6 +48,7 @@ export default defineConfig({
           include: ["src/**/*.test.tsx"],
           environment: "jsdom",
           setupFiles: ["src/testing/setup.ts"],
+          testTimeout: 60_000, // a machine with other work is slow; what never comes is said by `findBy`
         },
       },
     ],

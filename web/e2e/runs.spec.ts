@@ -22,7 +22,9 @@ test("a run is started from the page and its files are offered; a campaign is st
   await expect(page).toHaveURL(/[?&]run=/);
   const id = new URL(page.url()).searchParams.get("run");
   await expect(result.getByText("Expectations")).toBeVisible();
-  const { all, summary } = await server.ask<{ all: boolean; summary: { digest: string } }>("GET", `/runs/${id}`);
+  const asked = () => server.ask<{ state: string; all: boolean; summary: { digest: string } }>("GET", `/runs/${id}`);
+  await expect.poll(async () => (await asked()).state).toBe("done");
+  const { all, summary } = await asked();
   expect(all).toBe(true);
   await expect(result.getByText(summary.digest)).toBeVisible();
   for (const format of ["CSV", "MAT"]) {

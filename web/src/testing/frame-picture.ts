@@ -1,6 +1,6 @@
 import type { Subscription } from "../stream/wire";
 
-/** Values of signals by tick. */
+/** Values of signals by tick; a signal of a bench behind has the id of the bench and a slash before its name. */
 export type Values = Record<string, (tick: number) => number>;
 
 /** Where the board is, and what its trigger does. */
@@ -21,7 +21,9 @@ export function pictureOf(subscription: Subscription, values: Values, time: Fram
   const { startTick, endTick } = spanOf(subscription, time, dtMs);
   const columns = subscription.width;
   const first = (column: number) => startTick + Math.floor((column * (endTick - startTick)) / columns);
-  const rows = subscription.signals.map((name) =>
+  const { signals, behind = [] } = subscription;
+  const names = [...signals, ...behind.flatMap(({ bench }) => signals.map((signal) => `${bench}/${signal}`))];
+  const rows = names.map((name) =>
     Array.from({ length: columns }, (_, column) => {
       const ticks = Array.from({ length: Math.max(1, first(column + 1) - first(column)) }, (_, i) => first(column) + i);
       const found = ticks.filter((tick) => tick >= 0 && tick < head).map((tick) => values[name]?.(tick) ?? Number.NaN);

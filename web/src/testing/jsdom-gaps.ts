@@ -115,6 +115,11 @@ class PageRequest extends Request {
   }
 }
 
+/** An element of a formula, which has no style in jsdom, has the style of the page. */
+const styleOf = globalThis.getComputedStyle;
+const formulaStyle: typeof styleOf = (element, pseudo) =>
+  styleOf("style" in element ? element : document.documentElement, pseudo);
+
 const noMedia = (media: string) =>
   ({
     media,
@@ -135,6 +140,7 @@ function fillGaps(): void {
     Path2D: FakePath2D,
     Request: PageRequest,
     matchMedia: noMedia,
+    getComputedStyle: formulaStyle,
     scrollTo: () => undefined,
     requestAnimationFrame: (draw: FrameRequestCallback) => {
       frames.set(++lastFrame, draw);

@@ -31,6 +31,12 @@ interface RecordedAnswers {
   class: Schemas["Members"] & { class: Schemas["Class"] };
   sheet: Schemas["SheetView"];
   explanation: Schemas["Account"];
+  turn: Schemas["Turn"];
+  aliases: Schemas["AliasReport"];
+  identification: Schemas["Identification"];
+  "unstable-region": Schemas["UnstableRegionMap"];
+  "parameter-sets": { sets: Schemas["ParameterSet"][]; difference: Schemas["Difference"] };
+  claims: Schemas["ClaimList"];
 }
 
 const files = import.meta.glob<string>("./recorded/*.json", { query: "?raw", import: "default" });

@@ -1,0 +1,45 @@
+import { screen, within } from "@testing-library/react";
+import { expect, it } from "vitest";
+import { connect } from "../../testing/fake-transport";
+import { recordedBench } from "../../testing/recorded";
+import { mount } from "../../testing/render";
+import { ScoreboardPanel } from "./scoreboard-panel";
+
+const { bench, status } = await recordedBench("first-look");
+const { kalman } = status.scores;
+const cells = (name: string) =>
+  within(screen.getByRole("row", { name: new RegExp(`^${name} `) }))
+    .getAllByRole("cell")
+    .map((cell) => cell.textContent?.replace(/\s/g, " "));
+
+it("shows each diagnoser with its delays in samples and in time", () => {
+  const board = connect(bench);
+  mount(<ScoreboardPanel />);
+  const slow = { ...kalman, correct_fraction: 0.5, delays: [null, null, 10], false_switches: 3 };
+  board.status({ scores: { kalman, slow_one: slow, none_found: { ...kalman, delays: [null] } } });
+  expect(cells("kalman")).toEqual(["97.75 %", "28.0samples, 280 µs", "0 of 2", "0"]);
+  expect(cells("slow one")).toEqual(["50.00 %", "10.0samples, 100 µs", "2 of 3", "3"]);
+  expect(cells("none found")).toEqual(["97.75 %", "–", "1 of 1", "0"]);
+});
+
+it("shows the new score when it comes", () => {
+  const board = connect(bench);
+  board.status(status);
+  mount(<ScoreboardPanel />);
+  board.status({ scores: { kalman: { ...kalman, correct_fraction: 0.25 } } });
+  expect(cells("kalman")[0]).toBe("25.00 %");
+});
+
+it("says that there is no score yet", () => {
+  connect(bench);
+  mount(<ScoreboardPanel />);
+  expect(screen.getByText("No score yet")).toBeVisible();
+});
+
+it("is a region that keys reach, for it scrolls", async () => {
+  const board = connect(bench);
+  const { user } = mount(<ScoreboardPanel />);
+  board.status(status);
+  await user.tab();
+  expect(screen.getByRole("region", { name: "Scores" })).toHaveFocus();
+});
