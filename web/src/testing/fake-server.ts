@@ -4,6 +4,7 @@ import type { ApiErrorBody } from "../api/types";
 export interface Asked {
   method: string;
   path: string;
+  /** A name that is repeated has its values with commas between them. */
   query: Record<string, string>;
   body: unknown;
   /** Parts of the path by the `:name` of the route. */
@@ -57,7 +58,7 @@ class FakeServer {
     const { method } = request;
     const path = url.pathname.replace(API, "");
     const text = await request.text();
-    const asked = { method, path, query: Object.fromEntries(url.searchParams), body: parsed(text), params: {} };
+    const asked = { method, path, query: queryOf(url), body: parsed(text), params: {} };
     this.requests.push(asked);
     const route = this.routes.find((one) => one.method === method && one.pattern.test(path));
     if (!route) {
@@ -83,6 +84,9 @@ export class Refusal {
 
 /** The one server of a test; empty again for the next. */
 export const server = new FakeServer();
+
+const queryOf = ({ searchParams }: URL): Record<string, string> =>
+  Object.fromEntries([...searchParams.keys()].map((name) => [name, searchParams.getAll(name).join()]));
 
 function parsed(text: string): unknown {
   try {
