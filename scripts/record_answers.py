@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx
+from record_views import record_campaign, record_design, record_exercises, record_kept, record_theory
 from websockets.sync.client import connect
 from websockets.sync.connection import Connection
 
@@ -189,6 +190,7 @@ def record_runs(recorder: Recorder, folder: Path) -> None:
     for kind, found in (("run", run), ("sweep", campaign)):
         path = f"/{kind}s/{recorder.name(found['id'], f'{kind}-1')}"
         recorder.write(folder, kind, recorder.until(path, lambda now: now["state"] not in ("queued", "running")))
+    record_campaign(recorder, folder, run["id"], campaign["id"])
 
 
 def record_class(recorder: Recorder, folder: Path) -> None:
@@ -238,6 +240,10 @@ def record(folder: Path = FOLDER) -> None:
                 sheet = recorder.post("/sheets/first-look/begin")
                 recorder.name(sheet["bench"], "bench-of-sheet")
                 recorder.write(folder, "sheet", sheet)
+                record_kept(recorder, folder, bench)
+        record_design(recorder, folder)
+        record_theory(recorder, folder)
+        record_exercises(recorder, folder)
         record_class(recorder, folder)
         record_runs(recorder, folder)
 

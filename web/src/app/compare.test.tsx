@@ -67,6 +67,21 @@ it("puts a bench behind the traces, at the same time, and takes it away", async 
   expect(useBehind.getState().behind).toEqual([]);
 });
 
+it("plays a recording, or carries a run out again, on a bench of its own as fast as it goes", async () => {
+  server.on("POST", "/recordings/rec-1/replay", other);
+  server.on("POST", "/benches/other/commands", { ok: true });
+  server.on("GET", "/runs/run-1/scenario", "title = 'again'");
+  server.on("POST", "/benches", { ...other, id: "again" });
+  server.on("GET", "/benches/again", { ...other, id: "again", name: "Again" });
+  const { user, sheet } = await open();
+  await user.selectOptions(sheet.getByLabelText("Add"), "A recording");
+  await sheet.findByRole("textbox", { name: "Name of Heavier" });
+  expect(server.asked("POST", "/benches/other/commands")[0].body).toEqual({ kind: "time_scale", value: null });
+  await user.selectOptions(sheet.getByLabelText("Add"), "A run");
+  await sheet.findByRole("textbox", { name: "Name of Again" });
+  expect(server.asked("POST", "/benches")[0].body).toEqual({ scenario: "title = 'again'", time_scale: null });
+});
+
 it("aligns the benches at their last faults, each with its shift and sign", async () => {
   const opened = await open();
   const row = await add(opened);

@@ -65,7 +65,12 @@ it("the space bar pauses a bench that runs", async () => {
   expect(board.commands).toEqual([{ kind: "pause" }]);
 });
 
-it.each(["Text", "List", "Several", "Native"])("a key typed in the field %s is no command, until Escape leaves it", async (label) => {
+it.each([
+  "Text",
+  "List",
+  "Several",
+  "Native",
+])("a key typed in the field %s is no command, until Escape leaves it", async (label) => {
   const { board, user } = mountKeys();
   const field = screen.getByRole(label === "Text" ? "textbox" : "combobox", { name: label });
   field.focus();

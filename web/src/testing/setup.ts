@@ -2,7 +2,7 @@ import "./jsdom-gaps"; // before a module of the page keeps what jsdom has
 import "@testing-library/jest-dom/vitest";
 import { cleanNotifications, cleanNotificationsQueue } from "@mantine/notifications";
 import { notifyManager } from "@tanstack/react-query";
-import { act, cleanup } from "@testing-library/react";
+import { act, cleanup, configure } from "@testing-library/react";
 import { afterEach, beforeEach, expect, vi } from "vitest";
 import { queryClient } from "../api/queries";
 import { stream } from "../stream/stream";
@@ -15,6 +15,8 @@ vi.mock("zustand", async (real) => {
   return { ...zustand, create: (await import("./stores")).remembering(zustand.create) };
 });
 
+// a state is awaited as long as a busy machine may take
+configure({ asyncUtilTimeout: 20_000 });
 // an answer that comes between two lines of a test changes the view all the same
 notifyManager.setNotifyFunction((notify) => act(notify));
 // testing-library moves the clock of a test only where it finds one of jest's
