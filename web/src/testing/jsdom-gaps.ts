@@ -142,7 +142,9 @@ function fillGaps(): void {
     },
     cancelAnimationFrame: (frame: number) => frames.delete(frame),
   });
-  Object.defineProperty(document, "fonts", { value: { status: "loaded", ready: Promise.resolve() } });
+  Object.defineProperty(document, "fonts", {
+    value: { status: "loaded", ready: Promise.resolve(), addEventListener() {}, removeEventListener() {} },
+  });
   const held = new WeakMap<Element, number>();
   Object.assign(Element.prototype, {
     scrollIntoView: () => undefined,
