@@ -145,6 +145,10 @@ function fillGaps(): void {
   Object.defineProperty(document, "fonts", {
     value: { status: "loaded", ready: Promise.resolve(), addEventListener() {}, removeEventListener() {} },
   });
+  const create = document.createElement.bind(document);
+  // a tag that is newer than jsdom
+  document.createElement = (name: string, options?: ElementCreationOptions): HTMLElement =>
+    Object.defineProperties(create(name, options), name === "search" ? { [Symbol.toStringTag]: { value: name } } : {});
   const held = new WeakMap<Element, number>();
   Object.assign(Element.prototype, {
     scrollIntoView: () => undefined,
