@@ -150,6 +150,15 @@ function fillGaps(): void {
   document.createElement = (name: string, options?: ElementCreationOptions): HTMLElement =>
     Object.defineProperties(create(name, options), name === "search" ? { [Symbol.toStringTag]: { value: name } } : {});
   const held = new WeakMap<Element, number>();
+  Object.assign(Blob.prototype, {
+    text(this: Blob) {
+      return new Promise((done) => {
+        const reader = new FileReader();
+        reader.onload = () => done(reader.result);
+        reader.readAsText(this);
+      });
+    },
+  });
   Object.assign(Element.prototype, {
     scrollIntoView: () => undefined,
     scrollTo: () => undefined,
