@@ -49,7 +49,7 @@ interface RecordedAnswers {
     comparison: Schemas["RunComparison"];
     trace: Schemas["RunTraces"];
   };
-  /** A bench with a hidden fault, and what is read of it before and after an answer. */
+  /** A bench with a hidden fault, and its exercise before and after an answer. */
   blind: { bench: Bench; asked: Schemas["Blindness"]; answered: Schemas["Blindness"] };
   games: {
     games: Schemas["GameCard"][];

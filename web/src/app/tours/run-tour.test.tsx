@@ -40,7 +40,7 @@ beforeEach(() => {
   server.on("POST", "/runs/remove", { removed: 1 });
 });
 
-/** What the server was asked to do, in its order. */
+/** The requests that change something, in their order. */
 const done = () =>
   server.requests.filter(({ method }) => method !== "GET").map(({ method, path, body }) => [method, path, body]);
 

@@ -98,12 +98,12 @@ it("gives up without an answer", async () => {
 });
 
 it("says why an answer was refused, and lets it be committed again", async () => {
-  server.on("POST", "/benches/:id/blind/answer", new Refusal(409, "Somebody has answered already."));
+  server.on("POST", "/benches/:id/blind/answer", new Refusal(409, "The fault was answered already."));
   connect(hidden);
   const { user } = mount(<BlindPanel />);
   await user.click(panel().getByRole("radio", { name: "healthy" }));
   await user.click(panel().getByRole("button", { name: "Commit the answer" }));
-  expect(await screen.findByText("Somebody has answered already.")).toBeVisible();
+  expect(await screen.findByText("The fault was answered already.")).toBeVisible();
   await waitFor(() => expect(panel().getByRole("button", { name: "Commit the answer" })).toBeEnabled());
 });
 
