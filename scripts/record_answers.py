@@ -16,6 +16,7 @@ from typing import Any
 
 import httpx
 from record_panels import record_questions
+from record_views import record_campaign, record_design, record_exercises, record_kept, record_theory
 from websockets.sync.client import connect
 from websockets.sync.connection import Connection
 
@@ -188,6 +189,7 @@ def record_runs(recorder: Recorder, folder: Path) -> None:
     for kind, found in (("run", run), ("sweep", campaign)):
         path = f"/{kind}s/{recorder.name(found['id'], f'{kind}-1')}"
         recorder.write(folder, kind, recorder.until(path, lambda now: now["state"] not in ("queued", "running")))
+    record_campaign(recorder, folder, run["id"], campaign["id"])
 
 
 def record_class(recorder: Recorder, folder: Path) -> None:
@@ -238,8 +240,12 @@ def record(folder: Path = FOLDER) -> None:
                 recorder.name(sheet["bench"], "bench-of-sheet")
                 recorder.write(folder, "sheet", sheet)
                 record_questions(recorder, folder, bench, FIRST_TICKS + NEXT_TICKS - 1)
+                record_kept(recorder, folder, bench)
             elif name == "seven-steps":
                 recorder.write(folder, "claims", recorder.get(f"/benches/{bench}/claims"))
+        record_design(recorder, folder)
+        record_theory(recorder, folder)
+        record_exercises(recorder, folder)
         record_class(recorder, folder)
         record_runs(recorder, folder)
 

@@ -46,6 +46,7 @@ export default defineConfig({
         test: {
           name: "views",
           include: ["src/**/*.test.tsx"],
+          testTimeout: 60_000, // a busy machine takes its time
           environment: "jsdom",
           setupFiles: ["src/testing/setup.ts"],
           testTimeout: 60_000, // a machine with other work is slow; what never comes is said by `findBy`

@@ -148,8 +148,23 @@ function fillGaps(): void {
     },
     cancelAnimationFrame: (frame: number) => frames.delete(frame),
   });
-  Object.defineProperty(document, "fonts", { value: { status: "loaded", ready: Promise.resolve() } });
+  Object.defineProperty(document, "fonts", {
+    value: { status: "loaded", ready: Promise.resolve(), addEventListener() {}, removeEventListener() {} },
+  });
+  const create = document.createElement.bind(document);
+  // a tag that is newer than jsdom
+  document.createElement = (name: string, options?: ElementCreationOptions): HTMLElement =>
+    Object.defineProperties(create(name, options), name === "search" ? { [Symbol.toStringTag]: { value: name } } : {});
   const held = new WeakMap<Element, number>();
+  Object.assign(Blob.prototype, {
+    text(this: Blob) {
+      return new Promise((done) => {
+        const reader = new FileReader();
+        reader.onload = () => done(reader.result);
+        reader.readAsText(this);
+      });
+    },
+  });
   Object.assign(Element.prototype, {
     scrollIntoView: () => undefined,
     scrollTo: () => undefined,

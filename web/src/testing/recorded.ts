@@ -1,5 +1,5 @@
 import type { components } from "../api/schema";
-import type { Bench, BlockCard, LogEntry } from "../api/types";
+import type { Bench, BlockCard, Lecture, LogEntry, Recording } from "../api/types";
 import type { Status } from "../stream/wire";
 
 type Schemas = components["schemas"];
@@ -37,6 +37,41 @@ interface RecordedAnswers {
   "unstable-region": Schemas["UnstableRegionMap"];
   "parameter-sets": { sets: Schemas["ParameterSet"][]; difference: Schemas["Difference"] };
   claims: Schemas["ClaimList"];
+  design: {
+    evaluation: Schemas["Evaluation"];
+    bode: Schemas["Bode"];
+    spread: Schemas["ProcessSpread"];
+    gyroscope: Schemas["Evaluation"];
+  };
+  theory: {
+    positiveReal: Schemas["PositiveRealReport"];
+    persistency: Schemas["ExcitationReport"];
+    map: Schemas["InstabilityMap"];
+  };
+  campaign: {
+    points: Schemas["SweepPoints"];
+    density: Schemas["Distribution"];
+    histogram: Schemas["Distribution"];
+    comparison: Schemas["RunComparison"];
+    trace: Schemas["RunTraces"];
+  };
+  /** A bench with a hidden fault, and its exercise before and after an answer. */
+  blind: { bench: Bench; asked: Schemas["Blindness"]; answered: Schemas["Blindness"] };
+  games: {
+    games: Schemas["GameCard"][];
+    plays: Record<string, { before: Schemas["Play"]; after: Schemas["Play"] }>;
+  };
+  sheets: Schemas["SheetList"];
+  votes: { open: Schemas["Vote"]; revealed: Schemas["Vote"] };
+  lectures: { lectures: Schemas["LectureCard"][]; lecture: Lecture };
+  recordings: { recordings: Recording[]; compared: Schemas["Comparison"] };
+  units: {
+    units: Schemas["UnitList"];
+    source: string;
+    checked: Schemas["UnitCheck"];
+    mistake: Schemas["UnitCheck"];
+  };
+  benchmark: Schemas["BenchmarkDetail"];
 }
 
 const files = import.meta.glob<string>("./recorded/*.json", { query: "?raw", import: "default" });
