@@ -49,7 +49,6 @@ export default defineConfig({
           testTimeout: 60_000, // a busy machine takes its time
           environment: "jsdom",
           setupFiles: ["src/testing/setup.ts"],
-          testTimeout: 60_000, // a machine with other work is slow; what never comes is said by `findBy`
         },
       },
     ],
