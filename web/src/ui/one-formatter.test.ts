@@ -4,7 +4,7 @@ import { expect, it } from "vitest";
 const HERE = ["./format.ts", "./unit-scale.ts"];
 const OTHER_WAYS = /\.(toFixed|toPrecision|toExponential)\(|\bIntl\.|(?<!Date\([^)]*\))\.toLocaleString\(/;
 
-const sources = import.meta.glob<string>(["../**/*.{ts,tsx}", "!../**/*.{test,d}.ts"], {
+const sources = import.meta.glob<string>(["../**/*.{ts,tsx}", "!../**/*.{test,d}.{ts,tsx}"], {
   query: "?raw",
   import: "default",
   eager: true,
