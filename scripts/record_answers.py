@@ -173,8 +173,7 @@ def record_library(recorder: Recorder, folder: Path) -> None:
     recorder.write(folder, "catalog", {"blocks": recorder.get("/catalog")["blocks"]})
     recorder.write(folder, "scenarios", recorder.get("/scenarios"))
     recorder.write(folder, "devices", recorder.get("/devices"))
-    while (gallery := recorder.get("/gallery"))["figures"]["is_making"]:
-        continue  # the first look reads the figures that are there
+    gallery = recorder.get("/gallery")
     recorder.write(folder, "gallery", {**gallery, "cards": gallery["cards"][:GALLERY_ENTRIES]})
 
 

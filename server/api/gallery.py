@@ -100,7 +100,7 @@ async def get_gallery(
 ) -> Gallery:
     """Show every library scenario: claim, expectations, figure and measured values. Missing figures are made now."""
     figures = service.figures
-    figures.ask(first)
+    await figures.ask(first)
     run_ids = await asyncio.to_thread(lambda: figures.keys)
     runs = await service.jobs.some(list(run_ids.values()))
     return Gallery(

@@ -60,6 +60,7 @@ class Figures:
         self._task: asyncio.Task[None] | None = None
         self._missing: dict[str, Scenario] | None = None
         self._first: list[str] = []
+        self._reading = asyncio.Lock()
         self._ready: Callable[[], Awaitable[None]] | None = None
         self.made: dict[str, Figure] = {}
         self.failed: dict[str, str] = {}
@@ -84,11 +85,15 @@ class Figures:
         """Allow figures to be made, once the server is ready for the work."""
         self._ready = ready
 
-    def ask(self, first: list[str]) -> None:
-        """Make the figures that are missing, these scenarios first; called whenever the gallery is looked at."""
+    async def ask(self, first: list[str]) -> None:
+        """Read the figures that are there, then make the others, these scenarios first."""
         self._first = first
-        if not self.is_making and self._missing != {} and self._ready is not None:
-            self._task = asyncio.create_task(self._make_all(self._ready))
+        async with self._reading:
+            if self._missing is None:
+                found = await asyncio.to_thread(self._read)
+                self._missing = found if self._settings.figures and self._settings.run_workers else {}
+        if self._missing and not self.is_making and self._ready is not None:
+            self._task = asyncio.create_task(self._make_all(self._missing, self._ready))
 
     async def stop(self) -> None:
         """Stop making figures; those that are made stay."""
@@ -96,16 +101,11 @@ class Figures:
             self._task.cancel()
             await asyncio.gather(self._task, return_exceptions=True)
 
-    async def _make_all(self, ready: Callable[[], Awaitable[None]]) -> None:
-        if self._missing is None:
-            found = await asyncio.to_thread(self._read)
-            self._missing = found if self._settings.figures and self._settings.run_workers else {}
-        if not self._missing:
-            return
+    async def _make_all(self, missing: dict[str, Scenario], ready: Callable[[], Awaitable[None]]) -> None:
         await ready()
-        while self._missing:
-            name = next((name for name in self._first if name in self._missing), next(iter(self._missing)))
-            scenario = self._missing.pop(name)
+        while missing:
+            name = next((name for name in self._first if name in missing), next(iter(missing)))
+            scenario = missing.pop(name)
             try:
                 figure = Figure(self.keys[name], **await self._draw(scenario))
                 self.made[scenario.id] = figure

@@ -10,9 +10,6 @@ from typing import Any
 import pytest
 from websockets.exceptions import ConnectionClosed
 
-from server.bench.commands import parse
-from server.errors import ApiError
-
 
 def check(answer: Any, status: int, code: str | None, *words: str) -> None:
     """One error in the one shape, in one line that says what is wrong."""
@@ -321,23 +318,6 @@ def test_what_is_not_there(live: Any) -> None:
                 answer = live.http.request(method, path)
                 assert answer.status_code == status, answer.text
                 assert set(answer.json()["error"]) == {"code", "message", "field", "hint"}
-
-
-def test_a_bench_that_was_closed_takes_no_command(live: Any) -> None:
-    bench = live.bench(paused=True)["id"]
-    session = live.service.benches.find(bench)
-    assert live.http.delete(f"/api/v1/benches/{bench}").status_code == 204
-    for kind in ("start", "step", "undo", "reset_trip"):
-        answer = live.command(bench, kind)
-        check(answer, 404, "not_found", bench)
-        with pytest.raises(ApiError) as late:  # its turn came after the end of the bench
-            session.execute(parse({"kind": kind}), "test")
-        body = late.value.body
-        assert (late.value.status_code, body.code, body.message) == (
-            404,
-            "not_found",
-            answer.json()["error"]["message"],
-        )
 
 
 QUESTIONS: list[tuple[dict[str, Any], str]] = [

@@ -10,7 +10,7 @@ test("a tour drives the page and puts all back at its end, and by Escape while i
   const bench = benchOf(page);
   const tabs = () => page.getByRole("tab").allInnerTexts();
   const before = await tabs();
-  const bubble = page.getByRole("dialog");
+  const bubble = page.locator("#driver-popover-content");
   const next = bubble.getByRole("button", { name: "Next" });
   const offer = page.getByRole("button", { name: "Show me round" });
   const count = async (path: "benches" | "runs") =>

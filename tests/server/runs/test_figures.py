@@ -41,7 +41,8 @@ def settled(live: Any, first: Sequence[str] = ()) -> dict[str, Any]:
         await asyncio.wait([live.service.figures._task])
 
     opened = live.http.get("/api/v1/gallery", params={"first": list(first)}).json()
-    assert opened["figures"]["is_making"]
+    if not opened["figures"]["is_making"]:
+        return opened
     asyncio.run_coroutine_threadsafe(made(), live.service._loop).result(120)
     found: dict[str, Any] = live.http.get("/api/v1/gallery").json()
     assert not found["figures"]["is_making"]
@@ -131,7 +132,7 @@ def test_figures_are_made_when_the_gallery_is_opened_the_cards_in_sight_first(
         assert live.http.get("/api/v1/gallery/first-look/figure").status_code == 404
         assert live.service.figures._task is None and not drawn
         settled(live, first=["ch3-ffrls-b30"])
-        assert drawn[0] == "ch3-ffrls-b30" and set(drawn) == set(FEW)
+        assert drawn[0] == "ch3-ffrls-b30" and sorted(drawn) == sorted(FEW)
         assert live.http.get("/api/v1/gallery", params={"first": ["x"] * 65}).status_code == 422
 
 

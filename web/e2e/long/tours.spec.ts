@@ -39,7 +39,7 @@ test("every tour drives the page, does what it says, and puts all back, at its e
   const bench = benchOf(page);
   const tabs = () => page.getByRole("tab").allInnerTexts();
   const before = await tabs();
-  const bubble = page.getByRole("dialog");
+  const bubble = page.locator("#driver-popover-content");
   const asBefore = async () => {
     await expect(bubble).toHaveCount(0);
     await expect(page.getByTestId("bench-state")).toHaveText("running");
