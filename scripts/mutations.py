@@ -64,7 +64,9 @@ def command_of(test: str) -> list[list[str]]:
     """Return the commands that run one test of a checkout."""
     file, _, title = test.partition("::")
     if not file.startswith("web/"):
-        return [[".venv/bin/python", "-m", "pytest", "-q", "-x", "--long", "-p", "no:cacheprovider", test]]
+        return [
+            [".venv/bin/python", "-m", "pytest", "-q", "-x", "--long", "--timeout=60", "-p", "no:cacheprovider", test]
+        ]
     inside = file.removeprefix("web/")
     chosen = ["-t", title] if title else []
     if inside.startswith("src/"):

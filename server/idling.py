@@ -1,4 +1,4 @@
-"""Who has been at each bench, and when: benches that nobody needs are found here."""
+"""Who has been at each bench, and when: finds idle benches."""
 
 from __future__ import annotations
 

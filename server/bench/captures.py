@@ -38,7 +38,7 @@ class Finder(Protocol):
     """A view that finds crossings of a trigger."""
 
     def find(self, history: Any) -> None:
-        """Find what is to be captured."""
+        """Find the crossings to capture."""
 
 
 class Captured(NamedTuple):

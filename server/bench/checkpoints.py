@@ -139,14 +139,14 @@ class Checkpoints:
                 return None
 
     async def forget(self, bench_id: str) -> None:
-        """Delete what was kept of a bench."""
+        """Delete the checkpoint of a bench."""
         async with self._turn:
             self._written.pop(bench_id, None)
             for suffix in (BOARD, EVENTS, BOARD + PART):
                 await asyncio.to_thread(self._path(bench_id, suffix).unlink, missing_ok=True)
 
     async def forget_others(self) -> None:
-        """Delete what was kept of benches that are not there."""
+        """Delete the checkpoints of benches that do not exist."""
         async with self._turn:
             live = {session.id for session in self._benches()}
             for path in list(self._folder.glob("*")):

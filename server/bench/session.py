@@ -75,11 +75,11 @@ class Session(Jumping):
     opened: Opened | None = None
     """The experiment it was opened from, if it was."""
     keep = False
-    """Whether it is never let go."""
+    """Never unload."""
     class_id = ""
     """The class whose student has it."""
     witness: Callable[[Session, Event], None] | None = None
-    """Hears of every event."""
+    """Called with every event."""
 
     def __init__(
         self,
@@ -142,7 +142,7 @@ class Session(Jumping):
         self.refresh_status()
 
     def belong(self, class_id: str, most_ticks_per_s: float) -> None:
-        """Be the bench of a student, one of many: never let go, limited in pace, with less history."""
+        """Apply the limits of a student's bench: never unloaded, limited in pace, with less history."""
         self.class_id, self.keep = class_id, True
         self.past_ticks, self.track_bytes = STUDENT_PAST_TICKS, STUDENT_TRACK_BYTES
         self.captures.most_bytes = STUDENT_CAPTURE_BYTES

@@ -266,7 +266,7 @@ DOORS, _own = _table(_DOORS)
 LTI_DOORS, _of_platforms = _table(_LTI_DOORS)
 """The same of the doors that are there where learning platforms are configured, and nowhere else."""
 TESTING_DOORS, _of_tests = _table(_TESTING_DOORS)
-"""The same of the door that advances a manual clock, and is there only with it."""
+"""The same for the door that advances a manual clock; it exists only with that clock."""
 OPEN_WHILE_BLIND = frozenset(_own | _of_platforms | _of_tests)
 """The doors marked ``*``: those that know no bench, and those that serve the view of one whose fault is hidden."""
 

@@ -33,7 +33,7 @@ spellcheck="false" required maxlength="40"{focus_code}></label>
 
 
 class Joining:
-    """Lets students in, and limits how often somebody may try.
+    """Admits students, and limits the rate of attempts.
 
     Parameters
     ----------

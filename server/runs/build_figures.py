@@ -25,7 +25,7 @@ def build(name: str, folder: Path = BUILT) -> None:
 
 
 def main() -> None:
-    """Make all figures on all processors, and delete those of other versions."""
+    """Make all figures on all processors, and delete the figures of other versions."""
     keys = {f"{identify(scenario, [scenario.spec.seed])[1][:32]}.json" for scenario in library()}
     for path in BUILT.glob("*.json"):
         if path.name not in keys:

@@ -1,7 +1,7 @@
 """Figures of the gallery: one for each scenario and version of the code.
 
-Those that an image or a wheel brings are in `BUILT`. The others are made when the gallery is first opened, the cards in
-sight first, by the worker processes of headless runs at their low priority, one after the other: a run that a person
+Figures built into an image or a wheel are in `BUILT`. The others are made when the gallery is first opened, the cards
+in sight first, by the worker processes of headless runs at their low priority, one after the other: a run that a person
 starts waits for one figure at most. Results in the table of runs are not computed again, and new ones are added to it.
 A scenario that fails, or a full disk, gives one line in the log and stops nothing.
 """
@@ -36,7 +36,7 @@ BUILT = Path(__file__).resolve().parent / "built_figures"
 
 @dataclass(frozen=True)
 class Figure:
-    """What one scenario gave: its summary, and its picture as SVG."""
+    """The result of one scenario: its summary, and its picture as SVG."""
 
     key: str
     summary: dict[str, Any]
@@ -96,7 +96,7 @@ class Figures:
             self._task = asyncio.create_task(self._make_all(self._missing, self._ready))
 
     async def stop(self) -> None:
-        """Stop making figures; those that are made stay."""
+        """Stop making figures; finished figures stay."""
         if self._task is not None:
             self._task.cancel()
             await asyncio.gather(self._task, return_exceptions=True)
@@ -129,7 +129,7 @@ class Figures:
         log.warning("%s", self.problem)
 
     def _read(self) -> dict[str, Scenario]:
-        """Read the figures that are there, drop those of other versions, and return the others, cheapest first."""
+        """Read the kept figures, delete the figures of other versions, and return the missing ones by cost."""
         for path in self._folder.glob("*.json"):
             if path.stem not in self.keys.values():
                 path.unlink(missing_ok=True)

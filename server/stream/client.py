@@ -91,7 +91,7 @@ class Client:
         self._told_slow_at = -1e9
 
     def offer(self, *, events: bool = False, status: bool = False, frame: bool = False) -> None:
-        """Mark what may be new: events, status, pictures."""
+        """Mark the kinds of news: events, status, pictures."""
         self._wants_events |= events
         self._wants_status |= status
         if frame:
