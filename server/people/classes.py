@@ -220,8 +220,12 @@ class Classes:
 
     async def remove(self, person: Person) -> None:
         """Send a student away: the session ends, the bench is closed."""
-        await self.benches.remove(person)
-        await self._people.remove(person)
+        bench = self.benches.find(person)
+        await self._people.remove(
+            person
+        )  # first: the page is told that the session has ended, not that its bench is gone
+        if bench is not None:
+            await self.benches.remove(bench)
         await self._votes.forget(person_id=person.id)
         await self._games.forget(person_id=person.id)
         self._audit.add("teacher", "removed", f"sent {person.name} away", person.class_id)

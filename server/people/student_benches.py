@@ -113,11 +113,10 @@ class StudentBenches:
                 await self._close_bench(before)
             return made
 
-    async def remove(self, person: Person) -> None:
+    async def remove(self, bench: Session) -> None:
         """Close the bench of a student."""
         async with self._turn:
-            if (bench := self.find(person)) is not None:
-                await self._close_bench(bench)
+            await self._close_bench(bench)
 
     async def recover(self, students: list[Person]) -> None:
         """Bring all benches back, as they were shortly before the server ended; forget those without an owner."""

@@ -36,7 +36,7 @@ beforeEach(() => {
   server.on("GET", "/benches/:id", mine);
   server.on("GET", "/runs", { runs: [] });
   server.on("POST", "/runs", { id: "run-of-tour" });
-  server.on("DELETE", "/runs/:id");
+  server.on("DELETE", "/runs/:id", { state: "cancelled" });
   server.on("POST", "/runs/remove", { removed: 1 });
 });
 

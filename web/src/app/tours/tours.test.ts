@@ -10,6 +10,8 @@ vi.hoisted(() => {
 });
 
 const said: string[] = [];
+/** States that the server tells of the run after it refused to cancel it; then it is done. */
+const ends: string[] = [];
 
 /** A server on which the run of the tour is in a state when the tour ends. */
 async function takeTour(
@@ -26,6 +28,7 @@ async function takeTour(
       ? Promise.resolve(answer() as never)
       : Promise.reject(new ApiError(409, refusal as never));
   });
+  vi.spyOn(api, "run").mockImplementation(() => Promise.resolve({ state: ends.shift() ?? "done" } as never));
   vi.spyOn(api, "removeRuns").mockImplementation((ids) => {
     said.push(`remove ${ids}`);
     return Promise.resolve({} as never);
@@ -58,11 +61,17 @@ it("a run that takes long to end is cancelled until it has ended, and only then 
   expect(said).toEqual(["cancel of-tour", "cancel of-tour", "cancel of-tour", "remove of-tour"]);
 });
 
+it("a run that has ended and is not counted as ended yet is removed once it is", async () => {
+  ends.push("running", "running");
+  await takeTour("done");
+  expect(said).toEqual(["cancel of-tour", "cancel of-tour", "cancel of-tour", "remove of-tour"]);
+});
+
 it("a run that the server is still being asked for when the tour is left goes with it", async () => {
   let answer = (_: object) => {};
   vi.spyOn(api, "runs").mockResolvedValue([]);
   vi.spyOn(api, "startRun").mockReturnValue(new Promise((resolve) => (answer = resolve as never)));
-  vi.spyOn(api, "cancelRun").mockResolvedValue({} as never);
+  vi.spyOn(api, "cancelRun").mockResolvedValue({ state: "cancelled" } as never);
   const removed = vi.spyOn(api, "removeRuns").mockResolvedValue({} as never);
   const steps = TOURS.flatMap(({ steps }) => steps);
   void steps.find(({ title }) => title === "A run of its own")?.does?.();

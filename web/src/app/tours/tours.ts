@@ -54,9 +54,10 @@ export async function forgetRun(): Promise<void> {
   const left = await run?.catch(() => undefined); // said already
   run = undefined;
   if (!left) return;
-  let state: string | undefined = "running";
-  // cancelling may take longer than the server lets a request wait; it is refused once the run has ended
-  while (state && isActive(state)) state = (await api.cancelRun(left).catch(unless(409)))?.state;
+  let state: string = "running";
+  // cancelling may take longer than the server lets a request wait; it is refused from the end of the run on, and only
+  // a little later the run counts as ended and can be removed
+  while (isActive(state)) state = (await api.cancelRun(left).catch(unless(409)))?.state ?? (await api.run(left)).state;
   await api.removeRuns([left]);
 }
 
