@@ -88,6 +88,8 @@ def is_caught(mutation: Mutation, checkout: Path) -> str:
         for test in mutation.caught_by:
             for command in command_of(test):
                 ended = subprocess.run(command, cwd=checkout, env=environment, capture_output=True, text=True)
+                if ended.returncode > 1:  # pytest found no such test, or broke off
+                    return f"cannot run {test}"
                 if ended.returncode:
                     return f"caught by {test}"
         return "not caught"
