@@ -221,9 +221,8 @@ class Classes:
     async def remove(self, person: Person) -> None:
         """Send a student away: the session ends, the bench is closed."""
         bench = self.benches.find(person)
-        await self._people.remove(
-            person
-        )  # first: the page is told that the session has ended, not that its bench is gone
+        # The session ends first, or the page would say that its bench is gone.
+        await self._people.remove(person)
         if bench is not None:
             await self.benches.remove(bench)
         await self._votes.forget(person_id=person.id)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from scenarios.campaign.single import compared
 from scenarios.library import get, ids, library
-from server.runs.figures import BUILT, Figure, cost, keep
+from server.runs.figures import BUILT, Figure, cost, keep, key_of
 from server.runs.jobs import identify
 from server.runs.worker import draw
 
@@ -17,16 +17,17 @@ def build(name: str, folder: Path = BUILT) -> None:
     """Make the figure of one scenario, unless the folder has it."""
     scenario = get(name)
     seed = scenario.spec.seed
-    document, key = identify(scenario, [seed])
-    if (folder / f"{key[:32]}.json").exists():
+    key = key_of(scenario)
+    if (folder / f"{key}.json").exists():
         return
     others = [[outcome.model_dump_json() for outcome in outcomes] for outcomes in compared(scenario, [seed]).values()]
-    keep(folder, Figure(key[:32], **draw(document, seed, [[], *others])[1]))
+    document, _ = identify(scenario, [seed])
+    keep(folder, Figure(key, **draw(document, seed, [[], *others])[1]))
 
 
 def main() -> None:
     """Make all figures on all processors, and delete the figures of other versions."""
-    keys = {f"{identify(scenario, [scenario.spec.seed])[1][:32]}.json" for scenario in library()}
+    keys = {f"{key_of(scenario)}.json" for scenario in library()}
     for path in BUILT.glob("*.json"):
         if path.name not in keys:
             path.unlink()

@@ -74,7 +74,7 @@ class Figures:
     @cached_property
     def keys(self) -> dict[str, str]:
         """The id of the run of each library scenario with its own seed; its figure is known by the same."""
-        return {scenario.id: identify(scenario, [scenario.spec.seed])[1][:32] for scenario in library()}
+        return {scenario.id: key_of(scenario) for scenario in library()}
 
     @property
     def is_making(self) -> bool:
@@ -147,6 +147,11 @@ class Figures:
 
     def _keep(self, figure: Figure) -> None:
         keep(self._folder, figure)
+
+
+def key_of(scenario: Scenario) -> str:
+    """Return the key of a figure: the id of the run with the scenario's own seed."""
+    return identify(scenario, [scenario.spec.seed])[1][:32]
 
 
 def keep(folder: Path, figure: Figure) -> None:
