@@ -230,7 +230,7 @@ def test_benches_of_students_trip_too_and_their_checkpoints_say_so(live: Live) -
     checkpoints = live.service.checkpoints
 
     def kept() -> Any:
-        return checkpoints._load(ada.bench) if path.exists() else None
+        return live.on_loop(checkpoints.load(ada.bench)) if path.exists() else None
 
     until(lambda: (found := kept()) is not None and found.stored.document["trip"] is not None)
     found = kept()

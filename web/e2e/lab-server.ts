@@ -85,6 +85,24 @@ export class LabServer {
     await this.ask("POST", "/testing/advance", { bench, ticks });
   }
 
+  /** Remove all benches, recordings, runs and campaigns. */
+  async clear(): Promise<void> {
+    for (const kind of ["benches", "recordings"])
+      for (const { id } of await this.rows(kind)) await this.ask("DELETE", `/${kind}/${id}`);
+    for (const kind of ["runs", "sweeps"]) {
+      const active = async () => (await this.rows(kind)).filter(({ state }) => ["queued", "running"].includes(state));
+      for (let rows = await active(); rows.length; rows = await active())
+        // refused where one has ended meanwhile
+        for (const { id } of rows) await this.ask("DELETE", `/${kind}/${id}`).catch(() => undefined);
+      await this.ask("POST", `/${kind}/remove`, {});
+    }
+  }
+
+  /** The benches, recordings, runs or campaigns that exist. */
+  async rows(kind: string): Promise<{ id: string; state: string }[]> {
+    return (await this.ask<Record<string, { id: string; state: string }[]>>("GET", `/${kind}`))[kind];
+  }
+
   /** What it warned of so far, the last lines. */
   get warnings(): string[] {
     return this.said

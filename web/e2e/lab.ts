@@ -44,8 +44,7 @@ export const test = base.extend<LabFixtures, { server: LabServer }>({
     async ({ server }, use, test) => {
       await use(undefined);
       if (test.status !== test.expectedStatus) for (const line of server.warnings) console.log(`server said: ${line}`);
-      const { benches } = await server.ask<{ benches: { id: string }[] }>("GET", "/benches");
-      for (const { id } of benches) await server.ask("DELETE", `/benches/${id}`);
+      await server.clear();
     },
     { auto: true },
   ],

@@ -13,8 +13,7 @@ test("a tour drives the page and puts all back at its end, and by Escape while i
   const bubble = page.locator("#driver-popover-content");
   const next = bubble.getByRole("button", { name: "Next" });
   const offer = page.getByRole("button", { name: "Show me round" });
-  const count = async (path: "benches" | "runs") =>
-    (await server.ask<Record<string, object[]>>("GET", `/${path}`))[path].length;
+  const count = async (kind: "benches" | "runs") => (await server.rows(kind)).length;
   const asBefore = async () => {
     await expect(bubble).toHaveCount(0);
     await expect(page.getByTestId("bench-state")).toHaveText("running");

@@ -32,8 +32,8 @@ test("every tour drives the page, does what it says, and puts all back, at its e
   openBench,
   server,
 }) => {
-  const runs = async () => (await server.ask<{ runs: { id: string }[] }>("GET", "/runs")).runs.map(({ id }) => id);
-  if (!(await runs()).length) await server.ask("POST", "/runs", { scenario: "ch1-step" }); // as the tour's, and kept
+  const runs = async () => (await server.rows("runs")).map(({ id }) => id);
+  await server.ask("POST", "/runs", { scenario: "ch1-step" }); // as the tour's, and kept
   const ran = await runs();
   await openBench("research");
   const bench = benchOf(page);
@@ -45,7 +45,7 @@ test("every tour drives the page, does what it says, and puts all back, at its e
     await expect(page.getByTestId("bench-state")).toHaveText("running");
     await expect.poll(() => benchOf(page)).toBe(bench);
     await expect.poll(tabs).toEqual(before);
-    await expect.poll(async () => (await server.ask<{ benches: object[] }>("GET", "/benches")).benches.length).toBe(1);
+    await expect.poll(async () => (await server.rows("benches")).length).toBe(1);
   };
   const acting = async () => (await server.ask<{ faults: object[] }>("GET", `/benches/${benchOf(page)}`)).faults.length;
   const start = async (title: string) => {
