@@ -140,7 +140,7 @@ class Context:
     analogue : bool
         Whether the reference drives the plant between samples.
     limit_v : float
-        Limit of the drive to either side.
+        What the drive reaches to either side.
     limit_un : float
         The same for a plant with axes, whose drive is a force.
     axis : str

@@ -14,6 +14,7 @@ from pydantic import Field
 from core.block import Block, BlockParams, Context, Oscillator
 from core.board.document import Document, sections
 from core.board.library import Library, library_of
+from core.converter import reach
 from core.device.device import Device
 from core.loop.axis_drive import AxisDrive
 from core.loop.drive import Drive
@@ -197,8 +198,8 @@ class Spec:
             stator_voltages=self.device.stators_v,
             capacitance_gradient=self.device.capacitance_gradient,
             analogue=self.is_analogue,
-            limit_v=drive.limit_v if isinstance(drive, Drive.Params) else 0.0,
-            limit_un=drive.limit_un if isinstance(drive, AxisDrive.Params) else 0.0,
+            limit_v=reach(drive.limit_v, drive.quantum_v) if isinstance(drive, Drive.Params) else 0.0,
+            limit_un=reach(drive.limit_un, drive.quantum_un) if isinstance(drive, AxisDrive.Params) else 0.0,
             tone_hz=self.tone_hz,
             sensors={name: section.params for name, section in self.sensors.items()},
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Literal
 
 from core.block import Block, BlockParams, Context, parameter
-from core.loop.drive import Converter, convert
+from core.converter import Converter, convert, reach
 from core.ports import BlockPorts, output, reads, tap
 from core.record import Record
 
@@ -48,7 +48,7 @@ class AxisDrive(Block):
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the limit and the step."""
         p = cls.Packed.blank()
-        p.limit, p.quantum = params.limit_un, params.quantum_un
+        p.limit, p.quantum = reach(params.limit_un, params.quantum_un), params.quantum_un
         return p
 
     @staticmethod

@@ -2,33 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, Literal
 
 from core.block import Block, BlockParams, Context, parameter
+from core.converter import Converter, convert, reach
 from core.elementary import floor
-from core.kernel import kernel
 from core.noise import key, uniform
 from core.ports import BlockPorts, output, reads, tap
 from core.record import Record
-
-
-class Converter(Record):
-    """Limit to either side, step of the converter, 0 for none; volts, or uN for the force along an axis."""
-
-    limit: float
-    quantum: float
-
-
-@kernel
-def convert(p: Converter, u: float) -> float:
-    """Clip to the limit and round to the converter's step; nothing comes out for what is not a number."""
-    if not math.isfinite(u):
-        return 0.0
-    u = min(max(u, -p.limit), p.limit)
-    if p.quantum > 0.0:
-        u = p.quantum * floor(u / p.quantum + 0.5)
-    return u
 
 
 class Drive(Block):
@@ -75,7 +56,7 @@ class Drive(Block):
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         p = cls.Packed.blank()
-        p.limit, p.quantum = params.limit_v, params.quantum_v
+        p.limit, p.quantum = reach(params.limit_v, params.quantum_v), params.quantum_v
         p.dither_per_ms = params.dither_rate_hz / 1e3
         p.dither_key = key(context.seed, "drive.dither")
         return p

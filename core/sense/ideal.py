@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from core.block import Block, BlockParams, Context, Equation, parameter
+from core.converter import reach
 from core.elementary import floor
 from core.noise import key, normal
 from core.ports import BlockPorts, output, reads
@@ -54,6 +55,7 @@ class Ideal(Block):
         """Pack the parameters for the step."""
         p = cls.Packed.blank()
         p.key = key(context.seed, "sensor")
+        p.range_um = reach(params.range_um, params.quantum_um)
         return p
 
     @staticmethod

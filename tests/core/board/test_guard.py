@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from core.converter import reach
 from core.errors import InputError
 from scenarios.run import build, run
 from scenarios.schema import Scenario
-from tests.lab import QUIET, RICH, do, document, inject, make, play
+from tests.lab import AXES_RICH, QUIET, RICH, do, document, inject, make, play
 
 FAST = {"reference.frequency_hz": 2000.0}
 
@@ -27,6 +30,31 @@ def test_sensor_rounds_and_clips():
     expected = np.clip(np.floor(trace["plant.displacement"] / 0.25 + 0.5) * 0.25, -1.5, 1.5)
     assert np.array_equal(trace["sensor.displacement"], expected)
     assert np.abs(trace["plant.displacement"]).max() > 2
+
+
+@pytest.mark.parametrize(
+    ("limit", "step", "most"), [(7.0, 1.5, 6.0), (6.8, 1.5, 6.0), (0.9, 0.2, 0.8), (1.0, 1.5, 0.0)]
+)
+def test_no_step_of_a_converter_lies_beyond_its_limit(limit: float, step: float, most: float) -> None:
+    trace = play(make({**FAST, "drive": {"limit_v": limit, "quantum_v": step}}), 400)
+    assert np.abs(trace["open_loop.voltage"]).max() > limit
+    assert np.abs(trace["drive.voltage"]).max() == pytest.approx(most, abs=1e-12)
+    assert np.array_equal(trace["drive.saturated"] == 1.0, np.abs(trace["open_loop.voltage"]) > most + 1e-12)
+    along = {**AXES_RICH, "drive": {"limit_un": 0.1 * limit, "quantum_un": 0.1 * step}}
+    forces = play(make(base=along), 400)
+    assert max(np.abs(forces[f"drive.{axis}.force"]).max() for axis in ("x", "y")) <= 0.1 * most + 1e-12
+    sensor = {"kind": "ideal", "noise_um": 0.0, "quantum_um": step, "range_um": limit}
+    trace = play(make({**FAST, "sensor": sensor, "reference.amplitude_v": 28.0}), 400)
+    assert np.abs(trace["plant.displacement"]).max() > min(limit, 6.2)
+    assert np.abs(trace["sensor.displacement"]).max() == pytest.approx(most, abs=1e-12)
+
+
+@given(limit=st.integers(1, 10**6), step=st.integers(1, 10**5), power=st.integers(-5, 2))
+def test_a_limit_of_whole_steps_is_reached_and_no_other(limit: int, step: int, power: int) -> None:
+    scale = 10.0**power
+    found = reach(limit * scale, step * scale)
+    assert found == pytest.approx(limit // step * step * scale, rel=1e-12, abs=0.0)
+    assert found <= limit * scale and (limit % step != 0 or found == limit * scale)
 
 
 def test_the_rail_trips_after_its_time():

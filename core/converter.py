@@ -1,0 +1,36 @@
+"""A converter: clips a number to its limit and rounds it to its step."""
+
+from __future__ import annotations
+
+import math
+
+from core.elementary import floor
+from core.kernel import kernel
+from core.record import Record
+
+
+class Converter(Record):
+    """The largest number it puts out to either side, its step, 0 for none; volts, or uN for the force along an axis."""
+
+    limit: float
+    quantum: float
+
+
+@kernel
+def convert(p: Converter, u: float) -> float:
+    """Clip to the limit and round to the converter's step; nothing comes out for what is not a number."""
+    if not math.isfinite(u):
+        return 0.0
+    u = min(max(u, -p.limit), p.limit)
+    if p.quantum > 0.0:
+        u = p.quantum * floor(u / p.quantum + 0.5)
+    return u
+
+
+def reach(limit: float, quantum: float) -> float:
+    """Return the largest number within a limit that a converter has: a whole multiple of its step."""
+    if quantum == 0.0:
+        return limit
+    steps = limit / quantum
+    is_whole = abs(steps - round(steps)) <= 1e-9 * steps  # a tenth is no binary number
+    return limit if is_whole else quantum * math.floor(steps)
