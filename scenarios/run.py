@@ -14,6 +14,7 @@ from core.block import FloatArray
 from core.board.board import Board
 from core.board.commands import Trip
 from core.board.ensemble import Ensemble, make
+from core.board.fold import alike
 from core.board.hosted import NOTHING, Hosted
 from core.board.idle import leave_out_idle
 from core.board.observer import cautions
@@ -277,7 +278,7 @@ def _run_study(scenario: Scenario, board: Board, kept: list[Signal]) -> Result:
     metrics = {**device_metrics(board.spec), **study.figures(board, params)}
     elapsed = time.perf_counter() - began
     figures = np.array([metrics[name] for name in sorted(metrics)])
-    digest = hashlib.sha256(figures.tobytes()).hexdigest()
+    digest = hashlib.sha256(alike(figures.view(np.uint64)).tobytes()).hexdigest()
     told = [*scenario.warnings, *cautions(board.spec)]
     nothing = {one.name: np.empty(0) for one in kept}
     return Result(scenario, board.spec.seed, fresh, digest, elapsed, metrics, told, nothing)

@@ -13,8 +13,8 @@ from dataclasses import replace
 import numpy as np
 
 from core.block import FloatArray, IntArray
-from core.board import program, steps
-from core.board.fold import SHIFTS, A, B, Words
+from core.board import lost, program, steps
+from core.board.fold import NONE, SHIFTS, A, B, Words
 from core.board.instances import instances
 from core.board.lane import Lane
 from core.board.pattern import (
@@ -138,7 +138,7 @@ class Abreast:
         outputs = self._folds.shape[1]
         sizes = len(self._folded), outputs, len(columns), len(columns), WIDTH, samples, 0
         self._sizes = np.array(sizes, dtype=np.int64)
-        self._tail = np.array([folding((A, B), SHIFTS, RESERVED), keeping(), sorting()], dtype=np.int64)
+        self._tail = np.array([folding((A, B), SHIFTS, NONE, RESERVED), keeping(), sorting()], dtype=np.int64)
         self._names, self._trip = list(columns), wiring.trip
         self.boards: list[Lane] = []
         self._leaders: list[Lane] = []
@@ -181,6 +181,8 @@ class Abreast:
             packed, first = wiring.packed(row), wiring.state_of(instance.key)
             if len(parameters) != len(packed) or len(state) != len(first):
                 raise Uneven("other lengths")
+            if not np.array_equal(np.isfinite(state), np.isfinite(first)):
+                raise Uneven("other numbers without an end")
             packed[:], first[:] = parameters, state
         board = Lane(spec, wiring, self._folds[:, :, lane], queue, leader)
         if leader is None:
@@ -203,7 +205,8 @@ class Abreast:
                     board.carry_out_due()
                 self._link()
                 moments = [board.pending.next_tick for board in self._leaders]
-            end = min([samples, *(moment for moment in moments if moment is not None)])
+            look = self.tick - self.tick % lost.EVERY + lost.EVERY
+            end = min([samples, look, *(moment for moment in moments if moment is not None)])
             ran = self._run(end - self.tick)
             self.tick += ran
             for board in self.boards:
@@ -211,6 +214,8 @@ class Abreast:
             for board in self._leaders:
                 board.used |= {*board.spec.driving.values(), board.spec.measuring}
             stopped = self._w[self._trip, : len(self.boards)] != 0.0
+            if self.tick == look and not np.isfinite(self._s).all():
+                stopped |= [bool(lost.lost(board.wiring, board.spec)) for board in self.boards]
             tripped = [before or now for before, now in zip(tripped, stopped.tolist(), strict=True)]
             self._silence(tripped)
         for board in self._leaders:

@@ -6,8 +6,8 @@ A column has two words. With :math:`x` the 64 bits of the new sample,
           \qquad S_n(z) = z \oplus \lfloor z / 2^n \rfloor
 
 modulo :math:`2^{64}`, with odd factors. Each is one-to-one in the word and in the sample, so two columns that differ in
-one sample never fold alike. The fold does not withstand somebody who looks for collisions; the SHA-256 over all folds
-only makes one short text of them.
+one sample never fold alike. All samples that are no number count as one, since machines give them different bits. The
+fold does not withstand somebody who looks for collisions; the SHA-256 over all folds only makes one short text of them.
 """
 
 from __future__ import annotations
@@ -29,6 +29,9 @@ FACTOR_A, FACTOR_B = np.uint64(0xFF51AFD7ED558CCD), np.uint64(0xD6E8FEB86659FD93
 S32, S29 = np.uint64(32), np.uint64(29)
 A, B, WORD = int(FACTOR_A), int(FACTOR_B), 2**64 - 1
 SHIFTS = int(S32), int(S29)
+INFINITE, UNSIGNED, NO_NUMBER = np.uint64(0x7FF0 << 48), np.uint64(2**63 - 1), np.uint64(0x7FF8 << 48)
+"""Bits of infinity, all but the sign, and the bits that stand for everything that is no number."""
+NONE = int(INFINITE), int(UNSIGNED), int(NO_NUMBER)
 
 
 def begin(columns: int) -> Words:
@@ -48,18 +51,24 @@ def fold(folds: Words, samples: Words) -> None:
         The bits of the samples.
     """
     for c in range(folds.shape[1]):
-        a = (folds[0, c] ^ samples[c]) * FACTOR_A
-        b = (folds[1, c] + samples[c]) * FACTOR_B
+        x = NO_NUMBER if samples[c] & UNSIGNED > INFINITE else samples[c]
+        a = (folds[0, c] ^ x) * FACTOR_A
+        b = (folds[1, c] + x) * FACTOR_B
         folds[0, c] = a ^ (a >> S32)
         folds[1, c] = b ^ (b >> S29)
 
 
 def fold_uncompiled(folds: Words, samples: Words) -> None:
     """Do the same in plain numpy."""
-    samples = samples[: folds.shape[1]]
+    samples = alike(samples[: folds.shape[1]])
     a = (folds[0] ^ samples) * FACTOR_A
     b = (folds[1] + samples) * FACTOR_B
     folds[0], folds[1] = a ^ (a >> S32), b ^ (b >> S29)
+
+
+def alike(samples: Words) -> Words:
+    """Return the bits of samples, one and the same for all that are no number."""
+    return np.where(samples & UNSIGNED > INFINITE, NO_NUMBER, samples)
 
 
 def digest(folds: Words, blocks: Sequence[str]) -> str:

@@ -52,17 +52,20 @@ class _Writer:
 
 
 @cache
-def folding(factors: tuple[int, int], shifts: tuple[int, int], reserved: int) -> int:
+def folding(factors: tuple[int, int], shifts: tuple[int, int], none: tuple[int, int, int], reserved: int) -> int:
     """Return where the function is that folds a tick.
 
     It takes all signals, the folds, the places of the outputs that count, and how many these are and all outputs. The
-    first output stands behind those reserved; factors and shifts are those of ``core.board.fold``.
+    first output stands behind those reserved; factors, shifts and bits are those of ``core.board.fold``.
     """
     w = _Writer()
     count, outputs = w.size(0), w.size(1)
     with counted(w.builder, count) as number:
         place = w.whole(w.places, number)
         sample = w.read(w.first, w.times(place, WIDTH), BITS)
+        infinite, unsigned, no_number = (ir.Constant(BITS, [bits] * WIDTH) for bits in none)
+        is_none = w.builder.icmp_unsigned(">", w.builder.and_(sample, unsigned), infinite)
+        sample = w.builder.select(is_none, no_number, sample)
         at = w.times(w.builder.sub(place, _whole(reserved)), WIDTH)
         joins: tuple[Callable[[Any, Any], Any], ...] = (w.builder.xor, w.builder.add)
         for word, (join, factor, shift) in enumerate(zip(joins, factors, shifts, strict=True)):

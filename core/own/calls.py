@@ -9,7 +9,7 @@ from typing import Any
 
 from core.kernel import is_kernel
 from core.own.expressions import Checked, Expressions, called
-from core.own.guarded import floored
+from core.own.guarded import floored, signed
 from core.own.kinds import NUMBER, TRUTH, Count, Number, Part, signature
 from core.own.text import refuse
 from core.own.values import Mathematics
@@ -74,6 +74,8 @@ class Calls(Expressions):
             return NUMBER, parts[0]
         if function is math.floor:
             name, function = "_floor", floored
+        if function is math.copysign:
+            function = signed
         self.used[name] = function
         return TRUTH if function is math.isfinite else NUMBER, called(name, *parts)
 

@@ -23,6 +23,12 @@ def put(vector: Vector, count: float, index: float, value: float) -> None:
         vector[int(index)] = value
 
 
+@inlined
+def signed(size: float, sign: float) -> float:
+    """Return a size with a sign; NaN for that of NaN, which machines give different signs."""
+    return math.copysign(size, sign) if sign == sign else math.nan
+
+
 WHOLE_FROM = 4503599627370496.0
 """2^52: every number from here on is whole."""
 

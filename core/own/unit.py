@@ -26,6 +26,7 @@ from core.identify.estimator import Estimator
 from core.kernel import kernel
 from core.own.declare import Declaration
 from core.own.evaluate import Evaluator
+from core.own.guarded import signed
 from core.own.kinds import NOTHING, NUMBER, Kind, Part, Signals
 from core.own.public import AXES, check_ports, slot_of
 from core.own.steps import Steps
@@ -251,7 +252,7 @@ def _function(steps: Steps, entry: str, name: str, mark: str) -> FunctionType:
         text.splitlines(keepends=True),
         file,
     )  # for whatever reads the source again
-    used = {**steps.used, "_sqrt": math.sqrt, "_copysign": math.copysign, "_isfinite": math.isfinite}
+    used = {**steps.used, "_sqrt": math.sqrt, "_copysign": signed, "_isfinite": math.isfinite}
     space: dict[str, Any] = {**RUN, **used, "__name__": "core.own"}
     exec(compile(text, file, "exec"), space)  # defines functions, calls none
     for written in steps.written[:-1]:

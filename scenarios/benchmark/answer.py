@@ -10,6 +10,7 @@ import numpy as np
 
 from core.block import Block, FloatArray
 from core.board.document import Document
+from core.board.fold import alike
 from core.diagnose.hypothesis import BankParams
 from core.errors import InputError
 from scenarios.benchmark.figures import classed, surprise
@@ -94,10 +95,14 @@ def _answer(track: Track, trace: Mapping[str, FloatArray], name: str, block: typ
     if not _is_bank(block):
         output = _moved(block)
         said = np.ascontiguousarray(trace[f"{name}.{output}"])
-        return Answer(np.abs(said - NEUTRAL[output]), None, hashlib.sha256(said.tobytes()).hexdigest())
+        return Answer(np.abs(said - NEUTRAL[output]), None, _digest(said))
     names = [item.name for item in track.hypotheses]
     said = np.ascontiguousarray([trace[f"{name}.probability.{hypothesis}"] for hypothesis in names])
     groups = [*track.classes.values()]
     places = [next(i for i, group in enumerate(groups) if hypothesis in group) for hypothesis in names]
     p = classed(said, np.array(places, dtype=np.int64), len(groups))
-    return Answer(surprise(p[0]), p, hashlib.sha256(said.tobytes()).hexdigest())
+    return Answer(surprise(p[0]), p, _digest(said))
+
+
+def _digest(said: FloatArray) -> str:
+    return hashlib.sha256(alike(said.view(np.uint64)).tobytes()).hexdigest()

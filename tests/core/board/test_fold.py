@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import ctypes
 import hashlib
+import math
 import struct
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as stn
 
@@ -16,8 +18,25 @@ from core import registry
 from core.board import fold
 from core.board.board import Board
 from core.control.open_loop import OpenLoop
+from core.kernel import kernel
+from core.lanes.numbers import WIDTH
+from core.lanes.rows import folding
+from core.own.guarded import signed
+from core.plain import plain
+from core.ports import RESERVED
+from core.record import BLANK_BITS
 from tests import lab
 
+NONES = (
+    0x7FF8 << 48,
+    0xFFF8 << 48,
+    0x7FF8 << 48 | 1,
+    0xFFF0 << 48 | 1,
+    0x7FF0 << 48 | 2**51 - 1,
+    2**64 - 1,
+    BLANK_BITS,
+)
+"""Bits of numbers that are none: quiet and signalling, of either sign, with any payload."""
 WORDS = stn.arrays(np.uint64, st.tuples(st.integers(1, 6), st.integers(1, 4)))
 PRIME = 2**64
 
@@ -40,6 +59,7 @@ def test_it_is_the_formula(rows: np.ndarray[Any, Any]) -> None:
     for column in range(rows.shape[1]):
         a, b = 0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F
         for x in map(int, rows[:, column]):
+            x = 0x7FF8 << 48 if np.isnan(np.array(x, np.uint64).view(np.float64)) else x
             a = (a ^ x) * 0xFF51AFD7ED558CCD % PRIME
             b = (b + x) % PRIME * 0xD6E8FEB86659FD93 % PRIME
             a, b = a ^ a >> 32, b ^ b >> 29
@@ -50,6 +70,7 @@ def test_it_is_the_formula(rows: np.ndarray[Any, Any]) -> None:
 def test_every_bit_counts(rows: np.ndarray[Any, Any], place: int, bit: int) -> None:
     other = rows.copy()
     other.flat[place % rows.size] ^= np.uint64(1 << bit)
+    assume(not np.isnan(rows.view(np.float64)).any() and not np.isnan(other.view(np.float64)).any())
     changed = (folded(rows) != folded(other)).any(axis=0)
     assert changed.sum() == 1 and changed[place % rows.size % rows.shape[1]]
     # one-to-one: both words differ
@@ -66,11 +87,41 @@ def test_order_columns_signs_and_what_is_no_number_count() -> None:
     swapped[[10, 11]] = swapped[[11, 10]]
     later[20, 0], later[20, 1] = rows[20, 1], rows[20, 0]
     empty = [np.zeros((50, 3)), -np.zeros((50, 3)), np.zeros((51, 3))]
-    quiet, loud = rows.copy(), rows.copy()
-    quiet[7, 2] = np.array(0x7FF8000000000000, np.uint64).view(np.float64)
-    loud[7, 2] = np.array(0x7FF8000000000001, np.uint64).view(np.float64)
-    all_of_them = [rows, swapped, turned, later, *empty, quiet, loud]
+    none, infinite, less = rows.copy(), rows.copy(), rows.copy()
+    none[7, 2], infinite[7, 2], less[7, 2] = np.nan, np.inf, -np.inf
+    all_of_them = [rows, swapped, turned, later, *empty, none, infinite, less]
     assert len({digest(values) for values in all_of_them}) == len(all_of_them)
+
+
+def test_all_that_is_no_number_counts_as_one() -> None:
+    """Compiled, in plain numpy and abreast; machines give such a number different bits."""
+    numbers = [np.array(bits, np.uint64) for bits in NONES]
+    assert all(np.isnan(bits.view(np.float64)) for bits in numbers)
+    plain, found, wide = set(), set(), np.repeat(fold.begin(1)[:, :, None], WIDTH, axis=2)
+    sizes, place = np.array([1, 1], np.int64), np.array([RESERVED], np.int64)
+    address = folding((fold.A, fold.B), fold.SHIFTS, fold.NONE, RESERVED)
+    for bits in numbers:
+        row = bits.reshape(1, 1)
+        folds = fold.begin(1)
+        fold.fold_uncompiled(folds, row[0])
+        plain.add(folds.tobytes())
+        found.add(folded(row).tobytes())
+        w, folds = np.full((RESERVED + 1, WIDTH), bits), wide.copy()
+        ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 4)(address)(*(one.ctypes.data for one in (w, folds, place, sizes)))
+        assert {folds[:, :, lane].tobytes() for lane in range(WIDTH)} == found
+    assert len(found) == 1 and plain == found
+
+
+def test_the_sign_of_no_number_reaches_no_number() -> None:
+    sizes = [float(np.array(bits, np.uint64).view(np.float64)) for bits in NONES]
+    for step in (signed_of, plain(signed_of)):
+        assert all(math.isnan(step(sign)) for sign in sizes)
+    assert signed_of(-0.0) == -2.0 and signed_of(0.0) == 2.0 == signed_of(math.inf)
+
+
+@kernel
+def signed_of(sign: float) -> float:
+    return signed(2.0, sign)
 
 
 def test_blocks_are_joined_by_name() -> None:
