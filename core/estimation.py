@@ -10,6 +10,9 @@ from core.kernel import SMALL, flush_tiny, kernel
 from core.record import Record, Vector
 from core.voltage import Motion, Moves, add_moves
 
+HIGHEST = 1e10
+"""Largest trace of a covariance that nothing else limits: rounding of a larger one outweighs what a sample tells."""
+
 
 def triangle(n: int) -> int:
     """Return the numbers in the lower triangle of an n by n matrix."""
@@ -145,7 +148,7 @@ def estimate(
     forgetting : float
         Factor mu per sample, in (0, 1].
     limit : float
-        Largest trace of the covariance, 0 for none.
+        Largest trace of the covariance, 0 for `HIGHEST`.
     """
     information = 0.0
     before = 0.0
@@ -156,7 +159,7 @@ def estimate(
         for j in range(i):
             total += covariance[row + j] * regressor[j]
         at = row + i
-        before += covariance[at]
+        before += abs(covariance[at])
         # the rest of the row stands in the column below the diagonal
         for j in range(i, n):
             total += covariance[at] * regressor[j]
@@ -169,7 +172,8 @@ def estimate(
     for i in range(n):
         theta[i] += product[i] * inverse * error
     after = (before - lost * inverse) / forgetting
-    if limit <= 0.0 or after <= limit or after <= before:
+    # the sizes, since rounding may have made a large covariance indefinite
+    if abs(after) <= max(limit if limit > 0.0 else HIGHEST, before):
         grow = 1.0 / forgetting
         at = 0
         small = False

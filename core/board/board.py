@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import copy
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from core.block import BlockParams
+from core.block import BlockParams, FloatArray
 from core.board import changes, fold, program, steps, words
 from core.board.commands import Command, Trip
 from core.board.condition import Condition, parse_condition
 from core.board.document import Document
+from core.board.fold import Words
 from core.board.instances import scored
 from core.board.log import Log, LogEntry
+from core.board.lost import EVERY, Lost, lost
 from core.board.observer import Observer
 from core.board.parse import parse
 from core.board.pending import Pending, Queue
@@ -33,7 +36,7 @@ CHUNK = 512
 COPIED = ("pending", "trip", "wiring", "folds", "used", "observer")
 LISTS = 150
 """Bytes that a checkpoint takes for each block beside its numbers."""
-SHARED = ("spec", "base", "compiled", "tick")
+SHARED = ("spec", "base", "compiled", "tick", "lost")
 """What of a board is its own in every copy, and what never changes in place."""
 
 
@@ -70,6 +73,7 @@ class Board:
         self.done: list[tuple[int, Command]] = []  # each with the tick at which it took effect
         self.pending = Queue()
         self.trip: Trip | None = None
+        self.lost: Lost | None = None
         self.folds = fold.begin(self.wiring.signals.outputs)
         self.used: set[str] = set()
         self.observer = Observer(self.spec, self.wiring)
@@ -136,7 +140,8 @@ class Board:
     def advance(self, n: int) -> Rows:
         """Run up to ``n`` ticks (at most ``CHUNK``); fewer when the board trips.
 
-        Pending commands take effect at the edges of the ticks they wait for, whatever the chunks.
+        Pending commands take effect at the edges of the ticks they wait for, whatever the chunks. A block that has lost
+        its state trips the board at the next whole multiple of `EVERY` ticks.
         """
         n = min(n, CHUNK)
         first, done = self.tick, 0
@@ -147,7 +152,8 @@ class Board:
             if self.trip is not None:
                 break
             end, upcoming = self.tick + n - done, self.pending.next_tick
-            stop = end if upcoming is None else min(end, upcoming)
+            stop = min(end, self.tick - self.tick % EVERY + EVERY)
+            stop = stop if upcoming is None else min(stop, upcoming)
             ran, why = self._run(stop - self.tick, done)
             rows = slice(done, done + ran)
             for finding in self.observer.look(self.spec, self.tick, self._outputs[rows], self._taps[rows]):
@@ -159,23 +165,46 @@ class Board:
             if why != program.DONE:
                 self.pending.meet(self.value, self.tick)
             if why == program.TRIPPED:
-                self._trip()
+                self._trip(*changes.cause(self))
+            elif self.lost is not None and self.tick % EVERY == 0:
+                self._trip(f"the state of {self.lost.block} has not been finite since sample {self.lost.tick}")
         return Rows(first, done, self._outputs[:done], self._taps[:done], idle)
 
     def _run(self, n: int, at: int) -> tuple[int, int]:
+        """Run ticks of which none is followed by a command; return how many, and why it stopped."""
+        wiring = self.wiring
+        before = wiring.s.copy(), wiring.w.copy()
+        ran, why = self._loop(n, self.tick, self._outputs[at:], self._taps[at:], self.folds)
+        if not lost(wiring, self.spec):
+            self.lost = None
+            return ran, why
+        # the same ticks once more, one by one: the first that lost a state is not that of a slice
+        wiring.s[:], wiring.w[:] = before
+        rows = np.empty((1, self._outputs.shape[1])), np.empty((1, self._taps.shape[1]))
+        for tick in range(self.tick, self.tick + ran):
+            self._loop(1, tick, *rows, self.folds.copy())
+            self._look(tick + 1)
+        return ran, why
+
+    def _look(self, tick: int) -> None:
+        """Note at a tick edge which block has lost its state, if it had not before."""
+        block = lost(self.wiring, self.spec)
+        self.lost = (self.lost or Lost(block, tick)) if block else None
+
+    def _loop(self, n: int, tick: int, outputs: FloatArray, taps: FloatArray, folds: Words) -> tuple[int, int]:
         wiring = self.wiring
         arguments = (
             n,
-            self.tick,
+            tick,
             self.dt_ms,
             self._table,
             wiring.p,
             wiring.s,
             wiring.w,
             wiring.io,
-            self._outputs[at:],
-            self._taps[at:],
-            self.folds,
+            outputs,
+            taps,
+            folds,
             wiring.trip,
             self.pending.watches(wiring.index),
         )
@@ -263,16 +292,15 @@ class Board:
         document = command.document() if command is not None else None
         return self.log.add(self.tick if tick is None else tick, actor, kind, text, document, old, new)
 
-    def _trip(self) -> None:
-        text, signal = changes.cause(self)
-        value = self.value(signal)
+    def _trip(self, text: str, signal: str = "") -> None:
+        value = self.value(signal) if signal else math.nan
         reason = text.format(signal=signal)
         self.trip = Trip(
             tick=self.tick,
             time_ms=self.tick * self.dt_ms,
             reason=reason,
             signal=signal,
-            value=value if np.isfinite(value) else None,
+            value=value if math.isfinite(value) else None,
         )
         changes.disengage(self)
         self.note("board", "tripped", f"tripped: {reason}", new=self.trip.model_dump())

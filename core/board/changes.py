@@ -13,6 +13,7 @@ from core.board.commands import Command, Heal, Inject, MakeSafe, Set, Switch, Tr
 from core.board.difference import change
 from core.board.fitting import misfit
 from core.board.live import live_change, value_at
+from core.board.lost import Lost
 from core.board.spec import Spec
 from core.board.wiring import Wiring, command_of, engage, wire
 from core.errors import InputError, from_validation, unknown
@@ -27,6 +28,7 @@ class Board(Protocol):
     spec: Spec
     wiring: Wiring
     trip: Trip | None
+    lost: Lost | None
     tick: int
 
     @property
@@ -176,14 +178,14 @@ def reset_trip(board: Board) -> tuple[Any, Any]:
     fresh = wire(board.spec)
     fresh.left_out = board.wiring.left_out
     for instance in fresh.instances:
-        if instance.key.endswith(".score"):
+        if instance.key.endswith(".score") and np.isfinite(board.wiring.state_of(instance.key)).all():
             fresh.state_of(instance.key)[:] = board.wiring.state_of(instance.key)
             for port in (*instance.block.outputs, *instance.block.taps):
                 name = f"{instance.prefix}.{port.name}"
                 fresh.w[fresh.index[name]] = board.value(name)
     board.wiring = fresh
     board.link()
-    board.trip = None
+    board.trip = board.lost = None
     return old, None
 
 

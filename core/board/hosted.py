@@ -167,6 +167,7 @@ class Hosted(Board):
                 watches,
             )
             _, why = program.run(*rest) if self.compiled else program.run_uncompiled(self._steps[cut:], *rest)
+            self._look(tick + 1)
             if why != program.DONE:
                 return i + 1, why
         return n, program.DONE

@@ -41,7 +41,7 @@ class Lane(Board):
     def __init__(self, spec: Spec, wiring: Wiring, folds: Words, pending: Queue, leader: Lane | None = None) -> None:
         self.spec, self.wiring, self.folds, self.pending = spec, wiring, folds, pending
         self.base = spec.document
-        self.compiled, self.tick, self.trip = True, 0, None
+        self.compiled, self.tick, self.trip, self.lost = True, 0, None, None
         self.log, self.done, self.used = Log(), [], set()
         self.followers: list[Lane] = []
         self.specs: list[tuple[int, Spec]] = [(0, spec)]

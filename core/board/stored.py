@@ -18,6 +18,7 @@ from core.board.commands import Trip, parse_command
 from core.board.condition import parse_condition
 from core.board.document import Document
 from core.board.ensemble import Ensemble, make
+from core.board.lost import Lost
 from core.board.pending import Pending, Queue
 from core.errors import InputError
 
@@ -79,6 +80,7 @@ def _one(board: Board) -> tuple[Document, dict[str, NDArray[Any]]]:
         "done": [[tick, command.document()] for tick, command in board.done],
         "pending": [_waiting(entry) for entry in board.pending],
         "asked": board.pending.asked,
+        "lost": board.lost,
         "trip": board.trip.model_dump(mode="json") if board.trip is not None else None,
         "used": sorted(board.used),
         "cautions": cautions,
@@ -98,6 +100,7 @@ def _go_on(board: Board, document: Document, arrays: Arrays) -> None:
         board.done.append((tick, parsed))
     board.tick, board.used = document["tick"], set(document["used"])
     board.trip = Trip.model_validate(document["trip"]) if document["trip"] is not None else None
+    board.lost = Lost(*document["lost"]) if document["lost"] is not None else None
     board.pending = Queue.of([_entry(entry, board) for entry in document["pending"]], document["asked"])
     for name in NUMBERS:
         _fill(getattr(board.wiring, name), arrays[name])

@@ -47,6 +47,8 @@ class Wiring:
     """Row by row, whether its parameters leave it nothing to do, as those of a fault of no severity."""
     tap_rows: IntArray
     """The row that every tap comes from."""
+    endless: BoolArray
+    """Number by number of the states, whether it begins as infinite or as no number, and so may always be."""
     left_out: set[int] = field(default_factory=set)
     """Rows that never run, because nobody watches them."""
     resting: set[int] = field(default_factory=set)
@@ -174,19 +176,21 @@ def wire(spec: Spec, like: Wiring | None = None) -> Wiring:
         w[index[f"effects.{name}"]] = value
     engage(spec, index, w)
     rows = {instance.key: row for row, instance in enumerate(order)}
+    s = np.concatenate(s_parts)
     return Wiring(
         instances=order,
         signals=signals,
         index=index,
         table=table,
         p=np.concatenate(p_parts),
-        s=np.concatenate(s_parts),
+        s=s,
         w=w,
         io=np.concatenate(io_parts),
         unread=unread(spec, order),
         absent=[instance.block.rests(instance.params) for instance in order],
         rows=rows,
         tap_rows=np.array([rows[signal.block] for signal in signals.taps], dtype=np.int64),
+        endless=~np.isfinite(s),
     )
 
 

@@ -93,7 +93,7 @@ class IndirectMrac(Block):
         forgetting_rate: float = parameter(30.0, "rate B of forgetting", "1/s", equation="3.3.2.10", ge=0, le=1e5)
         normaliser: float = parameter(10.0, "weight alpha of the normaliser", equation="3.3.2.11", ge=0, le=1e4)
         covariance: float = parameter(1e3, "covariance at the start", equation="3.3.2.10", gt=0, le=1e6, live=False)
-        trace_limit: float = parameter(1e5, "largest trace of the covariance, 0 for none", ge=0)
+        trace_limit: float = parameter(1e5, "largest trace of the covariance, 0 for 1e10", ge=0)
         filter_pole: float = parameter(
             1.0, "pole of all filters over w0", equation="3.3.2.5", gt=0.05, le=10, live=False
         )

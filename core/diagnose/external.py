@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from core.block import Equation
+from typing import Any
+
+import numpy as np
+
+from core.block import Context, Equation
 from core.diagnose.judge import Judge
 from core.diagnose.lanes import LANE
 from core.record import Record, Vector, vector
@@ -20,9 +24,14 @@ class External(Judge):
     equations = (Equation("law", r"P_i=f(y_i,u_{i-1})"),)
 
     class State(Record):
-        """The probabilities that were answered."""
+        """The probabilities that were answered; no numbers before the first, and where the answer is none."""
 
         answered: Vector = vector(LANE)
+
+    @classmethod
+    def state(cls, params: Any, context: Context) -> State:
+        """Nothing has been answered yet."""
+        return cls.State(np.full(LANE, np.nan))
 
     @staticmethod
     def step(p: Judge.Packed, s: State, x: Judge.Ports) -> None:

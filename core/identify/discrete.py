@@ -32,7 +32,7 @@ class DiscreteParams(IdentifierParams):
     """Parameters of every identifier of the sampled plant."""
 
     initial_covariance: float = parameter(1e8, "covariance at the start, as a multiple of I", gt=0, le=1e15)
-    covariance_limit: float = parameter(1e10, "largest trace of the covariance, 0 for none", ge=0, le=1e18)
+    covariance_limit: float = parameter(1e10, "largest trace of the covariance, 0 for 1e10", ge=0, le=1e18)
     start: Literal["nominal", "zero"] = parameter("nominal", "estimate at the start", equation="5.3.3.8", live=False)
     least_excitation: float = parameter(
         1e-9, "least relative excitation that counts as identifiable", "1", equation="A.9.1", ge=0, le=1

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from core.block import BlockParams, Equation
+from typing import Any
+
+import numpy as np
+
+from core.block import BlockParams, Context, Equation
 from core.identify.estimator import Estimator
 from core.identify.identifier import PHYSICAL
 from core.record import Record, Vector, vector
@@ -23,9 +27,14 @@ class External(Estimator):
         """What it does is decided outside."""
 
     class State(Record):
-        """Mass, stiffness and damping over nominal that were answered."""
+        """Mass, stiffness and damping over nominal that were answered; no numbers where there is no answer."""
 
         answered: Vector = vector(len(PHYSICAL))
+
+    @classmethod
+    def state(cls, params: Any, context: Context) -> State:
+        """Nothing has been answered yet."""
+        return cls.State(np.full(len(PHYSICAL), np.nan))
 
     @staticmethod
     def step(p: Record, s: State, x: Estimator.Ports) -> None:

@@ -71,7 +71,7 @@ class LeastSquares(FilteredEstimator):
         forgetting_rate: float = parameter(30.0, "rate B of forgetting", "1/s", equation="3.3.2.10", ge=0, le=1e6)
         normaliser: float = parameter(10.0, "alpha of the normaliser", equation="3.3.2.11", ge=0, le=1e6)
         initial_covariance: float = parameter(1e3, "P0, as a multiple of I", equation="3.3.2.10", gt=0, le=1e12)
-        covariance_limit: float = parameter(1e5, "largest trace of the covariance, 0 for none", ge=0, le=1e15)
+        covariance_limit: float = parameter(1e5, "largest trace of the covariance, 0 for 1e10", ge=0, le=1e15)
 
     class Packed(FilteredEstimator.Packed):
         """Share kept from sample to sample, normaliser, limit of the covariance and its value at the start."""

@@ -11,6 +11,7 @@ import pytest
 from scipy.signal import cont2discrete, lfilter
 
 from core.errors import InputError
+from core.estimation import HIGHEST
 from core.identify.filtered import noise_gram
 from scenarios.library import get
 from scenarios.run import run
@@ -172,7 +173,7 @@ def test_covariance_stays_below_its_limit_under_a_constant():
         values = {"reference": {"kind": "constant", "amplitude_v": 5.0}, "identifiers": {"x": own}}
         return play(make(values), 4000)["x.covariance_trace"].max()
 
-    assert largest(0.0) > 1e12
+    assert 1e9 < largest(0.0) <= HIGHEST
     assert largest(1e5) <= 1e5
 
 
@@ -298,16 +299,15 @@ def test_wind_up_is_bounded_and_the_covariance_stays_definite():
     t = 0.25 * np.arange(1_000_002)
     u, y = np.sin(t), 0.4 * np.sin(t - 0.3)
     h, z = np.column_stack([u[1:-1], u[:-2], -y[1:-1], -y[:-2]]), y[2:]
-    for limit, finite in ((1e10, True), (0.0, False)):
+    for limit in (1e10, 0.0):
         s = estimate_start(1e8)
         estimate_record(s, h, z, 0.86, limit)
-        assert bool(np.all(np.isfinite(s.array))) is finite
-        if finite:
-            matrix = np.zeros((4, 4))
-            matrix[np.tril_indices(4)] = s.covariance
-            matrix += np.tril(matrix, -1).T
-            assert np.linalg.eigvalsh(matrix)[0] > 0.0 and np.trace(matrix) <= 1e10
-            assert abs(h[-1] @ s.theta - z[-1]) < 1e-6
+        assert np.all(np.isfinite(s.array))
+        matrix = np.zeros((4, 4))
+        matrix[np.tril_indices(4)] = s.covariance
+        matrix += np.tril(matrix, -1).T
+        assert np.linalg.eigvalsh(matrix)[0] > 0.0 and np.trace(matrix) <= 1e10
+        assert abs(h[-1] @ s.theta - z[-1]) < 1e-6
     s = estimate_start(1e8)
     zeros = np.zeros((1_000_000, 4))
     for _ in range(10):
