@@ -23,7 +23,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from core.block import Context, Oscillator
-from core.device.oscillator import transition, within
+from core.device.oscillator import is_soft, transition, within, yielded
 from core.format import format_short
 from core.kernel import flush_tiny, inlined, kernel
 from core.ports import BlockPorts, reads
@@ -110,8 +110,9 @@ def over_tick(device: Oscillator, gain: float, h: float, analogue: bool) -> tupl
     """Return the numbers of a `Tick`; at rest, stiffness times displacement is the gain times the voltage."""
     phi11, phi12, phi21, phi22 = transition(device.mass, device.damping, device.stiffness, h)
     rest = gain / device.stiffness
+    push1 = _gained(device, rest, h, phi11)
     effects = within(device.mass, device.damping, device.stiffness, h, gain) if analogue else (0.0, 0.0, 0.0, 0.0)
-    return *effects, phi11, phi12, phi21, phi22, (1.0 - phi11) * rest, -phi21 * rest
+    return *effects, phi11, phi12, phi21, phi22, push1, -phi21 * rest
 
 
 def tick_of(device: Oscillator, gain: float, h: float, analogue: bool) -> Tick:
@@ -186,8 +187,14 @@ def weighed_voltages(p: Interval, s: Gathered) -> tuple[float, float]:
 def difference_equation(device: Oscillator, rest: float, h: float) -> tuple[float, float, float, float]:
     """Return b0, b1, a1, a2 of a device under a held voltage; one volt displaces it by ``rest`` in the steady state."""
     f11, f12, f21, f22 = transition(device.mass, device.damping, device.stiffness, h)
-    g1, g2 = (1.0 - f11) * rest, -f21 * rest
+    g1, g2 = _gained(device, rest, h, f11), -f21 * rest
     return g1, f12 * g2 - f22 * g1, -(f11 + f22), f11 * f22 - f12 * f21
+
+
+def _gained(device: Oscillator, rest: float, h: float, phi11: float) -> float:
+    """Return the displacement that a held volt causes within ``h``; in the steady state it causes ``rest``."""
+    of = device.mass, device.damping, device.stiffness, h
+    return rest * device.stiffness * yielded(*of) if is_soft(*of) else (1.0 - phi11) * rest
 
 
 def lost(nominal: Oscillator, other: Oscillator, context: Context, hz: float) -> float:

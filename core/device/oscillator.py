@@ -10,6 +10,11 @@ from core.elementary import cos, exp, expm1, sin
 from core.kernel import kernel
 from core.matrix import exponential
 
+SOFT = 5e-8
+r"""Of :math:`1-\varphi_{11}`, roughly, where it has a rounding error of :math:`10^{-8}`."""
+TERMS = 22
+"""Terms of a series whose ratios are at most 1/n: the next is below 1e-20."""
+
 
 @kernel
 def transition(mass: float, damping: float, stiffness: float, h: float) -> tuple[float, float, float, float]:
@@ -65,10 +70,10 @@ def held(mass: float, damping: float, stiffness: float, h: float) -> tuple[float
     Mass, stiffness and damping may be 0, and the last two negative, as in a transfer function:
 
     .. math:: \gamma_2=\frac{\varphi_{12}}{m},\quad
-        \gamma_1=\frac{1-\varphi_{11}}{k}\;\Big(\frac{h-\varphi_{12}}{\beta},\;\frac{h^2}{2m}\text{ without spring,
-        and without damper}\Big)
+        \gamma_1=\frac{1-\varphi_{11}}{k}\;\Big(\frac{h^2}{2m}\text{ without spring and damper}\Big)
 
-    and without mass :math:`\varphi_{11}=e^{-kh/\beta}`.
+    with :math:`\gamma_1` as `yielded` where the spring has hardly begun to act, and without mass
+    :math:`\varphi_{11}=e^{-kh/\beta}`.
 
     Parameters
     ----------
@@ -87,13 +92,57 @@ def held(mass: float, damping: float, stiffness: float, h: float) -> tuple[float
         reach = h / damping if stiffness == 0.0 else -expm1(-stiffness * h / damping) / stiffness
         return decay, 0.0, 0.0, 0.0, reach, 0.0
     a, b, c, d = transition(mass, damping, stiffness, h)
-    if stiffness != 0.0:
+    if not is_soft(mass, damping, stiffness, h):
         reach = (1.0 - a) / stiffness
-    elif damping != 0.0:
-        reach = (h - b) / damping
+    elif stiffness != 0.0 or damping != 0.0:
+        reach = yielded(mass, damping, stiffness, h)
     else:
         reach = 0.5 * h * h / mass
     return a, b, c, d, reach, b / mass
+
+
+@kernel
+def is_soft(mass: float, damping: float, stiffness: float, h: float) -> bool:
+    r"""Say whether a spring has hardly begun to act after ``h``, so that :math:`1-\varphi_{11}` has lost its digits."""
+    return abs(stiffness) * h * h < SOFT * (mass + abs(damping) * h)
+
+
+@kernel
+def yielded(mass: float, damping: float, stiffness: float, h: float) -> float:
+    r"""Return how far a unit force moves an oscillator with a soft spring within ``h``, without cancellation.
+
+    Of a weak damper by the series of the motion, of a strong one by its two rates of decay:
+
+    .. math:: \gamma_1=\frac{h}{m(r_2-r_1)}\bigl[E(r_1h)-E(r_2h)\bigr],\quad E(z)=\frac{1-e^{-z}}{z}
+
+    Parameters
+    ----------
+    mass, damping, stiffness, h : float
+        As of ``held``; the mass is positive.
+    """
+    z = damping * h / mass
+    if abs(z) > 1.0:
+        sigma = 0.5 * damping / mass
+        square = stiffness / mass
+        apart = math.copysign(2.0 * math.sqrt(sigma * sigma - square), sigma)
+        fast = sigma + 0.5 * apart
+        return h / (mass * apart) * (shrunk(square / fast * h) - shrunk(fast * h))
+    w = stiffness * h * h / mass
+    before = 0.0
+    term = 0.5 * h * h / mass
+    total = term
+    for n in range(3, TERMS):
+        after = -(z * term + w * before / (n - 1.0)) / n
+        before = term
+        term = after
+        total += term
+    return total
+
+
+@kernel
+def shrunk(z: float) -> float:
+    r"""Return :math:`(1-e^{-z})/z`."""
+    return -expm1(-z) / z if z != 0.0 else 1.0
 
 
 def parabola(

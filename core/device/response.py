@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from core.block import FloatArray, Oscillator
-from core.device.oscillator import transition
+from core.device.oscillator import is_soft, transition, yielded
 from core.kernel import kernel
 
 AHEAD = 4
@@ -64,6 +64,9 @@ def held_response(device: Oscillator, voltage: FloatArray, dt_ms: float) -> Floa
     """
     phi = np.array(transition(device.mass, device.damping, device.stiffness, dt_ms)).reshape(2, 2)
     gain = (np.eye(2) - phi) @ np.array([device.static_gain, 0.0])
+    of = device.mass, device.damping, device.stiffness, dt_ms
+    if is_soft(*of):
+        gain[0] = device.force * yielded(*of)
     powers = [np.eye(2)]
     while len(powers) <= AHEAD:
         powers.append(phi @ powers[-1])
