@@ -6,6 +6,7 @@ It goes into the FMU as it stands, with its numbers in ``device.json`` beside it
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,8 @@ from pythonfmu3.variables import Float64
 
 NEAR = 1e-6
 """How far a step may be from a whole number of samples, relative."""
+TICKS_OF_CLOCK, SHARE = 2.0, 0.1
+"""The same for the difference of two large times: so many of their last digits, and at most this share of a sample."""
 
 
 class CombBenchDevice(Fmi3Slave):  # type: ignore[misc]
@@ -50,7 +53,8 @@ class CombBenchDevice(Fmi3Slave):  # type: ignore[misc]
     def do_step(self, current_time: float, step_size: float) -> bool:
         """Go on by a whole number of samples; refuse any other step."""
         samples = round(step_size / self.interval_s)
-        if samples < 1 or abs(samples * self.interval_s - step_size) > NEAR * step_size:
+        rounding = min(TICKS_OF_CLOCK * math.ulp(current_time + step_size), SHARE * self.interval_s)
+        if samples < 1 or abs(samples * self.interval_s - step_size) > NEAR * step_size + rounding:
             self.log(f"a step must be a whole number of samples of {self.interval_s:g} s, got {step_size:g} s")
             return False
         for _ in range(samples):

@@ -96,9 +96,52 @@ def closed_loop(scenario: Scenario, controller: Any) -> Any:
         The bench.
     controller : control.StateSpace or control.TransferFunction
         From the error (um) to the voltage (V), sampled as the scenario is: `pid`, or one's own.
+
+    Raises
+    ------
+    InputError
+        For another controller.
     """
-    loop = control.feedback(sampled_device(scenario) * controller, 1)
+    law = _sampled(_checked(controller, ("error",), "controller"), interval_s(scenario), "controller")
+    loop = control.feedback(sampled_device(scenario) * law, 1)
     return control.ss(loop, inputs="model", outputs="displacement", name="closed_loop")
+
+
+def _checked(system: Any, inputs: tuple[str, ...], field: str) -> Any:
+    """Return a system of one output, or a gain as one, once it is seen that it can be computed sample by sample.
+
+    Raises
+    ------
+    InputError
+        When it is none.
+    """
+    if isinstance(system, int | float):
+        system = control.tf([float(system)], [1.0])
+    if not isinstance(system, control.StateSpace | control.TransferFunction):
+        text = f"must be a StateSpace or a TransferFunction of python-control, got {type(system).__name__}"
+        raise InputError(text, field, "control.ss and control.tf make them")
+    if (system.ninputs, system.noutputs) != (len(inputs), 1):
+        text = f"must have {len(inputs)} inputs and 1 output, has {system.ninputs} and {system.noutputs}"
+        raise InputError(text, field, f"its inputs are {', '.join(inputs)}")
+    if isinstance(system, control.StateSpace):
+        numbers = [system.A, system.B, system.C, system.D]
+    else:
+        numbers = [*system.num[0], *system.den[0]]
+        for above, below in zip(system.num[0], system.den[0], strict=True):
+            if len(np.trim_zeros(above, "f")) > len(np.trim_zeros(below, "f")):
+                raise InputError("is improper: it has more zeros than poles", field, "give it more poles")
+    if not all(np.isfinite(one).all() for one in numbers):
+        raise InputError("has coefficients that are not finite", field)
+    return system
+
+
+def _sampled(system: Any, dt_s: float, field: str) -> Any:
+    """Return a system in states, once it is seen to be sampled as the bench is."""
+    if system.isctime(strict=True):
+        raise InputError("is continuous", field, "control.sample_system samples it")
+    if system.dt not in (None, True) and not np.isclose(system.dt, dt_s, rtol=1e-9, atol=0.0):
+        raise InputError(f"is sampled every {system.dt:g} s, the bench every {dt_s:g} s", field)
+    return control.ss(system)
 
 
 class LinearLaw:
@@ -131,15 +174,10 @@ class LinearLaw:
         for name in reads:
             if name not in READABLE:
                 raise unknown("signal of a controller", name, READABLE, "reads")
-        if (system.ninputs, system.noutputs) != (len(reads), 1):
-            text = f"must have {len(reads)} inputs and 1 output, has {system.ninputs} and {system.noutputs}"
-            raise InputError(text, "system", f"its inputs are {', '.join(reads)}")
-        dt_s = interval_s(scenario)
+        dt_s, system = interval_s(scenario), _checked(system, reads, "system")
         if system.isctime():
             system = control.sample_system(system, dt_s, method)
-        elif system.dt not in (None, True) and not np.isclose(system.dt, dt_s, rtol=1e-9, atol=0.0):
-            raise InputError(f"is sampled every {system.dt:g} s, the bench every {dt_s:g} s", "system")
-        self.system = control.ss(system)
+        self.system = _sampled(system, dt_s, "system")
         self._reads = reads
         self._state = np.zeros(self.system.nstates)
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import sys
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +18,7 @@ from core.errors import InputError
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.outside.fmu import export
+from scenarios.outside.fmu_slave import CombBenchDevice
 from scenarios.run import run
 from scenarios.schema import Scenario
 from server.cli import app
@@ -74,6 +77,19 @@ def test_a_longer_step_holds_the_voltage_and_one_between_samples_is_refused(tmp_
     np.testing.assert_allclose(there["displacement"], here.signal("plant.displacement")[::4], rtol=0, atol=1e-11)
     with pytest.raises(Exception, match="fmi3DoStep"):
         simulated(path, voltages, 1e-5, 1.5e-5)
+
+
+@pytest.mark.parametrize("start_s", [0.0, 1e6, 1e8])
+def test_a_step_may_be_the_difference_of_two_large_times(start_s: float, tmp_path: Path) -> None:
+    export(quiet(), tmp_path / "device.fmu")
+    with zipfile.ZipFile(tmp_path / "device.fmu") as archive:
+        archive.extract("resources/device.json", tmp_path)
+    slave = CombBenchDevice(instance_name="one", resources=str(tmp_path / "resources"))
+    slave.log = lambda *_: None
+    times = start_s + 1e-5 * np.arange(200)
+    assert all(slave.do_step(now, later - now) for now, later in itertools.pairwise(times))
+    assert not slave.do_step(start_s, 1.5e-5) and not slave.do_step(start_s, 0.8e-5)
+    assert not slave.do_step(1e12, 1.25e-5)  # a clock that cannot tell samples apart excuses no more than a tenth
 
 
 def test_another_plant_is_refused(tmp_path: Path) -> None:

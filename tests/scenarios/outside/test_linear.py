@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import control
@@ -132,3 +133,40 @@ def test_a_system_that_does_not_fit_is_refused(system: Any, reads: tuple[str, ..
 def test_a_plant_with_axes_has_no_such_system() -> None:
     with pytest.raises(InputError, match="several axes"):
         device(Scenario.load({"schema": 1, "device": {"id": "gyro-a"}, "samples": 10}))
+
+
+NONE = {
+    "is improper": [
+        control.tf([1.0, 0.0], [1.0]),
+        control.tf([1.0, 0.0, 0.0], [1.0, 1.0]),
+        control.tf([1, 0], [1], 1e-5),
+    ],
+    "must be a StateSpace or a TransferFunction": [
+        control.frd([1.0, 2.0], [1.0, 2.0]),
+        scipy.signal.lti([1.0], [1.0, 1.0]),
+        scipy.signal.dlti([1.0], [1.0, 0.5], dt=1e-5),
+        control.nlsys(None, lambda t, x, u, p: u, inputs=1, outputs=1),
+        np.eye(1),
+        None,
+    ],
+    "not finite": [control.tf([math.nan], [1.0, 1.0]), control.ss([[math.inf]], [[1.0]], [[1.0]], [[0.0]])],
+    "is sampled every 0.3 s": [control.tf([1.0], [1.0, 0.5], 0.3)],
+}
+
+
+@pytest.mark.parametrize(
+    ("says", "system"), [(says, system) for says, all_of_them in NONE.items() for system in all_of_them]
+)
+def test_what_is_no_controller_is_refused_in_one_line(says: str, system: Any) -> None:
+    for made in (LinearLaw, lambda given, scenario: closed_loop(scenario, given)):
+        with pytest.raises(InputError, match=says) as refused:
+            made(system, quiet())
+        assert "\n" not in str(refused.value)
+
+
+def test_a_number_is_a_gain() -> None:
+    law = LinearLaw(2.0, quiet(), reads=("measured",))
+    assert law(Sample(True, 0, 0.0, 0.01, 0.0, 0.0, 1.5, 0.0, True)) == 3.0
+    assert closed_loop(quiet(), 2.0).nstates == 2
+    with pytest.raises(InputError, match="is continuous"):
+        closed_loop(quiet(), control.tf([1.0], [1.0, 1.0]))
