@@ -31,7 +31,9 @@ class AxisDrive(Block):
         )
 
     class Packed(Converter):
-        """The converter."""
+        """The converter, and whether it passes on how the force moves between samples."""
+
+        analogue: float
 
     class Ports(BlockPorts):
         """Force asked for, force applied."""
@@ -49,13 +51,14 @@ class AxisDrive(Block):
         """Pack the limit and the step."""
         p = cls.Packed.blank()
         p.limit, p.quantum = reach(params.limit_un, params.quantum_un), params.quantum_un
+        p.analogue = params.kind == "analogue"
         return p
 
     @staticmethod
     def step(p: Packed, s: Record, x: Ports) -> None:
         """Apply the force asked for, as far as the drive can."""
         x.force = convert(p, x.command)
-        if x.command_middle == x.command and x.command_end == x.command:
+        if p.analogue == 0.0 or (x.command_middle == x.command and x.command_end == x.command):
             x.middle = x.force
             x.end = x.force
         else:
