@@ -2,7 +2,8 @@ r"""Mass, stiffness and damping of a folded-flexure comb resonator from its draw
 
 Equations 1.3.3, 1.3.4 and 1.3.7 of the dissertation, as corrected: the gas film under the plate and the
 structural thickness share one printed symbol and are two numbers here (``film_gap_um``, ``thickness_um``);
-1.3.4 is the stiffness of the whole suspension, with the truss length taken between adjacent beams.
+1.3.4 is the stiffness of the whole suspension, with the truss length taken between adjacent beams; a whole truss has
+three such segments, all alike.
 """
 
 from __future__ import annotations
@@ -25,11 +26,10 @@ class Geometry(BlockParams):
     """
 
     thickness_um: LengthUm = parameter(2.0, "structural thickness", "um", live=False)
-    film_gap_um: LengthUm = parameter(1.9987, "gas film under the plate", "um", live=False)
+    film_gap_um: LengthUm = parameter(2.0033, "gas film under the plate", "um", live=False)
     beam_length_um: LengthUm = parameter(350.0, "length of a flexure beam", "um", live=False)
     beam_width_um: LengthUm = parameter(2.0, "width of a beam as drawn", "um", live=False)
     beam_bias_um: EtchUm = parameter(0.2384, "etch bias per edge of beams and trusses", "um", live=False)
-    truss_length_um: LengthUm = parameter(90.0, "length of a truss", "um", live=False)
     truss_width_um: LengthUm = parameter(4.0, "width of a truss as drawn", "um", live=False)
     truss_segment_um: LengthUm = parameter(30.0, "truss length between adjacent beams", "um", live=False)
     fingers: Fingers = parameter(87, "rotor fingers per side", live=False)
@@ -43,7 +43,7 @@ class Geometry(BlockParams):
     arm_width_um: PartUm = parameter(11.132, "width of a comb arm", "um", live=False)
     arm_length_um: PartUm = parameter(690.0, "length of a comb arm", "um", live=False)
     openings_um2: float = parameter(
-        3560.0, "anchor notches and grating cut out of the plate", "um^2", ge=0, le=1e10, live=False
+        3665.7, "anchor notches and grating cut out of the plate", "um^2", ge=0, le=1e10, live=False
     )
     youngs_modulus_gpa: float = parameter(164.0, "Young's modulus", "GPa", ge=1e-3, le=1e4, live=False)
     density_kg_m3: float = parameter(2330.0, "density", "kg/m^3", ge=1.0, le=1e5, live=False)
@@ -95,7 +95,7 @@ class Geometry(BlockParams):
         arms = 2.0 * self.arm_width_um * self.arm_length_um
         shuttle = plate + arms + 2.0 * self.fingers * self.finger_length_um * finger
         beams = 8.0 * self.beam_length_um * self.beam_um
-        trusses = 2.0 * self.truss_segment_um * self.truss_um
+        trusses = 2.0 * 3.0 * self.truss_segment_um * self.truss_um
         combs = 4.0 * self.fingers * self.overlap_um * self.thickness_um
         return shuttle, beams, trusses, combs
 

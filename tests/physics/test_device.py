@@ -50,9 +50,9 @@ def test_mass_by_rayleigh():
     geometry = Geometry(beam_bias_um=0.23835)
     rho_t = 2330 * 2e-6
     beams = 8 * 350e-6 * WIDE
-    trusses = 2 * 30e-6 * (4e-6 - 2 * 0.23835e-6)
+    trusses = 2 * 90e-6 * (4e-6 - 2 * 0.23835e-6)
     fingers = 2 * 87 * 60e-6 * 1.9e-6
-    shuttle = 190e-6 * 75e-6 - 3560e-12 + 2 * 11.132e-6 * 690e-6 + fingers
+    shuttle = 190e-6 * 75e-6 - 3665.7e-12 + 2 * 11.132e-6 * 690e-6 + fingers
     expected = rho_t * (shuttle + trusses / 4 + 12 * beams / 35)
     assert geometry.mass_kg() == pytest.approx(expected, rel=1e-9)
     # longer beams weigh 12/35 of themselves
@@ -67,8 +67,8 @@ def test_damping_is_couette_and_stokes():
     omega = math.sqrt(geometry.stiffness_n_m() / geometry.mass_kg())
     delta = math.sqrt(2 * mu / (101325 / (287.05 * 300) * omega))
     assert delta == pytest.approx(44.84e-6, rel=1e-3)
-    shuttle, beams, trusses, combs = 45888e-12, 4265e-12, 211e-12, 27840e-12
-    expected = mu * ((shuttle + trusses / 2 + beams / 2) * (1 / 1.9987e-6 + 1 / delta) + combs / 2.1e-6)
+    shuttle, beams, trusses, combs = 45782e-12, 4265e-12, 634e-12, 27840e-12
+    expected = mu * ((shuttle + trusses / 2 + beams / 2) * (1 / 2.0033e-6 + 1 / delta) + combs / 2.1e-6)
     assert geometry.damping_ns_m(300.0) == pytest.approx(expected, rel=1e-3)
     assert geometry.damping_ns_m(400.0) / geometry.damping_ns_m(300.0) == pytest.approx(1.24, abs=0.02)
 

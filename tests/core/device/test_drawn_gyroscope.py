@@ -24,7 +24,7 @@ MU = 1.716e-5 * (300 / 273.15) ** 1.5 * 383.55 / 410.4
 SLIP_PA_M = MU * math.sqrt(math.pi * 287.05 * 300 / 2)
 """Mean free path times pressure."""
 LCR = {"id": "lcr-350", "drawn_gyroscope": {}}
-E, RHO, T, FILM, GAP, SEGMENT = 164e9, 2330.0, 2.0, 1.9987, 2.1, 30.0
+E, RHO, T, FILM, GAP, SEGMENT = 164e9, 2330.0, 2.0, 2.0033, 2.1, 30.0
 TRUSS = 4.0 - 2 * 0.23835
 
 
@@ -37,7 +37,7 @@ class Axis:
 
     def __init__(self, length: float, width: float, fingers: int) -> None:
         self.length, self.width, self.fingers = length, width - 2 * 0.23835, fingers
-        self.beams, self.trusses = 8 * length * self.width, 2 * SEGMENT * TRUSS
+        self.beams, self.trusses = 8 * length * self.width, 2 * 3 * SEGMENT * TRUSS
         self.frame = 2 * 11.132 * 690 + 2 * fingers * 60 * 1.9
         self.combs = 4 * fingers * 40 * T
 
@@ -49,7 +49,7 @@ class Axis:
         return 2 * 2 * E * T * UM * (self.width / length) ** 3 * top / bottom
 
 
-PLATE = 190 * 75 - 3560
+PLATE = 190 * 75 - 3665.7
 X, Y = Axis(350, 2.0, 87), Axis(340, 2.0, 87)
 S = (np.arange(20_000) + 0.5) / 20_000
 BEND = 3 * S**2 - 2 * S**3

@@ -106,15 +106,15 @@ def test_warm_air_damps_more():
 
 
 def test_damping_over_the_temperature_by_1_3_7_with_slip():
-    """Areas of LCR-350 in um^2, film 1.9987 um and gap 2.1 um, each wider by twice the mean free path; Stokes above."""
+    """Areas of LCR-350 in um^2, film 2.0033 um and gap 2.1 um, each wider by twice the mean free path; Stokes above."""
 
     def sheared(kelvin):
         viscosity = 1.716e-5 * (kelvin / 273.15) ** 1.5 * 383.55 / (kelvin + 110.4)
         path_um = 1e6 * viscosity / 101_325 * math.sqrt(math.pi * 8.314462618 * kelvin / (2 * 0.028964))
         density = 101_325 * 0.028964 / (8.314462618 * kelvin)
         depth_um = 1e6 * math.sqrt(2 * viscosity / (density * 2 * math.pi * 2483.78))
-        plate = 45_888 + 211 / 2 + 4_265 / 2
-        return viscosity * (plate * (1 / (1.9987 + 2 * path_um) + 1 / depth_um) + 27_840 / (2.1 + 2 * path_um))
+        plate = 45_782 + 634 / 2 + 4_265 / 2
+        return viscosity * (plate * (1 / (2.0033 + 2 * path_um) + 1 / depth_um) + 27_840 / (2.1 + 2 * path_um))
 
     for celsius, damping, quality in ((-40, 5.95, 5.81), (27, 7.09, 4.86), (85, 7.95, 4.33), (125, 8.48, 4.06)):
         stiffness, scale = scales(temperature_k=celsius + 273.15)
