@@ -11,7 +11,7 @@ from core.record import Record, Vector
 from core.voltage import Motion, Moves, add_moves
 
 HIGHEST = 1e10
-"""Largest trace of a covariance that nothing else limits: rounding of a larger one outweighs what a sample tells."""
+"""Largest trace of a covariance without a limit of its own: the rounding of a larger one outweighs a sample."""
 
 
 def triangle(n: int) -> int:

@@ -178,7 +178,7 @@ class Board:
         if not lost(wiring, self.spec):
             self.lost = None
             return ran, why
-        # the same ticks once more, one by one: the first that lost a state is not that of a slice
+        # the same ticks once more, one by one, so that the first loss does not depend on slices
         wiring.s[:], wiring.w[:] = before
         rows = np.empty((1, self._outputs.shape[1])), np.empty((1, self._taps.shape[1]))
         for tick in range(self.tick, self.tick + ran):

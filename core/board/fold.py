@@ -6,7 +6,7 @@ A column has two words. With :math:`x` the 64 bits of the new sample,
           \qquad S_n(z) = z \oplus \lfloor z / 2^n \rfloor
 
 modulo :math:`2^{64}`, with odd factors. Each is one-to-one in the word and in the sample, so two columns that differ in
-one sample never fold alike. All samples that are no number count as one, since machines give them different bits. The
+one sample never fold alike. All NaN count as the same sample, since machines give them different bits. The
 fold does not withstand somebody who looks for collisions; the SHA-256 over all folds only makes one short text of them.
 """
 
@@ -30,7 +30,7 @@ S32, S29 = np.uint64(32), np.uint64(29)
 A, B, WORD = int(FACTOR_A), int(FACTOR_B), 2**64 - 1
 SHIFTS = int(S32), int(S29)
 INFINITE, UNSIGNED, NO_NUMBER = np.uint64(0x7FF0 << 48), np.uint64(2**63 - 1), np.uint64(0x7FF8 << 48)
-"""Bits of infinity, all but the sign, and the bits that stand for everything that is no number."""
+"""Bits of infinity, all but the sign, and the bits that every NaN is taken for."""
 NONE = int(INFINITE), int(UNSIGNED), int(NO_NUMBER)
 
 
@@ -67,7 +67,7 @@ def fold_uncompiled(folds: Words, samples: Words) -> None:
 
 
 def alike(samples: Words) -> Words:
-    """Return the bits of samples, one and the same for all that are no number."""
+    """Return the bits of samples, the same for every NaN."""
     return np.where(samples & UNSIGNED > INFINITE, NO_NUMBER, samples)
 
 

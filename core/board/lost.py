@@ -1,7 +1,7 @@
-"""Blocks that have lost what they remember: a number of their state is finite no longer.
+"""Blocks whose state is lost: a number of it is no longer finite.
 
-A number that begins as infinite or as no number may be so at any time: its block means it. Controllers that only look
-on do not count; one that has run away starts anew when it takes over.
+A number that begins as infinite or NaN may be so at any time: its block means it. Controllers in shadow do not count;
+after a runaway they start anew when they take over.
 """
 
 from __future__ import annotations

@@ -100,7 +100,7 @@ def _go_on(board: Board, document: Document, arrays: Arrays) -> None:
         board.done.append((tick, parsed))
     board.tick, board.used = document["tick"], set(document["used"])
     board.trip = Trip.model_validate(document["trip"]) if document["trip"] is not None else None
-    board.lost = Lost(*document["lost"]) if document["lost"] is not None else None
+    board.lost = Lost(*document["lost"]) if document.get("lost") else None
     board.pending = Queue.of([_entry(entry, board) for entry in document["pending"]], document["asked"])
     for name in NUMBERS:
         _fill(getattr(board.wiring, name), arrays[name])

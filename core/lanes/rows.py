@@ -56,7 +56,7 @@ def folding(factors: tuple[int, int], shifts: tuple[int, int], none: tuple[int, 
     """Return where the function is that folds a tick.
 
     It takes all signals, the folds, the places of the outputs that count, and how many these are and all outputs. The
-    first output stands behind those reserved; factors, shifts and bits are those of ``core.board.fold``.
+    first output stands behind those reserved; ``core.board.fold`` has the factors, shifts and bits.
     """
     w = _Writer()
     count, outputs = w.size(0), w.size(1)
