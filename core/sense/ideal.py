@@ -6,7 +6,6 @@ import math
 from typing import Any
 
 from core.block import Block, BlockParams, Context, Equation, parameter
-from core.converter import reach
 from core.elementary import floor
 from core.noise import key, normal
 from core.ports import BlockPorts, output, reads
@@ -55,7 +54,9 @@ class Ideal(Block):
         """Pack the parameters for the step."""
         p = cls.Packed.blank()
         p.key = key(context.seed, "sensor")
-        p.range_um = reach(params.range_um, params.quantum_um)
+        if params.quantum_um > 0.0:  # the last step within the range
+            last = params.quantum_um * floor(params.range_um / params.quantum_um + 1e-9)
+            p.range_um = min(params.range_um, last)
         return p
 
     @staticmethod
