@@ -47,9 +47,9 @@ class AdaptiveRate(Block):
     and the other at rest: that is ``drive_tracking`` with ``sense_axis_sync`` at rest.
 
     A held force is late by half a sample and weaker than its sine, and makes the measured velocity ripple; the law
-    makes up for all three, and :math:`\hat n` takes what is left in step with the motion. The bound of the rate says what is
-    left of it there, what the rate still has to learn, and how it swings; it is trusted while that is at most a quarter
-    of it.
+    makes up for all three, and :math:`\hat n` takes what is left in step with the motion. The bound of the rate says
+    what is left of it there, what the rate still has to learn, and how it swings; it is trusted while that is at most a
+    quarter of it.
 
     The usual gains go with the frequency of x, :math:`\omega_x`, or with 0.4 a sample where that is slower: a velocity
     error is damped at :math:`1.061\,\omega_x`, and the estimates follow ten times slower. Ten times the gain of the

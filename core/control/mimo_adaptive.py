@@ -31,9 +31,9 @@ class MimoAdaptive(Block):
     the extension and derives nothing.
 
     A held force is late by half a sample and weaker than its sine, and makes the measured velocity ripple; the law
-    makes up for all three as ``adaptive_rate`` does, and takes the deviation from the motion asked for half a sample on as it
-    went. Times are in 1/w of x, :math:`\omega` being the frequency of x, or 0.2 rad a sample where that is slower; the
-    gains are for a device that swings with about 1 um.
+    makes up for all three as ``adaptive_rate`` does, and takes the deviation from the motion asked for half a sample on
+    as it went. Times are in 1/w of x, :math:`\omega` being the frequency of x, or 0.2 rad a sample where that is
+    slower; the gains are for a device that swings with about 1 um.
     """
 
     title = "Many-input adaptive control"

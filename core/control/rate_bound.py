@@ -4,10 +4,11 @@ r"""By how much an adaptive controller of two axes misreads a rate that keeps st
 
 - :math:`\Delta_\Omega`: what the rate swung by in the last whole beats, 50 ms at least.
 - :math:`\tilde\Omega`: what it still has to learn. The changes of
-  :math:`\hat k_{xy},\hat n,\hat d_{xy},\hat\Omega` over these beats, over their gains, are the means of the products :math:`\dot e^Tq_r,\;\dot e^T\dot q_r`, and so the
-  part of each velocity error that has the frequency of the other axis, as phasor :math:`E`. The force that would take it away
-  is :math:`E_i\,(\gamma-j(k_i-\omega^2)/\omega)`, with the :math:`k_i` of the axis, or of the model put in its place.
-  A force along y and x that goes with :math:`\pm2\omega A` of the other axis is a rate.
+  :math:`\hat k_{xy},\hat n,\hat d_{xy},\hat\Omega` over these beats, over their gains, are the means of the products
+  :math:`\dot e^Tq_r,\;\dot e^T\dot q_r`, and so the part of each velocity error that has the frequency of the other
+  axis, as phasor :math:`E`. The force that would take it away is :math:`E_i\,(\gamma-j(k_i-\omega^2)/\omega)`, with the
+  :math:`k_i` of the axis, or of the model put in its place. A force along y and x that goes with :math:`\pm2\omega A`
+  of the other axis is a rate.
 - :math:`s,\Omega_D`: what holding the force leaves. Beyond what the law makes up for, a held force acts as
   :math:`Z+\epsilon ZPZ` on the device :math:`Z(j\omega)=K-\omega^2+j\omega(D+2\Omega S)`, with
   :math:`\epsilon=h^4/720,\;P=K+3\omega^2-3j\omega(D+2\Omega S)`. Of that a share of the rate is at most
@@ -17,8 +18,8 @@ r"""By how much an adaptive controller of two axes misreads a rate that keeps st
   repeats of the deviation is measured at a sample and acts half a sample later. The factor is that of set B.
 
 The swing and the learning hold the thermal noise as well. Masses, forces and sensors count as nominal: an error of
-theirs is one of the scale, and nothing here tells it. The claim is withdrawn as soon as the rate has gone twice as far, so a
-rate that changes is not trusted until whole beats agree again.
+theirs is one of the scale, and nothing here tells it. The claim is withdrawn as soon as the rate has gone twice as far,
+so a rate that changes is not trusted until whole beats agree again.
 """
 
 from __future__ import annotations
