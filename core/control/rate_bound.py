@@ -43,6 +43,7 @@ UNKNOWN_DPS = 1e6
 def fill_told(p: Told, a: Asked, g: Gains, dt_ms: float, cancels: bool) -> None:
     """Pack what bounds the rate; ``cancels``: the law multiplies by the measured motion, and puts a model in place."""
     p.tells = a.beat_ms <= SLOW_MS and min(g.stiffness, g.damping, g.rate) > 0.0
+    p.beats_ms, p.of_stiffness, p.of_damping, p.of_rate = math.inf, 0.0, 0.0, 0.0
     if p.tells:
         p.beats_ms = math.ceil(SHORTEST_MS / a.beat_ms) * a.beat_ms
         samples = p.beats_ms / dt_ms
