@@ -59,9 +59,9 @@ class Allan(Block):
         \tau=m\tau_0=2^j\tau_0
 
     with the M pairs of neighbouring means over m intervals that begin :math:`\max(1,m/8)` intervals apart: all pairs
-    that there are up to 8 intervals, and one in m/8 from 16 intervals on. Means of pairs go from stage to stage, so that
-    a record of any length takes 17 short rings; all pairs of the longest octave would take a million means. An interval
-    in which the rate is not a number is a gap: no average spans it.
+    that there are up to 8 intervals, and one in m/8 from 16 intervals on. Means of pairs go from stage to stage, so
+    that a record of any length takes 17 short rings; all pairs of the longest octave would take a million means. An
+    interval in which the rate is not a number is a gap: no average spans it.
     """
 
     title = "Allan deviation"
