@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from core.block import Block, BlockParams, Context, Equation, Stage, parameter
-from core.control.rate_bound import fill_told
+from core.control.rate_bound import fill_basis
 from core.control.two_axis import two_axis
 from core.control.two_axis_adaptation import adapt, asked, fill_law, held, push, velocity_errors, write
 from core.control.two_axis_estimates import EstimatePorts, Estimates, PackedLaw
 from core.units import hz_of_rad_ms
 
 USUAL_SHARE = 0.2213
-"""Frequency of the motion asked for along x over that of the axis, unless given: well below the resonances."""
+"""Frequency of the motion asked for along x over the frequency of the axis, unless given: well below the resonances."""
 USUAL_RATIO = 1.2247
 """Frequency along y over that along x, unless given: that of the axes of set A. Axes alike would hardly beat."""
 USUAL_FORCE_UN, USUAL_UM, USUAL_SIZES = 400.0, 1.0, 1.2
@@ -20,7 +20,7 @@ USUAL_FORCE_UN, USUAL_UM, USUAL_SIZES = 400.0, 1.0, 1.2
 PACE = 0.4
 """Most rad in a sample at which the usual gains learn."""
 VELOCITY, STIFFNESS = 1.061, 1.125
-"""Usual gain of the velocity error over the pace, and that of the stiffness over its square; set A: 20/ms, 400/ms^2."""
+"""Usual gain of the velocity error over the pace, and of the stiffness over its square; set A: 20/ms, 400/ms^2."""
 
 ADAPTATION = Equation(
     "adaptation",
@@ -140,7 +140,7 @@ class AdaptiveRate(Block):
             VELOCITY * pace if velocity is None else velocity,
             STIFFNESS * pace * pace if stiffness is None else stiffness,
         )
-        fill_told(p.told, p.asked, p.gains, context.dt_ms, cancels=False)
+        fill_basis(p.basis, p.asked, p.gains, context.dt_ms, cancels=False)
         return p
 
     @staticmethod

@@ -6,7 +6,7 @@ from typing import Any
 
 from core.block import Block, BlockParams, Context, Equation, Stage, parameter
 from core.control.adaptive_rate import SAMPLE
-from core.control.rate_bound import fill_told
+from core.control.rate_bound import fill_basis
 from core.control.two_axis import two_axis
 from core.control.two_axis_adaptation import adapt, asked, fill_law, held, push, velocity_errors, write
 from core.control.two_axis_estimates import EstimatePorts, Estimates, PackedLaw
@@ -116,7 +116,7 @@ class MimoAdaptive(Block):
         um = params.amplitude_x_um, params.amplitude_y_um
         fill_law(p, params, context, um, hz, 1.0 / pace, params.velocity_gain, params.stiffness_gain)
         p.gains.rate *= 2.0  # its law has 2 g_O
-        fill_told(p.told, p.asked, p.gains, context.dt_ms, cancels=True)
+        fill_basis(p.basis, p.asked, p.gains, context.dt_ms, cancels=True)
         return p
 
     @staticmethod

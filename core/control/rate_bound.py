@@ -1,9 +1,9 @@
-r"""By how much an adaptive controller of two axes misreads a rate that keeps still, told from its own estimates.
+r"""The bound on the error of a constant rate, from the estimates of an adaptive controller of two axes.
 
 .. math:: B=2\Delta_\Omega+2\,|\tilde\Omega|+s\,|\hat\Omega|+2\,(\Omega_D+\Omega_n)
 
 - :math:`\Delta_\Omega`: what the rate swung by in the last whole beats, 50 ms at least.
-- :math:`\tilde\Omega`: what it still has to learn. The changes of
+- :math:`\tilde\Omega`: what is still to be learned. The changes of
   :math:`\hat k_{xy},\hat n,\hat d_{xy},\hat\Omega` over these beats, over their gains, are the means of the products
   :math:`\dot e^Tq_r,\;\dot e^T\dot q_r`, and so the part of each velocity error that has the frequency of the other
   axis, as phasor :math:`E`. The force that would take it away is :math:`E_i\,(\gamma-j(k_i-\omega^2)/\omega)`, with the
@@ -15,18 +15,18 @@ r"""By how much an adaptive controller of two axes misreads a rate that keeps st
   :math:`s=\epsilon(k_{xx}+k_{yy}+\omega_x^2+\omega_y^2)^2`, and the damping reads as
   :math:`\Omega_D=\tfrac54\epsilon\,|\omega_y^2-\omega_x^2|\,|KD+DK|_{xy}`.
 - :math:`\Omega_n=\tfrac14h^2\sqrt{\omega_x\omega_y}\,|\hat n|`, for a law that multiplies by the measured motion: what
-  repeats of the deviation is measured at a sample and acts half a sample later. The factor is that of set B.
+  repeats of the deviation is measured at a sample and acts half a sample later. The factor is measured on set B.
 
 The swing and the learning hold the thermal noise as well. Masses, forces and sensors count as nominal: an error of
-theirs is one of the scale, and nothing here tells it. The claim is withdrawn as soon as the rate has gone twice as far,
-so a rate that changes is not trusted until whole beats agree again.
+theirs is an error of the scale, and the bound does not hold it. The claim is withdrawn as soon as the rate has gone
+twice as far, so a rate that changes is not trusted until whole beats agree again.
 """
 
 from __future__ import annotations
 
 import math
 
-from core.control.two_axis_estimates import Asked, EstimatePorts, Estimates, Gains, PackedLaw, Told
+from core.control.two_axis_estimates import Asked, Basis, EstimatePorts, Estimates, Gains, PackedLaw
 from core.kernel import inlined
 from core.units import RAD_MS_PER_DEG_S
 
@@ -40,11 +40,11 @@ UNKNOWN_DPS = 1e6
 """Bound while nothing can be said, deg/s: 2800 turns a second."""
 
 
-def fill_told(p: Told, a: Asked, g: Gains, dt_ms: float, cancels: bool) -> None:
+def fill_basis(p: Basis, a: Asked, g: Gains, dt_ms: float, cancels: bool) -> None:
     """Pack what bounds the rate; ``cancels``: the law multiplies by the measured motion, and puts a model in place."""
-    p.tells = a.beat_ms <= SLOW_MS and min(g.stiffness, g.damping, g.rate) > 0.0
+    p.exciting = a.beat_ms <= SLOW_MS and min(g.stiffness, g.damping, g.rate) > 0.0
     p.beats_ms, p.of_stiffness, p.of_damping, p.of_rate = math.inf, 0.0, 0.0, 0.0
-    if p.tells:
+    if p.exciting:
         p.beats_ms = math.ceil(SHORTEST_MS / a.beat_ms) * a.beat_ms
         samples = p.beats_ms / dt_ms
         p.of_stiffness, p.of_damping, p.of_rate = (1.0 / (gain * samples) for gain in (g.stiffness, g.damping, g.rate))
@@ -55,13 +55,13 @@ def fill_told(p: Told, a: Asked, g: Gains, dt_ms: float, cancels: bool) -> None:
 
 @inlined
 def unlearned(p: PackedLaw, s: Estimates) -> float:
-    """Return the rate that is still to be learned, told from the changes since the beats began."""
+    """Return the rate that is still to be learned, from the changes since the beats began."""
     a, c = p.asked, s.claim
-    stiffness, skew = p.told.of_stiffness * (c.kxy - s.kxy), p.told.of_stiffness * (c.skew - s.skew)
-    damping, rate = p.told.of_damping * (c.dxy - s.dxy), 0.5 * p.told.of_rate * (c.omega - s.omega)
+    stiffness, skew = p.basis.of_stiffness * (c.kxy - s.kxy), p.basis.of_stiffness * (c.skew - s.skew)
+    damping, rate = p.basis.of_damping * (c.dxy - s.dxy), 0.5 * p.basis.of_rate * (c.omega - s.omega)
     square_x, square_y = a.omega_x * a.omega_x, a.omega_y * a.omega_y
     kxx, kyy = s.kxx, s.kyy
-    if p.told.cancelled != 0.0:
+    if p.basis.cancelled != 0.0:
         kxx, kyy = square_x, square_y
     speed_x, speed_y = a.amplitude_x * a.omega_x, a.amplitude_y * a.omega_y
     # the velocity error of x at the frequency of y, and that of y at the frequency of x
@@ -78,16 +78,16 @@ def misread(p: PackedLaw, s: Estimates) -> float:
     stiff = abs(s.kxx) + abs(s.kyy)
     both = stiff + square_x + square_y
     mixed = abs(s.kxy) * (abs(s.dxx) + abs(s.dyy)) + abs(s.dxy) * stiff
-    offset = 1.25 * p.told.held * abs(square_y - square_x) * mixed + p.told.repeats * abs(s.skew)
-    return p.told.held * both * both * abs(s.omega) + 2.0 * offset
+    offset = 1.25 * p.basis.held * abs(square_y - square_x) * mixed + p.basis.repeats * abs(s.skew)
+    return p.basis.held * both * both * abs(s.omega) + 2.0 * offset
 
 
 @inlined
 def judge(p: PackedLaw, s: Estimates, x: EstimatePorts) -> None:
     """Claim a bound after whole beats, withdraw it when the rate leaves it, and say whether the rate is trusted."""
     c = s.claim
-    over = x.time_ms - c.begun_ms >= p.told.beats_ms
-    if over and p.told.tells != 0.0:
+    over = x.time_ms - c.begun_ms >= p.basis.beats_ms
+    if over and p.basis.exciting != 0.0:
         c.bound = 2.0 * (c.most - c.least) + 2.0 * unlearned(p, s) + misread(p, s)
         c.of = s.rate
         c.made = 1.0

@@ -83,7 +83,7 @@ def asked(p: Asked, t: float) -> tuple[float, float, float, float]:
 
 @inlined
 def held(p: Asked, t: float) -> tuple[float, float, float, float]:
-    """Return the motion asked for as a held force has to be told of it: half a sample later, and larger."""
+    """Return the motion asked for as a held force needs it: half a sample later, and larger."""
     q1, q2, v1, v2 = asked(p, t + p.ahead_ms)
     return p.larger_x * q1, p.larger_y * q2, p.larger_x * v1, p.larger_y * v2
 

@@ -13,7 +13,7 @@ NOT_EXCITING = (
 
 
 class Asked(Record):
-    """Amplitudes, frequencies in turns per ms and in rad per unit of time, what a held force is made larger by.
+    """Amplitudes, frequencies in turns per ms and in rad per unit of time, by how much a held force is larger.
 
     Half a sample, the unit of time, a twelfth of the squared sample in that unit, a beat.
     """
@@ -33,7 +33,7 @@ class Asked(Record):
 
 
 class Gains(Record):
-    """Gains per sample of stiffness, damping and rate, and that of the velocity error."""
+    """Gains per sample of stiffness, damping and rate, and the gain of the velocity error."""
 
     stiffness: float
     damping: float
@@ -41,10 +41,10 @@ class Gains(Record):
     velocity: float
 
 
-class Told(Record):
-    """Whether the motion tells the rate; whole beats; what changes over them tell of errors; shares of the bound."""
+class Basis(Record):
+    """Whether the motion is exciting; whole beats; errors per change in them; whether a model is in place; factors."""
 
-    tells: float
+    exciting: float
     beats_ms: float
     of_stiffness: float
     of_damping: float
@@ -92,7 +92,7 @@ class PackedLaw(Record):
 
     asked: Asked
     gains: Gains
-    told: Told
+    basis: Basis
     force_x: float
     force_y: float
     mass_x: float
