@@ -44,6 +44,11 @@ class ForceToRebalance(Block):
         Stage("Force", "in_step with_velocity", "y", ("force",)),
         Stage("Rate", "in_step with_velocity amplitude frequency", "rate quadrature", ("rate", "thermal floor")),
     )
+    weaknesses = (
+        "One frequency does not tell the rate from the cross damping, so d_xy/2m_c is read as a rate: 57 deg/s on set "
+        "A, 216 on set B. Nothing says by how much the rate is off.",
+        "The loop needs 2m/(0.436 d) to settle, 0.46 s on set A.",
+    )
 
     class Params(BlockParams):
         """The loop and its phase."""

@@ -83,6 +83,10 @@ class SenseAxisSync(Block):
             "partner_rate phase_difference",
         ),
     )
+    weaknesses = (
+        "At rest one frequency does not tell the rate from the cross damping: d_xy/2m_c is read as a rate, 57 deg/s on "
+        "set A, 216 on set B at 1 MHz and -118 at 100 kHz. Nothing says by how much the rate is off.",
+    )
 
     class Params(BlockParams):
         """What y follows, and how fast."""

@@ -59,6 +59,8 @@ class WholeAngle(Block):
         "A damping that a fault makes unequal turns the line as a rate does, up to half the difference.",
         "A held force tunes modes that lie far apart only roughly: with 674 Hz between them 100 deg/s reads 4 % high "
         "at 100 kHz, 0.24 % at 200 kHz and 0.01 % at 500 kHz.",
+        "Modes of 18 kHz are too fast to be tuned at 100 kHz: set B reads almost nothing of any rate, and nothing says "
+        "so; at 1 MHz it reads within 3 deg/s.",
     )
 
     class Params(BlockParams):

@@ -28,7 +28,7 @@ LONGEST = 1 << 18
 """Samples of a step response that are transformed."""
 FINE = 0.01
 """Bandwidth over the rate of the samples up to which those between them are not missed."""
-READ = ("rate", "quadrature", "angle", "trusted")
+READ = ("rate", "quadrature", "angle", "trusted", "bound")
 """Outputs of a controller that figures are made of."""
 
 Levels = list[tuple[int, int]]
@@ -58,7 +58,11 @@ def rate_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -
     if (quadrature := trace.get(f"{driving}.quadrature")) is not None:
         figures["rate.quadrature_dps"] = mean(quadrature[_settled(pieces[-1], stretch)])
     if (trusted := trace.get(f"{driving}.trusted")) is not None:
-        figures["gyro.trusted"] = float(trusted[-1])
+        for step, (_, end) in enumerate(pieces, 1):
+            figures |= _both("gyro.trusted", step, len(pieces), float(trusted[end - 1]))
+    if (bound := trace.get(f"{driving}.bound")) is not None:
+        for step, piece in enumerate(pieces, 1):
+            figures |= _both("gyro.bound_dps", step, len(pieces), float(bound[_settled(piece, stretch)].max()))
     if (angle := trace.get(f"{driving}.angle")) is not None and isinstance(device := board.spec.nominal, TwoAxis):
         gain = device.coriolis_mass / math.sqrt(device.mass * device.mass_y)
         first = pieces[0][0]

@@ -50,8 +50,9 @@ def test_a_force_over_its_limit_at_the_crests_is_endured() -> None:
 
 
 def test_an_adaptive_law_that_runs_away_stops_the_board() -> None:
-    """Its usual gains are for modes four times slower than those of this device."""
-    values = {"slots": {"drive": "drive_tracking"}, "controller": {"kind": "adaptive_rate"}}
+    """Twenty times its usual gain of the velocity error pushes back more than was too much."""
+    law = {"kind": "adaptive_rate", "velocity_gain": 400.0}
+    values = {"slots": {"drive": "drive_tracking"}, "controller": law}
     board = make({**BENCH, **values, "drive": {}, "guard": {}}, base={})
     play(board, 50_000)
-    assert board.trip is not None and board.trip.signal == "drive.y.force"
+    assert board.trip is not None and board.trip.signal == "drive.x.force"

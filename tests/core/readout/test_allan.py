@@ -128,3 +128,16 @@ def test_compiled_has_the_bits_of_plain_python():
     )
     assert np.array_equal(fast.w, slow.w) and np.count_nonzero(curve(fast)[0]) > 8
     assert np.array_equal(fast.s[1], slow.s[1])
+
+
+def test_the_card_says_which_pairs_are_left_out():
+    """All overlapping pairs are allantools' own; the read-out takes one in m/8, and says by how much that differs."""
+    row, rate = listening(2048)
+    deviations, averages = curve(row)
+    for level in range(4, 9):
+        m = 2**level
+        _, found, _, counts = allantools.oadev(rate, rate=1e3, data_type="freq", taus=[m * 1e-3])
+        assert averages[level] == pytest.approx(counts[0] / (m / 8), abs=1.0)
+        assert abs(deviations[level] / found[0] - 1.0) < 0.05
+    assert "overlapping" not in Allan.title.lower()
+    assert any("differs from that of all overlapping pairs" in text for text in Allan.weaknesses)

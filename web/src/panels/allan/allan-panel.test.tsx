@@ -48,6 +48,7 @@ it("shows the record, the plot over its averaging times, and the figures with th
   mountPanel();
   const plot = await screen.findByRole("img", { name: /over 9\saveraging times$/ });
   expect(screen.getByText(/^Record of 12\.3[45]\ss$/)).toBeVisible();
+  expect(screen.getByText("Pairs of means begin an eighth of the averaging time apart.")).toBeVisible();
   expect(screen.getByRole("row", { name: /^Angle random walk N/ })).toHaveTextContent(/tactical grade/);
   expect(screen.getByRole("row", { name: /^Bias instability B/ })).toHaveTextContent("The record is too short.");
   expect(penOf(plot).words).toEqual(expect.arrayContaining(["averaging time", "deviation, deg/h"]));

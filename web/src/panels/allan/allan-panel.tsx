@@ -76,6 +76,7 @@ function Readout({ bench, name }: { bench: string; name: string }) {
             ? `Record of ${formatIn(readout.record_s, "s", readout.record_s < 100 ? 2 : 0)}`
             : (error?.body.message ?? "Asking")}
         </span>
+        <span>Pairs of means begin an eighth of the averaging time apart.</span>
         {limited && (
           <Button
             size="compact-xs"
