@@ -24,13 +24,14 @@ from server.bench.experiment import Experiment, rebuilt, repeat
 from server.bench.forks import Forks
 from server.bench.hiding import STOPPED
 from server.bench.maker import Maker
-from server.bench.making import prepare, usual_scale
+from server.bench.making import check, is_id, prepare, usual_scale
 from server.bench.recorder import Recorder
 from server.bench.room import Room
 from server.bench.session import Session
 from server.bench.status import Opened
 from server.bench.tape import REFUSAL, Tape
 from server.bench.watch import KeptWatch
+from server.computing.computing import Computing
 from server.errors import ApiError, not_found
 from server.metrics import Metrics
 from server.settings import Settings
@@ -48,6 +49,8 @@ class Benches:
         Limits.
     metrics : Metrics
         Where benches and commands are counted.
+    computing : Computing
+        Where a scenario is read before this process reads it.
     witness : callable, optional
         Hears of every event of every bench.
     """
@@ -57,9 +60,11 @@ class Benches:
         engine: Engine,
         settings: Settings,
         metrics: Metrics,
+        computing: Computing,
         witness: Callable[[Session, Event], None] | None = None,
     ) -> None:
         self._engine, self._settings, self._metrics, self._witness = engine, settings, metrics, witness
+        self._computing = computing
         self.maker = Maker(settings, metrics, engine.clock)
         self._sessions: dict[str, Session] = {}
         self.forks = Forks(self, engine, settings.max_run_ticks)
@@ -84,6 +89,12 @@ class Benches:
                 "bench", bench_id, "list the live ones at /api/v1/benches; one that was let go comes back by /reopen"
             )
         return session
+
+    async def check(self, source: str | dict[str, Any], values: dict[str, Any]) -> None:
+        """Refuse a scenario of which no bench can be made, or which takes too much, before this process reads it."""
+        if values or not is_id(source):
+            units = {one.name: {"source": one.source} for one in self.maker.units.all()}
+            await self._computing.call(check, source, values, units)
 
     async def create(
         self,
@@ -245,6 +256,8 @@ class Benches:
                 seed = session.board.spec.seed
                 values = {"seed": seed, **command.values}
                 with kept_with(command.values):
+                    if command.values:
+                        await self.check(session.scenario.document, values)
                     scenario, board = await asyncio.to_thread(prepare, session.scenario.document, values, None)
                 event = await self._engine.call(session.reset, scenario, board, actor, command.before_tick)
             else:

@@ -15,8 +15,9 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
-from core.own.admission import admit
+from core.own.admission import Terms, admit
 from server.bench.blind import HINT, REFUSAL
+from server.computing.asker import asks
 from server.errors import SHARD, ApiError, ErrorBody, reply
 from server.people.access import SOCKET, Need, need_of, serves_blind
 from server.people.driving import Driving
@@ -66,6 +67,8 @@ class Gate:
     units : str
         Whose scenarios may carry units of their own: nobody's (``off``), those of the teacher, or those of
         all people it knows (``everyone``).
+    student_events : int
+        Events that a scenario of a student may have.
     """
 
     def __init__(
@@ -80,11 +83,13 @@ class Gate:
         prefix: str = "",
         frames: Frames | None = None,
         units: str = "teacher",
+        student_events: int = 1000,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         self._app, self._identity, self._people, self._driving = app, identity, people, driving
         self._origin, self._is_blind = origin, is_blind
         self._open, self._prefix, self._frames, self._units = open_paths, prefix, frames, units
+        self._student_events = student_events
         self._requests = Buckets(REQUESTS_PER_S, REQUESTS_AT_ONCE, clock=clock)
         self._sockets: Counter[str] = Counter()
 
@@ -95,7 +100,8 @@ class Gate:
             return
         connection = HTTPConnection(scope)
         person = scope["person"] = self._person(connection)
-        admit(self._units_refused(person))
+        admit(self._terms(person))
+        asks(person)
         is_post_of_others = scope["type"] == "http" and self._frames is not None and scope["path"] in self._frames.posts
         refusal = self._origin.refusal(connection, self._has_bearer(connection), is_post_of_others)
         if refusal:
@@ -134,6 +140,11 @@ class Gate:
         if self._identity.knows(connection):
             return TEACHER
         return self._people.by_secret(self._identity.session_of(connection))
+
+    def _terms(self, person: Person | None) -> Terms:
+        """Return what a scenario of this person may carry."""
+        is_teacher = person is not None and person.is_teacher
+        return Terms(self._units_refused(person), None if is_teacher else self._student_events)
 
     def _units_refused(self, person: Person | None) -> str:
         """Return why this person may not bring units of their own; nothing where they may."""
