@@ -173,6 +173,7 @@ def create_app(settings: Settings) -> FastAPI:
         prefix=public.prefix,
         frames=frames,
         units=settings.units,
+        student_events=settings.student_events,
         clock=service.clock,
     )
     app.add_middleware(errors.CatchAll)

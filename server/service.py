@@ -21,6 +21,7 @@ from server.bench.session import Session
 from server.bench.staging import Staging
 from server.bench.watchdog import Watchdog
 from server.clock import Clock, ManualClock
+from server.computing.computing import Computing
 from server.idling import Idling
 from server.kernels import Kernels
 from server.lag import Lateness, probe
@@ -88,7 +89,8 @@ class Service:
         self.recordings = Recordings(self.database, settings.data / "recordings", settings.disk_reserve_bytes, shard)
         self.parameter_sets = ParameterSets(self.shared)
         self.people, self.audit = People(self.database, shard), Audit(self.database)
-        self.benches = Benches(self.engine, settings, self.metrics, self.audit.witness)
+        self.computing = Computing(self.clock)
+        self.benches = Benches(self.engine, settings, self.metrics, self.computing, self.audit.witness)
         self.units = self.benches.maker.units
         self.driving = Driving(self.people, self.hub, self._note, self._go_without_driver, self.clock)
         self.hub.company = self.driving.company
@@ -178,6 +180,7 @@ class Service:
         lasting = (self.audit, self.checkpoints, self.classes, self.driving, self.reopening, self.sheets)
         tasks += [asyncio.create_task(part.run(self.clock)) for part in lasting]
         tasks.append(asyncio.create_task(self.queue.warm(self.kernels.compiled)))
+        tasks.append(asyncio.create_task(self.computing.warm(self.kernels.compiled)))
         # where pandas is installed, pyarrow loads it with the first array, which takes longer than a recording may wait
         tasks.append(asyncio.create_task(asyncio.to_thread(pa.array, [0.0])))
         self.figures.start(self.kernels.compiled)
@@ -193,6 +196,7 @@ class Service:
             if self.viewers is not None:
                 await self.viewers.close()
             await self.figures.stop()
+            self.computing.close()
             await self.queue.close()
             self.sweeps.close()
             await self.checkpoints.write()

@@ -72,6 +72,7 @@ class Settings(BaseSettings):
     student_ticks_per_s: int = Field(
         20_000, ge=100, description="Ticks a second to which the time scale of a student's bench is limited."
     )
+    student_events: int = Field(1000, ge=1, description="Events that a scenario of a student may have.")
     max_links: int = Field(10_000, ge=0, description="Experiments and layouts kept by a link.")
     max_clients: int = Field(512, ge=1, description="Open streams over all benches.")
     max_clients_per_bench: int = Field(256, ge=1, description="Open streams of one bench.")

@@ -95,7 +95,7 @@ class Declaration:
 
     def _new(self, node: ast.AST, name: str) -> None:
         """Refuse a name that means something already."""
-        if name in self.names or name.startswith("__"):
+        if name in self.names or name.startswith("__") or (name.startswith("_") and isinstance(node, ast.ImportFrom)):
             refuse(node, f"{name} is declared already" if name in self.names else f"{name} is no name of a unit's own")
 
     def _constant(self, target: ast.expr, node: ast.expr) -> None:

@@ -7,21 +7,43 @@ value to anything else.
 from __future__ import annotations
 
 import ast
+import inspect
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from core.block import Block, BlockParams, Context, Oscillator
 from core.errors import InputError
-from core.own.offered import MATHEMATICS
+from core.kernel import is_kernel
+from core.own.kinds import Number, signature
+from core.own.offered import MATHEMATICS, PYTHON
 from core.own.text import refuse
-from core.own.values import BINARY, COMPARED, MADE, Above, Mathematics, Own, as_float, as_read, is_number, public, whole
-from core.record import RECORD, SCALAR, Record, Records
+from core.own.values import (
+    BINARY,
+    COMPARED,
+    MADE,
+    Above,
+    Mathematics,
+    Own,
+    as_float,
+    as_read,
+    is_number,
+    is_scalar,
+    public,
+    whole,
+)
+from core.plain import plain
+from core.record import RECORD, SCALAR, Field, Record, Records
 
-MOST_OPERATIONS = 200_000
+MOST_OPERATIONS = 100_000
+"""Operations of all declarations of a unit, and of one call of a method: some tenths of a second."""
 MOST_ITEMS = 10_000
 DEEPEST_CALLS = 10
+COST_OF_CALL = 30
+"""Operations of a call of a library function; the items it is given and makes count beside."""
+COST_OF_BASE = 1_000
+"""Operations that the ``pack`` or ``state`` of a base counts as."""
 
 
 class Evaluator:
@@ -38,8 +60,7 @@ class Evaluator:
         self._left, self._deep = MOST_OPERATIONS, 0
 
     def constant(self, node: ast.expr) -> Any:
-        """Return the value of an expression of a declaration."""
-        self._left = MOST_OPERATIONS
+        """Return the value of an expression of a declaration; all of a unit share one count."""
         return self.value(node, {})
 
     def call(self, function: ast.FunctionDef, arguments: Sequence[Any], block: type[Block]) -> Any:
@@ -93,10 +114,23 @@ class Evaluator:
         except (ArithmeticError, ValueError, TypeError, IndexError, AttributeError) as error:
             refuse(node, f"cannot be worked out: {error}")
 
-    def _count(self, node: ast.AST) -> None:
-        self._left -= 1
+    def _count(self, node: ast.AST, operations: int = 1) -> None:
+        self._left -= operations
         if self._left < 0:
             refuse(node, f"takes more than {MOST_OPERATIONS} operations")
+
+    def _weigh(self, node: ast.AST, *values: Any) -> None:
+        """Count the items of lists, also of lists in lists: a list may be in another many times."""
+        inside = [*values]
+        while inside:
+            one = inside.pop()
+            if isinstance(one, list | tuple):
+                self._count(node, len(one))
+                inside.extend(one)
+            elif isinstance(one, str | np.ndarray | Records):
+                self._count(node, len(one) // 8)
+            elif isinstance(one, Record):
+                self._count(node, one.layout.size // 8)
 
     def _constant(self, node: ast.Constant, local: dict[str, Any]) -> Any:
         if isinstance(node.value, bool | float | str) or node.value is None:
@@ -118,19 +152,25 @@ class Evaluator:
             return getattr(owner.block, name)
         if isinstance(owner, Above) and name in ("pack", "state"):
             base = getattr(super(owner.block, owner.block), name)
+            self._count(node, COST_OF_BASE)
             return lambda params, context: base(params, context)
         if isinstance(owner, type) and issubclass(owner, Record) and name in ("blank", "zeros"):
             made = getattr(owner, name)
             return lambda: made()
-        if isinstance(owner, Record) and name in {field.name for field in owner.layout.fields}:
+        if isinstance(owner, Record) and self._field(node, owner, name) is not None:
             return getattr(owner, name)
         if isinstance(owner, BlockParams) and name in type(owner).model_fields:
             return getattr(owner, name)
-        if isinstance(owner, Context | Oscillator) and name in public(owner):
+        if isinstance(owner, Context | Oscillator) and name in public(cast(Any, type(owner))):
             fact = getattr(owner, name)
             if fact is None or isinstance(fact, int | float | str | tuple | Oscillator | BlockParams):
                 return fact
         return refuse(node, f"has no {name} that a unit may read")
+
+    def _field(self, node: ast.AST, owner: Record, name: str) -> Field | None:
+        """Return a field of a record, or nothing."""
+        self._count(node, len(owner.layout.fields) // 8)
+        return next((field for field in owner.layout.fields if field.name == name), None)
 
     def _subscript(self, node: ast.Subscript, local: dict[str, Any]) -> Any:
         owner, index = self.value(node.value, local), self.value(node.slice, local)
@@ -147,6 +187,7 @@ class Evaluator:
         if len(node.generators) != 1 or node.generators[0].is_async:
             refuse(node, "has more than one for")
         generator, found = node.generators[0], []
+        self._count(node, len(local) // 8)
         inner = dict(local)
         for item in self._items(self.value(generator.iter, local), node):
             self._store(generator.target, item, inner)
@@ -191,6 +232,10 @@ class Evaluator:
             right = self.value(part, local)
             if type(sign) not in COMPARED:
                 refuse(node, f"a comparison {type(sign).__name__} cannot stand here")
+            is_alike = isinstance(sign, ast.Is | ast.IsNot)
+            is_same = isinstance(sign, ast.Eq | ast.NotEq) and is_scalar(left) and is_scalar(right)
+            if not (is_alike or is_same or (is_number(left) and is_number(right))):
+                refuse(node, "compares something that is no number")
             if not COMPARED[type(sign)](left, right):
                 return False
             left = right
@@ -209,12 +254,58 @@ class Evaluator:
             return self._own(node, function, arguments)
         if not callable(function) or (isinstance(function, type) and function not in MADE):
             refuse(node, "is called and is no function")
-        if function is range and len(range(*arguments)) > MOST_ITEMS:
-            refuse(node, f"counts more than {MOST_ITEMS}")
+        self._weigh(node, *arguments, *named.values())
+        if function in PYTHON:
+            return self._python(node, function, arguments, named)
+        self._count(node, COST_OF_CALL)
+        if is_kernel(function):
+            return self._kernel(node, function, arguments, named)
+        if inspect.isfunction(function):
+            given = inspect.signature(function).bind(*arguments, **named).arguments
+            for name, value in given.items():
+                if function.__annotations__.get(name) in ("float", "int") and not isinstance(value, int | float):
+                    refuse(node, f"{name} must be a number")
         result = function(*arguments, **named)
-        if isinstance(result, int) and not isinstance(result, bool):
-            return whole(node, result)
-        return list(self._items(result, node)) if isinstance(result, zip | enumerate | range) else result
+        self._weigh(node, result)
+        return whole(node, result) if isinstance(result, int) and not isinstance(result, bool) else result
+
+    def _python(self, node: ast.Call, function: Any, arguments: list[Any], named: dict[str, Any]) -> Any:
+        """Call a function of Python itself; it takes numbers, or lists that have been counted."""
+        least, most = PYTHON[function]
+        is_strict = function is zip and [*named] == ["strict"]
+        if not least <= len(arguments) <= most or (named and not is_strict):
+            refuse(node, f"{function.__name__} is given {len(arguments) + len(named)} arguments that do not go with it")
+        if function in (list, tuple, zip, enumerate):
+            lists = [self._items(one, node) for one in (arguments[:1] if function is enumerate else arguments)]
+            made = function(*lists, *arguments[len(lists) :], **named)
+            return made if isinstance(made, tuple) else self._items(made, node)
+        if function in (min, max, sum):
+            is_of_list = function is sum or len(arguments) == 1
+            numbers = [*self._items(arguments[0], node), *arguments[1:]] if is_of_list else arguments
+            if not all(isinstance(one, int | float) for one in numbers):
+                refuse(node, f"{function.__name__} takes numbers")
+        elif function not in (len, bool) and not all(map(is_scalar, arguments)):
+            refuse(node, f"{function.__name__} takes a number")
+        elif function in (int, float, round, abs, range) and any(isinstance(one, str) for one in arguments):
+            refuse(node, f"{function.__name__} takes no text")
+        result = function(*arguments)
+        if function is range:
+            return self._items(result, node)
+        return whole(node, result) if isinstance(result, int) and not isinstance(result, bool) else result
+
+    def _kernel(self, node: ast.Call, function: Any, arguments: list[Any], named: dict[str, Any]) -> Any:
+        """Call a kernel of the library as plain Python: here nothing is compiled."""
+        taken, _ = signature(function)
+        if named or len(arguments) != len(taken):
+            refuse(node, f"takes {len(taken)} arguments by their place")
+        given = []
+        for value, kind in zip(arguments, taken, strict=True):
+            fits = isinstance(value, int | float) if isinstance(kind, Number) else isinstance(value, kind)  # type: ignore[arg-type]
+            if not fits:
+                refuse(node, "is given something of another kind")
+            given.append(float(value) if isinstance(kind, Number) else value)
+        with np.errstate(all="ignore"):
+            return plain(function)(*given)
 
     def _own(self, node: ast.Call, function: ast.FunctionDef, arguments: Sequence[Any]) -> Any:
         """Call a function of the unit."""
@@ -227,10 +318,15 @@ class Evaluator:
         return result
 
     def _items(self, value: Any, node: ast.AST) -> Sequence[Any]:
-        if not isinstance(value, list | tuple | range | zip | enumerate):
+        """Return the items of a list, each of them counted."""
+        if isinstance(value, zip | enumerate):  # of lists that are counted
+            value = list(value)
+        if not isinstance(value, list | tuple | range | np.ndarray | Records):
             refuse(node, "goes over something that is no list")
-        items = list(value)
-        return items if len(items) <= MOST_ITEMS else refuse(node, f"has more than {MOST_ITEMS} items")
+        if len(value) > MOST_ITEMS:
+            refuse(node, f"has more than {MOST_ITEMS} items")
+        self._count(node, len(value))
+        return list(value)
 
     def _store(self, target: ast.expr, value: Any, local: dict[str, Any]) -> None:
         if isinstance(target, ast.Name):
@@ -243,11 +339,12 @@ class Evaluator:
                 self._store(part, one, local)
         elif isinstance(target, ast.Attribute):
             owner = self.value(target.value, local)
-            if not isinstance(owner, Record) or target.attr not in {field.name for field in owner.layout.fields}:
+            field = self._field(target, owner, target.attr) if isinstance(owner, Record) else None
+            if field is None:
                 refuse(target, f"has no {target.attr} that a unit may write")
-            kind = next(field.kind for field in owner.layout.fields if field.name == target.attr)
-            if kind not in (SCALAR, RECORD) or isinstance(value, Record) != (kind == RECORD):
+            if field.kind not in (SCALAR, RECORD) or isinstance(value, Record) != (field.kind == RECORD):
                 refuse(target, "is given something of another kind")
+            self._weigh(target, value)
             setattr(owner, target.attr, value if isinstance(value, Record) else as_float(target, value))
         elif isinstance(target, ast.Subscript):
             owner, index = self.value(target.value, local), self.value(target.slice, local)

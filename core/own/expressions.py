@@ -171,7 +171,7 @@ class Expressions:
         if not isinstance(kind, Numbers | Parts):
             refuse(node, "is no vector")
         is_known = True
-        if isinstance(kind, Numbers) and _is_int_of_data(node.slice):
+        if isinstance(kind, Numbers) and is_int_of_data(node.slice):
             index = self.number(node.slice.args[0])  # type: ignore[attr-defined]
             is_known = False
             if kind.count == 0:
@@ -264,7 +264,7 @@ class Expressions:
         return NUMBER, ast.IfExp(self.truth(node.test), self.number(node.body), self.number(node.orelse))
 
 
-def _is_int_of_data(node: ast.expr) -> bool:
+def is_int_of_data(node: ast.expr) -> bool:
     """Say whether an index is ``int(...)``."""
     return (
         isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "int" and len(node.args) == 1

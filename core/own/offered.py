@@ -56,10 +56,13 @@ OFFERED: dict[str, tuple[str, ...]] = {
 MATHEMATICS = {"sqrt": math.sqrt, "copysign": math.copysign, "isfinite": math.isfinite, "pi": math.pi, "inf": math.inf}
 """What ``math`` offers: what a processor computes exactly by itself, and two numbers."""
 
-BUILTINS: dict[str, Any] = {
-    **{"abs": abs, "min": min, "max": max, "float": float, "int": int, "bool": bool, "range": range, "str": str},
-    **{"len": len, "round": round, "sum": sum, "zip": zip, "enumerate": enumerate, "list": list, "tuple": tuple},
+PYTHON: dict[Any, tuple[int, int]] = {
+    **dict.fromkeys((abs, bool, float, int, len, round, str, list, tuple), (1, 1)),
+    **{enumerate: (1, 2), max: (1, 100), min: (1, 100), range: (1, 3), sum: (1, 2), zip: (1, 100)},
 }
+"""Functions of Python itself, and how many arguments each may be given where a unit is declared and packed."""
+
+BUILTINS: dict[str, Any] = {function.__name__: function for function in PYTHON}
 
 
 @cache

@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
-from core.own.expressions import PUT, Checked, called, named
+from core.own.expressions import PUT, Checked, called, is_int_of_data, named
 from core.own.guarded import put
 from core.own.kinds import (
     NOTHING,
@@ -101,7 +101,7 @@ class Steps(Loops):
         if key not in self._known:
             if len(self._known) >= MOST_FUNCTIONS:
                 refuse(node, f"there are more than {MOST_FUNCTIONS} functions")
-            name = f"{function.name}_{len(self._known)}"
+            name = f"_{function.name}_{len(self._known)}"  # no name of a unit's own begins so
             self._open.append(function.name)
             result = self.function(function, kinds, name)
             self._open.pop()
@@ -136,8 +136,7 @@ class Steps(Loops):
         elif isinstance(node, ast.AnnAssign) and node.value is not None:
             self._assign(node.target, node.value, made)
         elif isinstance(node, ast.AugAssign):
-            operation = ast.BinOp(as_read(node.target), node.op, node.value)
-            self._assign(node.target, ast.copy_location(operation, node), made)
+            self._change(node, made)
         elif isinstance(node, ast.If):
             return self._if(node, made)
         elif isinstance(node, ast.For):
@@ -160,7 +159,25 @@ class Steps(Loops):
         elif isinstance(target, ast.Name):
             made.append(self._bind(target, *self.value(value)))
         else:
-            made.append(self._write(target, self.number(value)))
+            self._write(target, self.number(value), made)
+
+    def _change(self, node: ast.AugAssign, made: list[ast.stmt]) -> None:
+        """Check ``+=`` and its like; an index from data is worked out once, before the value."""
+        target = node.target
+        if isinstance(target, ast.Subscript) and is_int_of_data(target.slice):
+            name = self._between(made)
+            index = self.number(target.slice.args[0])  # type: ignore[attr-defined]
+            made.append(ast.Assign([ast.Name(name, ast.Store())], index))
+            self.kinds[name] = NUMBER
+            kept = ast.copy_location(called("int", named(name)), target)
+            target = ast.copy_location(ast.Subscript(target.value, kept, ast.Store()), target)
+            ast.fix_missing_locations(target)
+        operation = ast.BinOp(as_read(target), node.op, node.value)
+        self._assign(target, ast.copy_location(operation, node), made)
+
+    def _between(self, made: list[ast.stmt]) -> str:
+        """Return a name for a number that is needed by the statements that come next."""
+        return f"_{len(made)}"
 
     def _assign_several(self, target: ast.Tuple, value: ast.expr, made: list[ast.stmt]) -> None:
         """Assign several numbers: all are known before the first is written."""
@@ -176,8 +193,10 @@ class Steps(Loops):
         between = [f"_{len(made)}_{i}" for i in range(count)]
         made.append(ast.Assign([ast.Tuple([ast.Name(name, ast.Store()) for name in between], ast.Store())], known))
         for part, name in zip(target.elts, between, strict=True):
-            is_name = isinstance(part, ast.Name)
-            made.append(self._bind(part, NUMBER, named(name)) if is_name else self._write(part, named(name)))  # type: ignore[arg-type]
+            if isinstance(part, ast.Name):
+                made.append(self._bind(part, NUMBER, named(name)))
+            else:
+                self._write(part, named(name), made)
 
     def _bind(self, target: ast.Name, kind: Kind, value: ast.expr) -> ast.stmt:
         """Give a name a value; all but numbers and conditions get one name for good."""
@@ -195,26 +214,30 @@ class Steps(Loops):
         self.kinds[target.id] = kind
         return ast.Assign([ast.Name(target.id, ast.Store())], value)
 
-    def _write(self, target: ast.expr, value: ast.expr) -> ast.stmt:
+    def _write(self, target: ast.expr, value: ast.expr, made: list[ast.stmt]) -> None:
         """Write a number to a field, a port or an item of a vector."""
         if isinstance(target, ast.Attribute):
             kind, is_written, owner = self.member(target)
-            if not is_written:
-                refuse(target, f"a step may not write {target.attr}")
-            if not isinstance(kind, Number):
-                refuse(target, "is no single number")
-            return ast.Assign([ast.Attribute(owner, target.attr, ast.Store())], value)
-        if isinstance(target, ast.Subscript):
+            place: ast.expr = ast.Attribute(owner, target.attr, ast.Store())
+        elif isinstance(target, ast.Subscript):
             kind, vector, owner, index, is_known = self.item(target)
-            if not vector.is_written:
-                refuse(target, "a step may not write this vector")
-            if not isinstance(kind, Number):
-                refuse(target, "is no single number")
-            if is_known:
-                return ast.Assign([ast.Subscript(owner, index, ast.Store())], value)
-            self.used[PUT] = put
-            return ast.Expr(called(PUT, owner, ast.Constant(float(vector.count)), index, value))
-        return refuse(target, "cannot be assigned to")
+            is_written = vector.is_written
+            place = ast.Subscript(owner, index, ast.Store())
+        else:
+            refuse(target, "cannot be assigned to")
+        if not is_written:
+            refuse(target, f"a step may not write {ast.unparse(target)}")
+        if not isinstance(kind, Number):
+            refuse(target, "is no single number")
+        if isinstance(target, ast.Attribute) or is_known:
+            made.append(ast.Assign([place], value))
+            return
+        if not isinstance(value, ast.Name | ast.Constant):  # Python works out the value before the index
+            name = self._between(made)
+            made.append(ast.Assign([ast.Name(name, ast.Store())], value))
+            value = named(name)
+        self.used[PUT] = put
+        made.append(ast.Expr(called(PUT, owner, ast.Constant(float(vector.count)), index, value)))
 
     def _if(self, node: ast.If, made: list[ast.stmt]) -> bool:
         test = self.truth(node.test)

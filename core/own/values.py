@@ -7,6 +7,7 @@ import math
 import operator
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
+from functools import cache
 from typing import Any
 
 from core.block import Block, Equation, Oscillator, Stage
@@ -55,10 +56,16 @@ class Above:
         self.block = block
 
 
-def public(owner: Any) -> set[str]:
-    """Return what can be read of facts of the bench: fields, and properties, none of them a function."""
-    named = {entry.name for entry in fields(owner)} if is_dataclass(owner) else set()
-    return named | {name for name in dir(type(owner)) if isinstance(getattr(type(owner), name), property)}
+@cache
+def public(kind: Any) -> frozenset[str]:
+    """Return the names of a class of facts that a unit may read: fields and properties, no function."""
+    named = {entry.name for entry in fields(kind)} if is_dataclass(kind) else set()
+    return frozenset(named | {name for name in dir(kind) if isinstance(getattr(kind, name), property)})
+
+
+def is_scalar(value: Any) -> bool:
+    """Say whether a value is a number, a condition, a text or nothing."""
+    return value is None or isinstance(value, int | float | str)
 
 
 def is_number(value: Any) -> bool:

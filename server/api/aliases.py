@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import math
 from typing import Annotated
 
@@ -10,13 +9,13 @@ import numpy as np
 from fastapi import APIRouter, Path
 from pydantic import BaseModel, Field
 
+from core.block import Oscillator
 from core.diagnose.aliases import AliasMap, alias_map
 from core.diagnose.hypothesis import Hypothesis
 from core.errors import InputError
 from server.api.bodies import Body, StrictRoute
-from server.api.deps import SessionDep
+from server.api.deps import ComputingDep, SessionDep
 from server.api.diagnosers import hypotheses_of, spec_and_section, tones_of
-from server.bench.session import Session
 
 router = APIRouter(prefix="/benches/{bench_id}/diagnosers/{name}", tags=["diagnosis"], route_class=StrictRoute)
 
@@ -67,20 +66,25 @@ class AliasReport(BaseModel):
 
 
 @router.post("/aliases")
-async def get_aliases(session: SessionDep, name: Name, body: AliasSource) -> AliasReport:
+async def get_aliases(session: SessionDep, name: Name, body: AliasSource, computing: ComputingDep) -> AliasReport:
     """Report the hypotheses of a list that look alike under the drive."""
-    return await asyncio.to_thread(_aliases, session, name, body)
-
-
-def _aliases(session: Session, name: str, body: AliasSource) -> AliasReport:
     spec, section = spec_and_section(session, name)
     hypotheses = body.hypotheses or hypotheses_of(section)
     context = spec.context(spec.turns(section))
     tones = [(tone.frequency_hz, tone.amplitude_v) for tone in body.tones] if body.tones else tones_of(spec)
     if not tones:
         raise InputError("the reference has no tone of its own", "tones", "give the tones to look at")
-    nominal = context.device
-    now = alias_map(hypotheses, nominal, tones, body.within_um)
+    return await computing.call(_aliases, hypotheses, context.device, tones, body.within_um, context.sensor_noise_um)
+
+
+def _aliases(
+    hypotheses: list[Hypothesis],
+    nominal: Oscillator,
+    tones: list[tuple[float, float]],
+    within_um: float,
+    sensor_noise_um: float,
+) -> AliasReport:
+    now = alias_map(hypotheses, nominal, tones, within_um)
     f0 = 1e3 * nominal.natural_frequency / (2.0 * math.pi)
     # An axis of octaves has no place for a constant, so the map is then drawn around the resonance.
     centre = math.sqrt(f0 * (tones[0][0] or f0))
@@ -89,7 +93,7 @@ def _aliases(session: Session, name: str, body: AliasSource) -> AliasReport:
     named = sorted({(pair.first, pair.second) for pair in closest})
     return AliasReport(
         map=now,
-        sensor_noise_um=context.sensor_noise_um,
+        sensor_noise_um=sensor_noise_um,
         f0_hz=f0,
         sweep=AliasSweep(
             frequency_hz=grid,

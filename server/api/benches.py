@@ -135,6 +135,7 @@ async def create_bench(body: NewBench, service: ServiceDep, person: PersonDep, r
     """Make a bench and let it run; a student's takes the place of the one before."""
     if person.role == "watcher":
         raise ApiError(403, "forbidden", "a link to watch opens one bench")
+    await service.benches.check(body.scenario, body.set)
     if person.role == "student":
         blind = (await service.student_benches.get(person)).hiding.blind  # it may be on its way back
         if blind is not None and blind.question.game is None:  # a game may be left

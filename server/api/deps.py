@@ -8,6 +8,7 @@ from fastapi import Depends, Request, WebSocket
 from starlette.requests import HTTPConnection
 
 from server.bench.session import Seen, Session
+from server.computing.computing import Computing
 from server.errors import ApiError
 from server.people.person import Person
 from server.service import Service
@@ -36,6 +37,14 @@ def get_session(bench_id: str, service: ServiceDep) -> Session:
 
 
 SessionDep = Annotated[Session, Depends(get_session)]
+
+
+def get_computing(service: ServiceDep) -> Computing:
+    """Return the processes that compute for requests."""
+    return service.computing
+
+
+ComputingDep = Annotated[Computing, Depends(get_computing)]
 
 
 def get_person(connection: HTTPConnection) -> Person:

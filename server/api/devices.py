@@ -18,6 +18,7 @@ from core.device.quantities import QUANTITIES
 from core.device.spread import Tolerances
 from scenarios.design import Statistics, bode_band, designed, device_figures, process, sensitivities
 from server.api.bodies import Body, StrictRoute
+from server.api.deps import ComputingDep
 
 router = APIRouter(prefix="/devices", tags=["devices"], route_class=StrictRoute)
 
@@ -147,8 +148,12 @@ def plants_for(device: Device) -> list[str]:
 
 
 @router.post("/evaluate")
-def evaluate(body: Design) -> Evaluation:
+async def evaluate(body: Design, computing: ComputingDep) -> Evaluation:
     """Work out the figures of a device in its environment."""
+    return await computing.call(_evaluate, body)
+
+
+def _evaluate(body: Design) -> Evaluation:
     spec = designed(body.device, body.environment)
     figures, geometry, resonator = device_figures(spec), spec.device.geometry, spec.device.drawn_resonator
     return Evaluation(
@@ -172,8 +177,12 @@ def evaluate(body: Design) -> Evaluation:
 
 
 @router.post("/bode")
-def bode(body: BodeOf) -> Bode:
+async def bode(body: BodeOf, computing: ComputingDep) -> Bode:
     """Return the frequency response of a device with its tolerance band."""
+    return await computing.call(_bode, body)
+
+
+def _bode(body: BodeOf) -> Bode:
     spec = designed(body.device, body.environment)
     band = bode_band(spec, np.geomspace(body.start_hz, body.stop_hz, body.points), body.seed)
     drawn = spec.device.geometry is not None
@@ -187,8 +196,12 @@ def bode(body: BodeOf) -> Bode:
 
 
 @router.post("/spread")
-def spread(body: SpreadOf) -> ProcessSpread:
+async def spread(body: SpreadOf, computing: ComputingDep) -> ProcessSpread:
     """Draw devices from the process; the same seed gives the same devices."""
+    return await computing.call(_spread, body)
+
+
+def _spread(body: SpreadOf) -> ProcessSpread:
     spread = process(designed(body.device, body.environment), body.draws, body.seed)
     return ProcessSpread(
         assumed=asdict(Tolerances()),

@@ -2,26 +2,30 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable
 from dataclasses import asdict
-from typing import Annotated, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
-from core.board.board import Board, Checkpoint
+from core.board.board import Board
 from core.board.flops import Budget, budget
+from core.board.stored import Stored, revived, stored
 from core.device.frequency import response
 from core.device.identification import Identified
+from core.errors import InputError
+from core.own.admission import kept
 from core.units import UM_PER_M
-from scenarios.measure.plant_cost import plant_costs
+from scenarios.measure.plant_cost import PlantCost, plant_costs
 from scenarios.measure.sweep_sine import sweep_sine
 from scenarios.measure.unstable_region import unstable_region
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep, SessionDep
 from server.bench.session import Session
+from server.bench.tape import REFUSAL
+from server.computing.computing import LONGEST_S
 from server.service import Service
 
 router = APIRouter(prefix="/benches/{bench_id}", tags=["experiments"], route_class=StrictRoute)
@@ -116,7 +120,7 @@ class MeasuredPlants(BaseModel):
 @router.post("/identification", dependencies=[RateLimited])
 async def identification(body: SweptSine, session: SessionDep, service: ServiceDep) -> Identification:
     """Identify the device by a swept sine, with the faults and the air it has now."""
-    return await _on_copy(session, service, lambda kept: _identify(kept, body))
+    return await _on_copy(session, service, _identify, body)
 
 
 @router.get("/unstable-region", dependencies=[RateLimited])
@@ -124,13 +128,13 @@ async def region(
     session: SessionDep, service: ServiceDep, drive_v: Annotated[float, Query(ge=-1000, le=1000)] = 0.0
 ) -> UnstableRegionMap:
     """Map where the shuttle pulls in, for a voltage held on it."""
-    return await _on_copy(session, service, lambda kept: _map(kept, drive_v))
+    return await _on_copy(session, service, _map, drive_v)
 
 
 @router.get("/plants", dependencies=[RateLimited])
 async def plants(session: SessionDep, service: ServiceDep) -> MeasuredPlants:
     """Measure the cost of a tick with each plant."""
-    costs = await _on_copy(session, service, plant_costs)
+    costs = await _on_copy(session, service, _plant_costs)
     return MeasuredPlants(plants=[MeasuredPlant(**asdict(cost)) for cost in costs], tick_ns=1e6 * session.dt_ms)
 
 
@@ -142,20 +146,33 @@ async def flops(
     function_flops: Annotated[float, Query(ge=0, le=1e4, description="Operations for one exponential")] = 20.0,
 ) -> Budget:
     """Count the operations of every diagnoser as it is now, and compare them with a board of some speed."""
-    return await _on_copy(
-        session, service, lambda kept: budget(Board.restore(kept), board_mflops * 1e6, function_flops)
-    )
+    return await _on_copy(session, service, budget, board_mflops * 1e6, function_flops)
 
 
-async def _on_copy(session: Session, service: Service, work: Callable[[Checkpoint], T]) -> T:
-    """Run one experiment at a time on a copy of a bench, in a thread beside the event loop and the engine."""
+async def _on_copy(session: Session, service: Service, work: Callable[..., T], *settings: Any) -> T:
+    """Run one experiment at a time on a copy of a bench, beside the event loop and the engine."""
     async with service.experiment_turn:
-        kept = await service.engine.call(lambda: session.board.checkpoint())
-        return await asyncio.to_thread(work, kept)
+        with kept():
+            copy = await service.engine.call(_copied, session)
+            return await service.computing.call(_with_board, copy, work, *settings, most_s=LONGEST_S)
 
 
-def _identify(kept: Checkpoint, body: SweptSine) -> Identification:
-    board = Board.restore(kept)
+def _copied(session: Session) -> Stored:
+    """Return the board of a bench as plain data (a job of the engine)."""
+    if not isinstance(session.board, Board):
+        raise InputError(REFUSAL, "bench", "run its scenario to branch off", "conflict")
+    return stored(session.board)
+
+
+def _with_board(copy: Stored, work: Callable[..., T], *settings: Any) -> T:
+    return work(revived(copy), *settings)
+
+
+def _plant_costs(board: Board) -> list[PlantCost]:
+    return plant_costs(board.checkpoint())
+
+
+def _identify(board: Board, body: SweptSine) -> Identification:
     sweep = sweep_sine(board, **body.model_dump(), most_ticks=MOST_TICKS)
     force = board.spec.device.signed_force_n_per_v
     sign = 1.0 if force > 0.0 else -1.0
@@ -165,7 +182,7 @@ def _identify(kept: Checkpoint, body: SweptSine) -> Identification:
     response_found = response(identified.mass_kg, identified.damping_ns_m, identified.stiffness_n_m, grid) * unit
     believed = response(nominal["mass_kg"], nominal["damping_ns_m"], nominal["stiffness_n_m"], grid) * unit
     return Identification(
-        tick=kept.tick,
+        tick=board.tick,
         found=identified,
         nominal=nominal,
         tones=[
@@ -187,11 +204,11 @@ def _identify(kept: Checkpoint, body: SweptSine) -> Identification:
     )
 
 
-def _map(kept: Checkpoint, drive_v: float) -> UnstableRegionMap:
-    region = unstable_region(Board.restore(kept), drive_v)
+def _map(board: Board, drive_v: float) -> UnstableRegionMap:
+    region = unstable_region(board, drive_v)
     edge = region.boundary
     return UnstableRegionMap(
-        tick=kept.tick,
+        tick=board.tick,
         plant=region.plant,
         drive_v=drive_v,
         folds=[FoldPoint(**asdict(fold)) for fold in region.folds],

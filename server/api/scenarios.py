@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
 from core.board.document import plant_of
@@ -14,8 +14,9 @@ from scenarios.expectation import Verdict
 from scenarios.library import get, ids, library
 from scenarios.schema import Scenario
 from server.api.bodies import Body, StrictRoute
+from server.api.deps import ComputingDep
 from server.bench.making import prepare
-from server.errors import ApiError, not_found
+from server.errors import not_found
 from server.people.blind_class import check as check_hidden
 
 router = APIRouter(prefix="/scenarios", tags=["scenarios"], route_class=StrictRoute)
@@ -96,12 +97,18 @@ def get_scenario(scenario_id: str) -> ScenarioText:
     return ScenarioText(document=scenario.document, toml=scenario.toml(), warnings=scenario.warnings)
 
 
-@router.post("/check")
-def check_scenario(body: ScenarioSource) -> ScenarioText:
+@router.post("/check", response_model=ScenarioText)
+async def check_scenario(body: ScenarioSource, computing: ComputingDep) -> Response:
     """Check a scenario without running it; the answer 422 says what is wrong with it."""
-    scenario, board = prepare(body.scenario, {}, None)
+    return Response(await computing.call(_checked, body.scenario), media_type="application/json")
+
+
+def _checked(source: str | dict[str, Any]) -> str:
+    """Return a scenario that has been checked, as JSON."""
+    scenario, board = prepare(source, {}, None, compiled=False)
     check_marks(scenario, board.signals)
     try:
-        return ScenarioText(document=scenario.document, toml=scenario.toml(), warnings=scenario.warnings)
+        found = ScenarioText(document=scenario.document, toml=scenario.toml(), warnings=scenario.warnings)
     except (TypeError, ValueError) as error:
-        raise ApiError(422, "invalid", f"the scenario cannot be written as TOML: {error}", "scenario") from None
+        raise InputError(f"cannot be written as TOML: {error}", "scenario") from None
+    return found.model_dump_json()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import math
 from typing import Any, Literal
 
@@ -19,6 +18,7 @@ from core.theory.persistency import excitation, gram_of_tones
 from core.theory.positive_real import nyquist, polynomial, positive_real
 from scenarios.design import designed
 from server.api.bodies import Body, StrictRoute
+from server.api.deps import ComputingDep
 
 router = APIRouter(prefix="/theory", tags=["theory"], route_class=StrictRoute)
 
@@ -131,8 +131,12 @@ class HypothesesSource(Body):
 
 
 @router.post("/positive-real")
-def judge_positive_real(body: TransferFunctionSource) -> PositiveRealReport:
+async def judge_positive_real(body: TransferFunctionSource, computing: ComputingDep) -> PositiveRealReport:
     """Judge a transfer function, and return its Nyquist curve over the frequencies that matter."""
+    return await computing.call(_positive_real, body)
+
+
+def _positive_real(body: TransferFunctionSource) -> PositiveRealReport:
     verdict = positive_real(body.numerator, body.denominator)
     roots = np.concatenate([np.roots(polynomial(body.numerator, "")), np.roots(polynomial(body.denominator, ""))])
     sizes = [float(size) for size in np.abs(roots) if size > 0.0] or [1.0]
@@ -156,8 +160,12 @@ def judge_positive_real(body: TransferFunctionSource) -> PositiveRealReport:
 
 
 @router.post("/positive-definite")
-def judge_positive_definite(body: MatrixSource) -> DefinitenessReport:
+async def judge_positive_definite(body: MatrixSource, computing: ComputingDep) -> DefinitenessReport:
     """Judge a matrix."""
+    return await computing.call(_positive_definite, body)
+
+
+def _positive_definite(body: MatrixSource) -> DefinitenessReport:
     verdict = definiteness(body.matrix)
     return DefinitenessReport(
         positive_definite=verdict.positive_definite,
@@ -169,8 +177,12 @@ def judge_positive_definite(body: MatrixSource) -> DefinitenessReport:
 
 
 @router.post("/persistency")
-def judge_persistency(body: ExcitationSource) -> ExcitationReport:
+async def judge_persistency(body: ExcitationSource, computing: ComputingDep) -> ExcitationReport:
     """Judge an input in its steady state."""
+    return await computing.call(_persistency, body)
+
+
+def _persistency(body: ExcitationSource) -> ExcitationReport:
     if len({tone.frequency for tone in body.tones}) < len(body.tones):
         raise InputError("two tones have the same frequency", "tones")
     lines = [(tone.amplitude, tone.frequency) for tone in body.tones]
@@ -185,8 +197,12 @@ def judge_persistency(body: ExcitationSource) -> ExcitationReport:
 
 
 @router.post("/aliases")
-def map_aliases(body: HypothesesSource) -> AliasMap:
+async def map_aliases(body: HypothesesSource, computing: ComputingDep) -> AliasMap:
     """Map the responses of hypotheses to tones, and name those with the same response."""
+    return await computing.call(_aliases, body)
+
+
+def _aliases(body: HypothesesSource) -> AliasMap:
     if len({item.name for item in body.hypotheses}) < len(body.hypotheses):
         raise InputError("names must differ", "hypotheses")
     device = designed(body.device, {}).device.oscillator()
@@ -197,13 +213,13 @@ def map_aliases(body: HypothesesSource) -> AliasMap:
 
 
 @router.post("/instability-map")
-async def map_instability(body: MapSource) -> InstabilityMap:
+async def map_instability(body: MapSource, computing: ComputingDep) -> InstabilityMap:
     """Map the region where a rule of appendix B is unstable under a sine."""
     if body.lowest_frequency >= body.highest_frequency:
         raise InputError("must be below highest_frequency", "lowest_frequency")
     if body.frequencies * body.gains > MOST_CELLS:
         raise InputError(f"frequencies times gains must be {MOST_CELLS} or less", "frequencies")
-    return await asyncio.to_thread(_map, body)
+    return await computing.call(_map, body)
 
 
 def _map(body: MapSource) -> InstabilityMap:

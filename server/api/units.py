@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+from contextlib import suppress
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Path
@@ -15,7 +17,7 @@ from core.own.text import UnitError
 from core.own.unit import Unit, unit
 from scenarios.own import copies
 from server.api.bodies import Body, StrictRoute
-from server.api.deps import RateLimited, ServiceDep
+from server.api.deps import ComputingDep, RateLimited, ServiceDep
 from server.bench.making import prepare
 from server.errors import not_found
 
@@ -106,11 +108,15 @@ def get_unit(name: NamePath, service: ServiceDep) -> UnitText:
 
 
 @router.post("", dependencies=[RateLimited])
-def check_unit(body: UnitDraft) -> UnitCheck:
+async def check_unit(body: UnitDraft, computing: ComputingDep) -> UnitCheck:
     """Check the text of a unit; nothing is compiled and nothing is kept."""
     check_admitted({"units": {body.name: body.source}})
+    return await computing.call(_checked, body.name, body.source)
+
+
+def _checked(name: str, source: str) -> UnitCheck:
     try:
-        one = unit(body.name, body.source)
+        one = unit(name, source)
     except UnitError as error:
         return UnitCheck(unit=None, error=UnitMistake(message=error.message, line=error.line, column=error.column))
     except InputError as error:
@@ -119,16 +125,28 @@ def check_unit(body: UnitDraft) -> UnitCheck:
 
 
 @router.put("/{name}", dependencies=[RateLimited])
-def keep_unit(name: NamePath, body: UnitSource, service: ServiceDep) -> UnitEntry:
+async def keep_unit(name: NamePath, body: UnitSource, service: ServiceDep) -> UnitEntry:
     """Keep a unit in the folder of this server: every new bench has it, and runs that name it."""
     check_admitted({"units": {name: body.source}})
-    try:
-        one = service.units.check(name, body.source)
-    except UnitError as error:
-        raise error.under("source") from None
-    prepare(USUAL, {f"units.{name}.source": body.source}, None)  # it is compiled now, and every new bench can have it
-    service.units.keep(one)
-    return _entry(one, "folder")
+    own = {f"units.{name}.source": body.source}
+    await service.computing.call(_tried, own)
+
+    def kept() -> Unit:
+        try:
+            one = service.units.check(name, body.source)
+        except UnitError as error:
+            raise error.under("source") from None
+        prepare(USUAL, own, None)  # it is compiled now, and every new bench can have it
+        service.units.keep(one)
+        return one
+
+    return _entry(await asyncio.to_thread(kept), "folder")
+
+
+def _tried(own: dict[str, str]) -> None:
+    """Make a bench of a unit; whatever is wrong with it is said where it is kept."""
+    with suppress(InputError):
+        prepare(USUAL, own, None, compiled=False)
 
 
 @router.delete("/{name}", status_code=204, dependencies=[RateLimited])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import secrets
+import time
 from collections import Counter
 from collections.abc import Callable, Coroutine
 from concurrent.futures import Future
@@ -12,8 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from core.board.board import Board
+from core.board.document import Document
 from core.errors import InputError
 from core.own.admission import kept_with
+from scenarios.schema import Scenario
 from server.bench.blind import Blind
 from server.bench.checkpoints import Kept
 from server.bench.commands import Reset, Seek
@@ -24,13 +27,14 @@ from server.bench.experiment import Experiment, rebuilt, repeat
 from server.bench.forks import Forks
 from server.bench.hiding import STOPPED
 from server.bench.maker import Maker
-from server.bench.making import prepare, usual_scale
+from server.bench.making import check, is_id, prepare, usual_scale
 from server.bench.recorder import Recorder
 from server.bench.room import Room
 from server.bench.session import Session
 from server.bench.status import Opened
 from server.bench.tape import REFUSAL, Tape
 from server.bench.watch import KeptWatch
+from server.computing.computing import Computing
 from server.errors import ApiError, not_found
 from server.metrics import Metrics
 from server.settings import Settings
@@ -48,6 +52,8 @@ class Benches:
         Limits.
     metrics : Metrics
         Where benches and commands are counted.
+    computing : Computing
+        Where a scenario is read before this process reads it.
     witness : callable, optional
         Hears of every event of every bench.
     """
@@ -57,9 +63,11 @@ class Benches:
         engine: Engine,
         settings: Settings,
         metrics: Metrics,
+        computing: Computing,
         witness: Callable[[Session, Event], None] | None = None,
     ) -> None:
         self._engine, self._settings, self._metrics, self._witness = engine, settings, metrics, witness
+        self._computing = computing
         self.maker = Maker(settings, metrics, engine.clock)
         self._sessions: dict[str, Session] = {}
         self.forks = Forks(self, engine, settings.max_run_ticks)
@@ -84,6 +92,13 @@ class Benches:
                 "bench", bench_id, "list the live ones at /api/v1/benches; one that was let go comes back by /reopen"
             )
         return session
+
+    async def check(self, source: str | dict[str, Any], values: dict[str, Any]) -> None:
+        """Refuse a scenario that makes no bench, or takes too much, before this process reads it."""
+        self._computing.check_budget()
+        if values or not is_id(source):
+            units = {one.name: {"source": one.source} for one in self.maker.units.all()}
+            await self._computing.call(check, source, values, units)
 
     async def create(
         self,
@@ -112,7 +127,7 @@ class Benches:
         """
 
         def made() -> Session:
-            scenario, board = prepare(source, values, seed, self.maker.units.beside)
+            scenario, board = self._prepared(source, values, seed, self.maker.units.beside)
             scale = usual_scale(board) if own_scale else time_scale
             session = self.maker.around(scenario, board, scale, class_id)
             session.running.fast_forward.leads = quiet_lead
@@ -244,8 +259,11 @@ class Benches:
             elif isinstance(command, Reset):
                 seed = session.board.spec.seed
                 values = {"seed": seed, **command.values}
+                self._computing.check_budget()
                 with kept_with(command.values):
-                    scenario, board = await asyncio.to_thread(prepare, session.scenario.document, values, None)
+                    if command.values:
+                        await self.check(session.scenario.document, values)
+                    scenario, board = await asyncio.to_thread(self._prepared, session.scenario.document, values)
                 event = await self._engine.call(session.reset, scenario, board, actor, command.before_tick)
             else:
                 event = await self._engine.call(session.execute, command, actor)
@@ -264,6 +282,20 @@ class Benches:
         states = Counter(session.status.state for session in self.all())
         for state in ("running", "paused", "tripped"):
             self._metrics.benches.labels(state).set(states[state])
+
+    def _prepared(
+        self,
+        source: str | dict[str, Any],
+        values: dict[str, Any],
+        seed: int | None = None,
+        units: Callable[[Document], Document] | None = None,
+    ) -> tuple[Scenario, Board]:
+        """Make the parts of a bench, at the expense of the person whose request is at work; called in a thread."""
+        begun = time.thread_time()
+        try:
+            return prepare(source, values, seed, units)
+        finally:
+            self._computing.spend(time.thread_time() - begun)
 
     def _open(self, session: Session, start: bool) -> None:
         """Give a bench to the engine (a job)."""

@@ -25,6 +25,8 @@ def prepare(
     values: dict[str, Any],
     seed: int | None,
     units: Callable[[Document], Document] | None = None,
+    *,
+    compiled: bool = True,
 ) -> tuple[Scenario, Board]:
     """Read a scenario, write values over it, give it those units of this server that are for it, wire its board."""
     document = _document(source)
@@ -34,24 +36,45 @@ def prepare(
         with kept_with(values):
             own = {**given, **document.get("units", {})}
             scenario = with_values(Scenario.load({**document, "units": own}), values)
-            return scenario, build(scenario, seed)
+            return scenario, build(scenario, seed, compiled=compiled)
     scenario = with_values(read_scenario(source), values)
-    return scenario, build(scenario, seed)
+    return scenario, build(scenario, seed, compiled=compiled)
+
+
+def check(source: str | dict[str, Any], values: dict[str, Any], units: Document) -> None:
+    """Refuse a scenario that makes no bench; nothing is compiled.
+
+    Parameters
+    ----------
+    source : str or dict
+        A document, a library id, or a TOML text.
+    values : dict
+        Written over it.
+    units : dict
+        Units of this server, which it has beside its own.
+    """
+
+    def beside(document: Document) -> Document:
+        own = document.get("units", {})
+        return {name: table for name, table in units.items() if name not in own}
+
+    prepare(source, values, None, beside, compiled=False)
 
 
 def read_scenario(source: str | dict[str, Any]) -> Scenario:
     """Read a scenario: a document, a library id, or a TOML text (which has an equals sign)."""
-    return get(source) if _is_id(source) else Scenario.load(source)
+    return get(source) if is_id(source) else Scenario.load(source)
 
 
 def _document(source: str | dict[str, Any]) -> Document:
     """Return a scenario as it was written."""
     if isinstance(source, dict):
         return source
-    return get(source).document if _is_id(source) else read_toml(source, "scenario")
+    return get(source).document if is_id(source) else read_toml(source, "scenario")
 
 
-def _is_id(source: str | dict[str, Any]) -> TypeGuard[str]:
+def is_id(source: str | dict[str, Any]) -> TypeGuard[str]:
+    """Say whether a scenario is named by its id in the library."""
     return isinstance(source, str) and "=" not in source and "\n" not in source
 
 

@@ -15,8 +15,9 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
-from core.own.admission import admit
+from core.own.admission import Terms, admit
 from server.bench.blind import HINT, REFUSAL
+from server.computing.asker import asks
 from server.errors import SHARD, ApiError, ErrorBody, reply
 from server.people.access import SOCKET, Need, need_of, serves_blind
 from server.people.driving import Driving
@@ -31,6 +32,10 @@ from server.security.visitor import ELSEWHERE, STYLE, visitor_page
 CLOSE_ORIGIN, CLOSE_AUTH, CLOSE_ROLE, CLOSE_FULL = 4003, 4401, 4403, 1013
 REQUESTS_PER_S, REQUESTS_AT_ONCE = 40.0, 400
 """Requests of one student or link to watch; a page asks for some fifty when it opens, a link may be a whole room's."""
+BYTES_OF_REQUEST = 50_000
+"""So many bytes of a body count as one more request: reading them takes the server's loop as long."""
+LARGE = 1 << 20
+"""Most bytes that are counted of a body."""
 MOST_SOCKETS = 8
 """Open streams and 3D views of one student."""
 
@@ -66,6 +71,8 @@ class Gate:
     units : str
         Whose scenarios may carry units of their own: nobody's (``off``), those of the teacher, or those of
         all people it knows (``everyone``).
+    student_events : int
+        Events that a scenario of a student may have.
     """
 
     def __init__(
@@ -80,11 +87,13 @@ class Gate:
         prefix: str = "",
         frames: Frames | None = None,
         units: str = "teacher",
+        student_events: int = 1000,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         self._app, self._identity, self._people, self._driving = app, identity, people, driving
         self._origin, self._is_blind = origin, is_blind
         self._open, self._prefix, self._frames, self._units = open_paths, prefix, frames, units
+        self._student_events = student_events
         self._requests = Buckets(REQUESTS_PER_S, REQUESTS_AT_ONCE, clock=clock)
         self._sockets: Counter[str] = Counter()
 
@@ -95,7 +104,8 @@ class Gate:
             return
         connection = HTTPConnection(scope)
         person = scope["person"] = self._person(connection)
-        admit(self._units_refused(person))
+        admit(self._terms(person))
+        asks(person)
         is_post_of_others = scope["type"] == "http" and self._frames is not None and scope["path"] in self._frames.posts
         refusal = self._origin.refusal(connection, self._has_bearer(connection), is_post_of_others)
         if refusal:
@@ -135,6 +145,11 @@ class Gate:
             return TEACHER
         return self._people.by_secret(self._identity.session_of(connection))
 
+    def _terms(self, person: Person | None) -> Terms:
+        """Return the terms on which scenarios of this person are read."""
+        is_teacher = person is not None and person.is_teacher
+        return Terms(self._units_refused(person), None if is_teacher else self._student_events)
+
     def _units_refused(self, person: Person | None) -> str:
         """Return why this person may not bring units of their own; nothing where they may."""
         if self._units == "off":
@@ -160,7 +175,7 @@ class Gate:
             await self._app(scope, receive, send)
         elif scope["type"] == "websocket":
             await self._pass_socket(scope, receive, send, person, need, bench_id)
-        elif self._requests.take(person.id):
+        elif self._requests.take(person.id, 1.0 + _length(scope) / BYTES_OF_REQUEST):
             await self._app(scope, receive, send)
         else:
             await self._refuse(scope, receive, send, 429, 0, "rate_limited", "too many requests; wait a second")
@@ -259,3 +274,10 @@ def page(status: int, title: str, text: str) -> str:
         f"<main><h1>{html.escape(title[:1].upper() + title[1:])}</h1>"
         f"<p>{html.escape(text)}</p><p><small>{status}</small></p></main>"
     )
+
+
+def _length(scope: Scope) -> int:
+    """Return the length that a body declares; a body in pieces declares none, and counts as large."""
+    headers = dict(scope["headers"])
+    said = headers.get(b"content-length", b"")
+    return min(int(said), LARGE) if said.isdigit() else LARGE if b"transfer-encoding" in headers else 0

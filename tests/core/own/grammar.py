@@ -23,7 +23,28 @@ READ = (
 FUNCTIONS = (("exp", 1), ("sin", 1), ("floor", 1), ("flush_tiny", 1), ("abs", 1), ("min", 2), ("max", 2), ("mix", 2))
 WRITTEN = ("s.a", "x.seen", "s.line[0]", "s.line[4]", "s.grid[3]", "x.three[1]", "x.measured", "s.line[5]", "p.gain")
 VECTORS = {"s.line": 5, "s.grid": 12, "p.taps": 4, "x.three": 3}
-HELPER = "@kernel\ndef mix(a, b):\n    if a > b:\n        return a - b\n    return 0.25 * a + b"
+EFFECTS = ("bump(s)", "turn(s, x)", "stir(s.line, s.a)", "stir(x.three, e)")
+HELPERS = """@kernel
+def mix(a, b):
+    if a > b:
+        return a - b
+    return 0.25 * a + b
+
+def bump(r):
+    r.a += 1.0
+    return r.a
+
+@kernel
+def stir(line, by):
+    line[int(by)] -= by
+    line[int(line[0])], line[1] = line[1], line[int(by)]
+    return line[2]
+
+def turn(r, y):
+    r.line[int(bump(r))] += bump(r)
+    y.seen = mix(bump(r), r.line[int(r.a)])
+    return stir(r.grid, r.a) + bump(r)"""
+"""Functions of the unit: one that only computes, and those that also write what they are given."""
 
 
 class Writer:
@@ -44,13 +65,15 @@ class Writer:
 
     def text(self) -> str:
         """Return the text of a unit."""
-        return odd("step", "\n".join(self._body(self._random.randint(2, 7), 0)), top=HELPER)
+        return odd("step", "\n".join(self._body(self._random.randint(2, 7), 0)), top=HELPERS)
 
     def _pick(self, *several: str) -> str:
         return self._random.choice(several)
 
     def _number(self, deep: int = 0) -> str:
         chance = self._random.random()
+        if chance < 0.08:
+            return self._pick(*EFFECTS)
         if deep > 3 or chance < 0.25:
             return self._pick(*NUMBERS, *self._names, *READ)
         if chance < 0.55:
@@ -93,7 +116,7 @@ class Writer:
         chance = self._random.random()
         if chance < 0.35:
             self._made += 1
-            name = f"v{self._made}"
+            name = f"{self._pick('v', 'mix_', 'bump_')}{self._made - 1}"
             line = f"{name} = {self._number()}"
             if deep == 0:
                 self._names.append(name)

@@ -1,11 +1,8 @@
-"""Random steps: an admitted step stays in its own slots, and is the same compiled, behind the wall and plain."""
+"""Steps, random ones too: one that is admitted stays in its slots, and computes what Python makes of its text."""
 
 from __future__ import annotations
 
-import ast
-import linecache
 from collections.abc import Iterable, Iterator
-from typing import Any
 
 import numpy as np
 import pytest
@@ -15,16 +12,17 @@ from core.board import program
 from core.board.steps import _seen
 from core.errors import InputError
 from core.own.unit import Unit, unit
-from core.plain import plain
 from core.wall import wall
 from core.wall.crossing import Sizes
-from tests.core.own.grammar import Writer
+from tests.core.own.grammar import HELPERS, Writer
+from tests.core.own.oracle import oracle
 from tests.core.own.texts import odd
 
 FEW = 5
 """Seeds of the short suite."""
 GUARD = 64
 CANARY = -7.25e77
+GENERATED = ("_mix_", "_bump_", "_stir_", "_turn_")
 ALLOWED = {"exp", "sin", "floor", "flush_tiny", "abs", "min", "max", "float", "int", "range"}
 
 
@@ -63,30 +61,6 @@ class Slots:
     def check_guards(self) -> None:
         for one in self.whole:
             assert (one[:GUARD] == CANARY).all() and (one[-GUARD:] == CANARY).all()
-
-
-class Doubles(ast.NodeTransformer):
-    """Makes constants and results doubles of numpy's, which divides by 0 as a processor does, where Python stops."""
-
-    def visit_Constant(self, node: ast.Constant) -> ast.expr:
-        if not isinstance(node.value, float):
-            return node
-        return ast.Call(ast.Name("double", ast.Load()), [node], [])
-
-    def visit_Call(self, node: ast.Call) -> ast.expr:
-        self.generic_visit(node)
-        is_number = isinstance(node.func, ast.Name) and node.func.id not in ("range", "_put")
-        return ast.Call(ast.Name("double", ast.Load()), [node], []) if is_number else node
-
-
-def oracle(block: type[Block]) -> Any:
-    """Return the step as plain Python, with the functions it calls."""
-    code = block.step.__code__
-    tree = Doubles().visit(ast.parse("".join(linecache.getlines(code.co_filename))))
-    space = {name: plain(value) if callable(value) else value for name, value in block.step.__globals__.items()}
-    space["double"] = np.float64
-    exec(compile(ast.fix_missing_locations(tree), "oracle", "exec"), space)
-    return space["step"]
 
 
 def walled(block: type[Block]) -> np.ndarray:
@@ -162,11 +136,28 @@ def stay_in_their_own_slots(seeds: range) -> None:
         names = set(one.block.step.__code__.co_names)
         fields = {field.name for kind in (one.block.Packed, one.block.State) for field in kind.layout.fields}
         ports = {port.name for port in one.block.Ports.declared} | {"tick", "time_ms"}
-        own = {name for name in names if name.startswith(("_", "mix_"))}
-        assert own <= {"_item", "_put", "_floor", "_inf"} | {name for name in own if name.startswith("mix_")}
+        own = {name for name in names if name.startswith("_")}
+        assert {name for name in own if not name.startswith(GENERATED)} <= {"_item", "_put", "_floor", "_inf"}
         assert names <= ALLOWED | fields | ports | own, seed
         run_all(one.block)
     assert ran >= 0.3 * len(seeds), f"{ran} of {len(seeds)} were admitted"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "s.line[int(bump(s))] += 1.0",
+        "s.line[int(s.a)] = bump(s)",
+        "s.line[int(s.a)] -= bump(s)",
+        "s.line[2] += bump(s)\ns.a += bump(s)",
+        "s.line[int(s.a)], s.line[int(bump(s))] = bump(s), s.a",
+        "x.seen = s.a + bump(s) * s.a + (s.a if bump(s) > 2.0 else bump(s))",
+        "bump_0 = 3.0\nx.seen = bump_0 + bump(s)",
+        "turn_0 = 1.0\nbump_1 = 2.0\nx.seen = turn(s, x) + turn_0 + bump_1",
+    ],
+)
+def test_values_indices_and_calls_are_worked_out_in_the_order_of_python(text: str) -> None:
+    run_all(unit("odd", odd("step", text, top=HELPERS)).block)
 
 
 def test_the_frame_runs_alike() -> None:

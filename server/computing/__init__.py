@@ -1,0 +1,1 @@
+"""Computations of requests, in processes of their own with limits."""
