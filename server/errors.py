@@ -29,6 +29,7 @@ LONGEST = 300
 """Characters of a message, a field or a hint: one line a person reads."""
 METHODS = ("DELETE", "GET", "PATCH", "POST", "PUT")
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+STORAGE = "the database cannot be used now; the log says why"
 
 
 class ErrorBody(BaseModel):
@@ -168,6 +169,18 @@ def _given(error: Any) -> str:
     return f" (got {given!r})" if isinstance(given, str) and len(given) <= 40 else ""
 
 
+REFUSED = (InputError, ApiError, DBAPIError)
+"""What refuses something for one of several people; nothing has changed for that person then."""
+
+
+def why(error: Exception) -> str:
+    """Return in words why something was refused."""
+    if isinstance(error, DBAPIError):
+        log.error("the database refused: %s", error.orig)
+        return STORAGE
+    return str(error)
+
+
 def install(app: FastAPI, prefix: str) -> None:
     """Answer every failure of ``app`` in the one shape.
 
@@ -195,7 +208,7 @@ def install(app: FastAPI, prefix: str) -> None:
     @app.exception_handler(DBAPIError)
     async def _(_request: Request, error: DBAPIError) -> JSONResponse:
         log.error("the database refused: %s", error.orig)
-        body = ErrorBody(code="storage", message="the database cannot be used now; the log says why")
+        body = ErrorBody(code="storage", message=STORAGE)
         return reply(503, body, {"Retry-After": "5"})
 
     @app.exception_handler(OSError)

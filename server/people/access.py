@@ -75,6 +75,7 @@ _DOORS = {
         GET {API}/sheets/{{sheet_id}}/report  *
         POST {API}/sheets/{{sheet_id}}/begin
         POST {API}/sheets/{{sheet_id}}/steps/{{step_id}}/answer  *
+        POST {API}/sheets/{{sheet_id}}/steps/{{step_id}}/hide
         POST {API}/sheets/{{sheet_id}}/steps/{{step_id}}/hint  *
         POST {API}/sheets/{{sheet_id}}/steps/{{step_id}}/close  *
         PUT {API}/sheets/{{sheet_id}}/recordings/{{recording_id}}

@@ -13,6 +13,7 @@ from sqlalchemy.orm import Session
 from scenarios.lecture import Span
 from server.errors import ApiError, not_found
 from server.people.person import Person
+from server.store.change import Change
 from server.store.database import Database
 from server.store.people import BallotRow, VoteRow
 
@@ -192,8 +193,8 @@ class Votes:
 
         await self._database.run(cast)
 
-    async def forget(self, class_id: str = "", person_id: str = "") -> None:
-        """Forget the vote of a class that has ended, or the ballots of a student who has gone."""
+    def forgetting(self, class_id: str = "", person_id: str = "") -> Change:
+        """Forget the vote of a class that ends, or the ballots of a student who goes."""
 
         def forgotten(session: Session) -> None:
             if person_id:
@@ -201,7 +202,7 @@ class Votes:
             if class_id and (row := _of_class(session, class_id)) is not None:
                 _forget(session, row.id)
 
-        await self._database.run(forgotten)
+        return Change(forgotten)
 
     async def _shown(self, work: Callable[[Session], VoteRow]) -> Vote:
         """Do something to a vote, and describe it."""
