@@ -56,7 +56,7 @@ value = "run_mass"
 ```
 """
 MASS = {"fault": "added_mass", "severity": 0.05}
-BEGUN = re.compile(r"begun [\d :-]+UTC")
+BEGUN = re.compile(r"(?:begun|written) [\d :-]+UTC")
 TO_COME = 900
 """Ticks after which a fault has come, at the usual pace."""
 
@@ -199,7 +199,7 @@ def test_a_step_takes_the_answer_to_the_fault_that_it_has_hidden_and_no_other(
         assert (at.step("first")["earned"], at.step("first")["can_go_on"]) == (0.0, True)
     bench = at.ask("POST", f"/sheets/{sheet}/steps/first/hide", status=201)["bench"]
     assert len(at.ask("GET", f"/benches/{bench}")["blind"]["answers"]) == 6
-    assert live.get(bench)["parameters"]["sensor"]["noise_um"] == 0.05
+    assert live.service.benches.get(bench).document["sensors"]["ideal"]["noise_um"] == 0.05
     refused = at.ask("POST", f"/sheets/{sheet}/steps/first/hide", status=403)["error"]
     assert refused["code"] == "blind"
     at.ask("POST", f"/benches/{bench}/blind/answer", said=truth_of(live, bench), confidence=1.0)
