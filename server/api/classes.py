@@ -129,6 +129,7 @@ async def join_class(class_id: str, body: Join, request: Request, response: Resp
     except BaseException:
         service.people.drop(person)  # or the name would be taken
         raise
+    service.classes.note_joined(person)
     give_session(request, response, person, secret)
     return Joined(id=person.id, session=secret, bench=bench.id)
 

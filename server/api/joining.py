@@ -44,6 +44,7 @@ async def join(request: Request, service: ServiceDep) -> Response:
     except ApiError as error:
         text = join_page(_action(service), code, name, error.body)
         return HTMLResponse(text, error.status_code, {**FORM, **(error.headers or {})})
+    service.classes.note_joined(person)
     response = RedirectResponse("/", 303)
     give_session(request, response, person, secret)
     return response

@@ -193,9 +193,11 @@ class Classes:
         if len(self._people.students()) >= self._most:
             text = f"the class is full: this server has room for {self._most} students"
             raise ApiError(409, "limit", text, hint="tell your teacher, who can raise max_students")
-        person, secret = await self._people.add("student", name, row.until, row.id, also=also)
-        self._audit.add(name, "joined", "joined the class", row.id)
-        return person, secret
+        return await self._people.add("student", name, row.until, row.id, also=also)
+
+    def note_joined(self, person: Person) -> None:
+        """Note in the log that somebody has joined."""
+        self._audit.add(person.name, "joined", "joined the class", person.class_id)
 
     def is_called(self, class_id: str, name: str) -> bool:
         """Whether somebody in a class has a name."""

@@ -135,6 +135,18 @@ class Database:
         for change in changes:
             change.take()
 
+    async def run_or_make_room(self, work: Callable[[Session], object], remove: Callable[[], object]) -> None:
+        """Delete rows, then their files; on a full disk the files go first, which makes room for the rows to go."""
+        try:
+            await self.run(work)
+        except DBAPIError as error:
+            if "full" not in reason_of(error):
+                raise
+            await asyncio.to_thread(remove)
+            await self.run(work)
+        else:
+            await asyncio.to_thread(remove)
+
     def run_later(self, work: Callable[[Session], object]) -> None:
         """Run ``work`` on the database thread behind what waits there; what goes wrong is logged."""
         self._thread.submit(self._try, work)

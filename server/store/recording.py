@@ -70,6 +70,11 @@ class RecordingFile:
         self._sink.close()
         return convert(self._path)
 
+    def discard(self) -> None:
+        """Close a stream that nothing has come to, and leave no file."""
+        self._sink.close()
+        self._path.with_suffix(PART).unlink(missing_ok=True)
+
     def salvage(self) -> int:
         """Close a stream that cannot be written any more; keep the batches that have reached the disk."""
         with contextlib.suppress(OSError):

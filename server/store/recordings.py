@@ -125,15 +125,19 @@ class Recordings:
         except OSError as error:
             text = f"the recording cannot be opened: {error.strerror or error}"
             raise ApiError(507, "no_space", text) from None
-        await self._database.run(lambda session: session.add(row))
+        try:
+            await self._database.run(lambda session: session.add(row))
+        except BaseException:
+            await asyncio.to_thread(file.discard)
+            raise
         return Recording.model_validate(row), file
 
-    async def begin(self, recording_id: str, start_tick: int) -> Recording:
-        """Note the first tick, which is known once the engine has begun."""
-        statement = update(RecordingRow).where(RecordingRow.id == recording_id)
-        statement = statement.values(start_tick=start_tick, state="recording")
-        await self._database.run(lambda session: session.execute(statement))
-        return await self.get(recording_id)
+    def begin(self, recording: Recording, start_tick: int) -> Recording:
+        """Note the first tick, which is known once the engine has begun; if it cannot be kept, the end notes it."""
+        begun: dict[str, Any] = {"start_tick": start_tick, "state": "recording"}
+        statement = update(RecordingRow).where(RecordingRow.id == recording.id, RecordingRow.finished.is_(None))
+        self._database.run_later(lambda session: session.execute(statement.values(**begun)))
+        return recording.model_copy(update=begun)
 
     def closer(self, recording_id: str) -> Callable[[int, int, str, bool], None]:
         """Return the function that closes the row, cut short or not; called on the recorder's thread."""
@@ -195,14 +199,19 @@ class Recordings:
         return recording, path
 
     async def delete(self, recording_id: str) -> None:
-        """Delete a recording that has ended: the files first, because a full disk leaves no room to delete the row."""
+        """Delete a recording that has ended."""
         recording = await self.get(recording_id)
         if recording.state in OPEN:
             raise ApiError(409, "conflict", "the recording is under way", hint="stop it first")
-        for path in (self.path(recording_id).with_suffix(kind) for kind in (".parquet", PART, EVENTS)):
-            await asyncio.to_thread(path.unlink, missing_ok=True)
+        paths = [self.path(recording_id).with_suffix(kind) for kind in (".parquet", PART, EVENTS)]
+
+        def unlink() -> None:
+            for path in paths:
+                path.unlink(missing_ok=True)
+
+        gone = delete(RecordingRow).filter_by(id=recording_id)
+        await self._database.run_or_make_room(lambda session: session.execute(gone), unlink)
         self._unclosed.pop(recording_id, None)
-        await self._database.run(lambda session: session.execute(delete(RecordingRow).filter_by(id=recording_id)))
 
     async def recover(self) -> None:
         """Complete recordings after a crash: keep the ticks that reached the disk, mark the rows aborted."""
