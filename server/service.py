@@ -45,6 +45,7 @@ from server.runs.jobs import Jobs
 from server.runs.queue import Queue
 from server.runs.sweeps import Sweeps
 from server.runs.thresholds import Thresholds
+from server.security.callers import Callers
 from server.security.limits import Buckets
 from server.security.public import PublicOrigin
 from server.settings import Settings
@@ -136,6 +137,7 @@ class Service:
         )
         self.watchdog = Watchdog(self.engine, self.safety)
         self.commands = Buckets(settings.command_rate_per_s, settings.command_burst, clock=self.clock)
+        self.callers = Callers(settings.trusted_proxies)
         self.joining = Joining(self.classes, self.clock)
         self.sheets = Sheets(
             self.database,
