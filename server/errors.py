@@ -9,6 +9,7 @@ from http import HTTPStatus
 from typing import Any
 from urllib.parse import urlencode
 
+import pyarrow as pa
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, RedirectResponse, Response
@@ -213,11 +214,17 @@ def install(app: FastAPI, prefix: str) -> None:
 
     @app.exception_handler(OSError)
     async def _(_request: Request, error: OSError) -> JSONResponse:
+        if error.errno is None:  # as the reader of a trace reports what it cannot read
+            return unreadable(error)
         if error.errno not in FULL:
             raise error
         log.error("no room to write: %s", error)
         body = ErrorBody(code="no_space", message=f"the answer cannot be made: {error.strerror}")
         return reply(507, body)
+
+    @app.exception_handler(pa.ArrowException)
+    async def _(_request: Request, error: pa.ArrowException) -> JSONResponse:
+        return unreadable(error)
 
     @app.exception_handler(InputError)
     async def _(_request: Request, error: InputError) -> JSONResponse:
@@ -237,6 +244,13 @@ def install(app: FastAPI, prefix: str) -> None:
         if error.status_code == 405:
             headers["Allow"] = ", ".join(allowed(request))
         return reply(error.status_code, ErrorBody(code=code, message=message), headers)
+
+
+def unreadable(error: Exception) -> JSONResponse:
+    """Answer for a file that is damaged."""
+    log.error("a file cannot be read: %s", error)
+    body = ErrorBody(code="damaged", message="the file cannot be read: it is damaged", hint="the log says where")
+    return reply(410, body)
 
 
 def allowed(request: Request) -> list[str]:

@@ -266,6 +266,14 @@ class Service:
                 self.driving.forget(bench_id)
                 await self.lesson.forget(bench_id)
 
+    async def come_back(self, person: Person, bench_id: str) -> None:
+        """Bring a bench back that somebody asks for before all are back, or that of a student who asks."""
+        wanted = bench_id or self.people.bench_of(person)
+        if not wanted or self.benches.find(wanted) is not None or not self.student_benches.may_come(wanted):
+            return
+        if self.people.owner(wanted) is not None or wanted in self.people.seen_by_students():
+            await self.student_benches.bring_back(wanted)
+
     async def close_streams(self) -> None:
         """Tell every page that the server stops, and close its stream."""
         self.hub.close_all("the server is stopping")

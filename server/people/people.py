@@ -233,6 +233,8 @@ class People:
             return False
         if need is Need.SESSION:
             return True
+        if need is Need.MEMBER:
+            return person.role == "student"
         if not bench_id:
             return False
         if bench_id in (self.bench_of(person), self.lent_to(person)):

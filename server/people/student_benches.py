@@ -75,6 +75,8 @@ class StudentBenches:
         self._database, self._people, self._benches = database, people, benches
         self._swap, self._close, self._checkpoints = swap, close, checkpoints
         self._turn = asyncio.Lock()
+        self._all_back = False
+        self._given_up: set[str] = set()
         self.welcome: Callable[[Person], Awaitable[None]] = _nothing
         """Called before a student gets the first bench; it may give one."""
         self.on_revived: Callable[[Session, KeptWatch | None], None] = lambda *_: None
@@ -142,7 +144,12 @@ class StudentBenches:
                     await self.get(person)
             except Exception:
                 log.exception("the bench of %s could not be brought back", person.id)
+        self._all_back = True
         await self._checkpoints.forget_others()
+
+    def may_come(self, bench_id: str) -> bool:
+        """Whether a bench that is not there may be on its way back: until all that can come have come."""
+        return not self._all_back and bench_id not in self._given_up
 
     async def bring_back(self, bench_id: str) -> bool:
         """Bring a bench back that students see beside their own; return whether it is there."""
@@ -153,11 +160,13 @@ class StudentBenches:
         """Return a bench that goes on from its checkpoint, if it has one that this version can read."""
         found = await self._checkpoints.load(bench_id) if bench_id else None
         if found is None:
+            self._given_up.add(bench_id)
             return None
         try:
             return await self._benches.revive(found, self.on_revived)
         except Exception:
             log.exception("bench %s cannot go on from what was kept", bench_id)
+            self._given_up.add(bench_id)
             return None
 
     async def _make(

@@ -105,6 +105,15 @@ def rescue(path: Path) -> int:
         return 0
 
 
+def is_readable(path: Path) -> bool:
+    """Return whether a file is there and whole, as far as its description tells."""
+    try:
+        pq.read_metadata(path)
+    except (OSError, pa.ArrowException):
+        return False
+    return True
+
+
 def first_tick(path: Path) -> int:
     """Return the first tick of a recording.
 
