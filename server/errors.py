@@ -214,7 +214,7 @@ def install(app: FastAPI, prefix: str) -> None:
 
     @app.exception_handler(OSError)
     async def _(_request: Request, error: OSError) -> JSONResponse:
-        if error.errno is None:  # as the reader of a trace reports what it cannot read
+        if error.errno is None:  # the reader of traces reports damaged files so
             return unreadable(error)
         if error.errno not in FULL:
             raise error

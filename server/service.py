@@ -267,7 +267,7 @@ class Service:
                 await self.lesson.forget(bench_id)
 
     async def come_back(self, person: Person, bench_id: str) -> None:
-        """Bring a bench back that somebody asks for before all are back, or that of a student who asks."""
+        """Revive the bench of a request, or the bench of the student who sends it, before all benches are back."""
         wanted = bench_id or self.people.bench_of(person)
         if not wanted or self.benches.find(wanted) is not None or not self.student_benches.may_come(wanted):
             return

@@ -122,7 +122,7 @@ class Settings(BaseSettings):
     @field_validator("trusted_proxies")
     @classmethod
     def _are_networks(cls, given: list[str]) -> list[str]:
-        """Refuse what is no address and no network."""
+        """Refuse a text that is neither an address nor a network."""
         return [str(ip_network(one)) for one in given]
 
     @field_validator("public_origin")

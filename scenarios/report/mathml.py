@@ -21,7 +21,7 @@ def mathml(latex: str, *, is_block: bool) -> str:
     Parameters
     ----------
     latex : str
-        As somebody wrote it.
+        LaTeX from a sheet.
     is_block : bool
         Whether it has a line of its own.
     """

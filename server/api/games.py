@@ -122,7 +122,7 @@ async def reveal_game(game_id: GameId, body: Look, service: ServiceDep, person: 
 async def get_class_game(
     class_id: str, game_id: GameId, service: ServiceDep, person: PersonDep, seed: Seed = 1
 ) -> ClassGame:
-    """Show the table of a class with what everybody handed in, and what the seed hides from each."""
+    """Show the table of a class with all settings handed in, and the hidden facts of each student."""
     await service.classes.row(class_id)
     return await service.games.of_class(person, class_id, game_id, seed)
 

@@ -148,7 +148,7 @@ async def hide_in_step(sheet_id: Id, step_id: Id, person: PersonDep, service: Se
     if person.role == "student":
         service.driving.check(service.people.bench_of(person), person)  # the one before is gone with it
     await service.sheets.hide(person, sheet_id, step_id)
-    await service.checkpoints.write()  # that of a student hides it after a crash too
+    await service.checkpoints.write()  # the bench of a student hides it after a crash too
     return await service.sheets.view(person, sheet_id)
 
 

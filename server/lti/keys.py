@@ -75,7 +75,7 @@ class KeySets:
         return _read(found) if found is not None else None
 
     def close(self) -> None:
-        """Wait for nobody any more."""
+        """Cancel the requests that wait."""
         self._pool.shutdown(wait=False, cancel_futures=True)
 
     async def _ask(self, url: str) -> _Answer:
@@ -93,7 +93,7 @@ class KeySets:
 
 
 def _fetched(url: str) -> Any:
-    """Return what a platform answers; in a thread."""
+    """Ask a platform for its key set; runs in a thread."""
     until, body = time.monotonic() + LONGEST_S, b""
     with Web() as web, web.get(url, stream=True) as answer:
         if answer.status_code != 200:
@@ -106,7 +106,7 @@ def _fetched(url: str) -> Any:
 
 
 def _usable(found: Any) -> Keys:
-    """Return the RSA keys for signatures that a key set has; others may stand beside them."""
+    """Return the RSA keys of a key set that are meant for signatures."""
     keys = found.get("keys") if isinstance(found, dict) else None
     return [
         one

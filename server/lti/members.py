@@ -121,7 +121,7 @@ class Members:
 
 
 def _known_as(row: LtiKeyRow) -> Change:
-    """Keep what a hash stands for."""
+    """Keep the class or the student of a hash."""
     return Change(lambda session: session.merge(row))
 
 

@@ -135,7 +135,7 @@ class _Message(MessageLaunch[_Parameters, Tool, _Memory, _Memory]):
         return kid
 
     def get_client_id(self) -> str:
-        """Return the tool that the message is for: of several, the one that it names."""
+        """Return the client id of the audience; of several, ``azp``."""
         body = self._get_jwt_body()
         audience: Any = body.get("aud")
         if isinstance(audience, list):

@@ -111,7 +111,7 @@ class Audit:
         return Change(lambda session: session.execute(gone), lambda: self.drop(class_id))
 
     def drop(self, class_id: str) -> None:
-        """Write nothing more of what was done in a class."""
+        """Drop the entries of a class that are not written yet."""
         waiting = [row for row in self._waiting if row["class_id"] != class_id]
         self._waiting.clear()
         self._waiting.extend(waiting)

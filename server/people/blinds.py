@@ -83,19 +83,19 @@ class Blinds:
         self._answers = {row.id: Answer.model_validate(row.answer) for row in rows}
 
     def find(self, question: str) -> Answer | None:
-        """Return what became of a question, by its id."""
+        """Return the answer to a question, by its id."""
         return self._answers.get(question)
 
     def of_person(self, person_id: str) -> list[Answer]:
-        """Return the answers of somebody, given or revealed, oldest first."""
+        """Return the answers of a person, given or revealed, oldest first."""
         return [one for one in self._answers.values() if one.person_id == person_id and one.state != "hidden"]
 
     def of_class(self, class_id: str) -> list[Answer]:
-        """Return what exercises hid from the students of a class, oldest first, also what nobody has answered yet."""
+        """Return the hidden faults of the exercises of a class, oldest first, answered or not."""
         return [one for one in self._answers.values() if one.class_id == class_id and one.exercise]
 
     def last_of(self, person_id: str) -> Answer | None:
-        """Return what an exercise hid last from a student."""
+        """Return the last fault that an exercise hid from a student."""
         found = (one for one in reversed(self._answers.values()) if one.person_id == person_id and one.exercise)
         return next(found, None)
 
@@ -146,7 +146,7 @@ class Blinds:
     def noting(
         self, session: Session, person: Person, blind: Blind, exercise: str = "", seed: int | None = None
     ) -> Change:
-        """Note that a fault is hidden from somebody."""
+        """Note a hidden fault."""
         return self._keeping(_unanswered(session, person, blind, exercise, seed))
 
     async def commit(self, session: Session, person: Person, said: str, confidence: float) -> Answer:
@@ -213,7 +213,7 @@ class Blinds:
         return answer
 
     def _keeping(self, answer: Answer) -> Change:
-        """Keep an answer; of somebody alone the oldest are forgotten."""
+        """Keep an answer; without a class the oldest are deleted."""
         row = BlindAnswerRow(
             id=answer.id,
             class_id=answer.class_id or None,
@@ -242,7 +242,7 @@ def _deleted(ids: list[str]) -> Callable[[DatabaseSession], object]:
 
 
 def _unanswered(session: Session, person: Person, blind: Blind, exercise: str = "", seed: int | None = None) -> Answer:
-    """Return a hidden fault as it is kept until somebody answers."""
+    """Return the record of a hidden fault without an answer."""
     return Answer(
         id=blind.question.id,
         exercise=exercise,

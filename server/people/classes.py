@@ -196,7 +196,7 @@ class Classes:
         return await self._people.add("student", name, row.until, row.id, also=also)
 
     def note_joined(self, person: Person) -> None:
-        """Note in the log that somebody has joined."""
+        """Note in the log that a student has joined."""
         self._audit.add(person.name, "joined", "joined the class", person.class_id)
 
     def is_called(self, class_id: str, name: str) -> bool:
@@ -272,7 +272,7 @@ class Classes:
             self._games.forgetting(class_id),
             Change(lambda session: session.execute(gone), take),
         )
-        self._audit.drop(class_id)  # what was said as the benches closed
+        self._audit.drop(class_id)  # entries of the benches as they closed
 
     async def run(self, clock: Clock) -> None:
         """Reopen the benches of all students, then end classes whose time is over, now and again and again."""

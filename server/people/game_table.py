@@ -65,23 +65,23 @@ class GameTable:
         self._database = database
 
     async def of(self, person: Person, game: str, seed: int) -> tuple[Turns, list[Standing]]:
-        """Return what somebody did at a game and a seed, and the table of the class or of those who are in none."""
+        """Return the attempts of a person at a game and a seed, and the table of the class."""
         return await self._database.run(lambda session: _seen(session, person, game, seed))
 
     async def of_class(self, class_id: str, game: str, seed: int, teacher: Person) -> list[Standing]:
-        """Return the table of a class, all of it told."""
+        """Return the whole table of a class."""
         return await self._database.run(lambda session: _lines(session, class_id, game, seed, teacher))
 
     async def add(
         self, person: Person, game: str, seed: int, handed: dict[str, Any], outcome: Outcome
     ) -> tuple[Turns, list[Standing]]:
-        """Keep an attempt; return how things are with it."""
+        """Keep an attempt; return attempts and table with it."""
         row = _row(person, game, seed)
         row.points, row.attempt = outcome.points, {"handed_in": handed, "outcome": outcome.model_dump()}
         return await self._database.run(lambda session: _keep(session, row, person))
 
     async def looked(self, person: Person, game: str, seed: int) -> tuple[Turns, list[Standing]]:
-        """Keep that somebody was shown what is hidden; return how things are then."""
+        """Keep that a person has seen the hidden facts; return attempts and table."""
         row = _row(person, game, seed)
         return await self._database.run(lambda session: _keep(session, row, person))
 

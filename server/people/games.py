@@ -100,7 +100,7 @@ class Games:
     async def _shown(
         self, person: Person, name: str, seed: int, number: int, turns: Turns, table: list[Standing]
     ) -> Play:
-        """Show a game as things are with it; what others handed in is told when nothing can be handed in any more."""
+        """Show a game; the settings of others come with the last attempt."""
         game = game_of(name)
         left = _left(game, turns)
         bench = self._bench_of(person, Played(game=name, seed=seed))
@@ -210,7 +210,7 @@ class Games:
         return await self._shown(person, name, seed, number, *seen)
 
     async def _drawn(self, person: Person, name: str, seed: int) -> int:
-        """Return the seed of a game; each student has one that nobody can work out, and that no other name is told."""
+        """Return the seed of a game; for a student it is drawn from the secret of the class and the student."""
         return await self._classes.draw(person, "game", name, str(seed)) if person.class_id else seed
 
     async def _judged(self, name: str, number: int, handed: dict[str, Any]) -> Outcome:

@@ -54,8 +54,7 @@ class Joining:
     async def join(self, address: str, code: str, name: str, class_id: str = "") -> tuple[Person, str]:
         """Let a student in, into one class if it is named; return the person and the secret of the session.
 
-        A right code never pays for wrong ones, which somebody else at the same address may have tried. What keeps
-        strangers from guessing is the number of codes.
+        A right code never pays for wrong ones from the same address. The number of codes keeps strangers from guessing.
 
         Raises
         ------

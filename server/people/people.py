@@ -74,7 +74,7 @@ class People:
         bench_id: str | None = None,
         also: Callable[[str], Sequence[Change]] = lambda _: (),
     ) -> tuple[Person, str]:
-        """Let somebody in; return the person and the secret of the session, which is kept nowhere.
+        """Add a person; return the person and the secret of the session, which is kept nowhere.
 
         What ``also`` returns for the id of the person is kept with it.
         """
@@ -197,7 +197,7 @@ class People:
         await self._database.keep(self.removal(person))
 
     def drop(self, person: Person) -> None:
-        """End the session of somebody who could not be let in after all; the row goes as soon as it can."""
+        """Undo `add`; the row is deleted as soon as the database allows it."""
         self._forget(person)
         self._database.run_later(self.removal(person).write)
 

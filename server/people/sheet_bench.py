@@ -1,4 +1,4 @@
-"""The benches of lab sheets: what is drawn for each student, and how one takes the place of another."""
+"""The benches of lab sheets: the draws for each student, and the replacement of one bench by the next."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class SheetBenches:
         self._classes, self._benches, self._swap = classes, benches, swap
 
     async def beginning(self, person: Person, sheet: Sheet) -> Beginning:
-        """Draw the bench of a sheet for somebody."""
+        """Draw the bench of a sheet for a person."""
         words = ["device", "noise", *(f"number {name}" for name in sheet.head.draws)]
         drawn = {word: await self._classes.draw(person, sheet.id, word) for word in words}
         return await asyncio.to_thread(begin, sheet, drawn.__getitem__)
@@ -51,7 +51,7 @@ class SheetBenches:
         also: Callable[[Session], Sequence[Change]],
         hide: Callable[[Board], Blind] | None = None,
     ) -> None:
-        """Give somebody another bench of a sheet in place of the one before, with a hidden fault if one is chosen.
+        """Replace the bench of a sheet by a new one, with a hidden fault if ``hide`` chooses one.
 
         Raises
         ------

@@ -57,7 +57,7 @@ class Works:
         return sorted((w for w in found if class_id in ("", w.class_id)), key=lambda w: w.begun, reverse=True)
 
     def keeping(self, work: Work, progress: Progress | None = None) -> Change:
-        """Keep what somebody did, with another progress if one is given."""
+        """Keep the work of a person, with another progress if there is one."""
         row = SheetProgressRow(
             person_id=work.person_id,
             sheet_id=work.sheet_id,

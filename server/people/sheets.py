@@ -305,7 +305,7 @@ class Sheets:
         await self._follow(work)
 
     async def _follow_blind(self, work: Work, step: BlindStep) -> None:
-        """Close a step of blind diagnosis once the fault that it has hidden is answered, or given up."""
+        """Close a step of blind diagnosis once its hidden fault has an answer or is revealed."""
         answer = self._blinds.find(work.progress.of(step).hidden)
         if answer is None or answer.ended_tick is None:
             return  # a bench that has gone is no answer
@@ -319,7 +319,7 @@ class Sheets:
             await self._database.keep(self._keeping(work, progress))
 
     def _keeping(self, work: Work, progress: Progress | None = None) -> Change:
-        """Keep what somebody did, with another progress if one is given."""
+        """Keep the work of a person, with another progress if there is one."""
         change = self._works.keeping(work, progress)
 
         def take() -> None:

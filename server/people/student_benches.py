@@ -115,7 +115,7 @@ class StudentBenches:
         hide: Callable[[Board], Blind] | None = None,
         also: Callable[[Session], Sequence[Change]] = lambda _: (),
     ) -> Session:
-        """Give a student another bench in place of the one that is there, with a hidden fault if one is chosen.
+        """Replace the bench of a student, with a hidden fault if ``hide`` chooses one.
 
         The old bench closes, and then the pages of the student go to the new one. What ``also`` returns for the new
         bench has changed before that, so that the pages find all they ask for.

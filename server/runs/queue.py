@@ -259,6 +259,6 @@ class Queue:
                 return
             except DBAPIError as error:
                 if self._is_closing:
-                    raise  # it goes on at the next start
+                    raise  # the next start resumes it
                 log.error("the end of %s is not in the database yet: %s", row_id, reason_of(error))
                 await asyncio.sleep(min(tries, LONGEST_WAIT_S))

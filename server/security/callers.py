@@ -1,4 +1,4 @@
-"""Where requests come from: the address of the connection, or what a trusted proxy says of it. Limits alone ask."""
+"""The address of a caller, of the connection or from a trusted proxy; limits and the log use it."""
 
 from __future__ import annotations
 

@@ -57,8 +57,8 @@ class Gate:
     origin : OriginPolicy
         Checks the host and the origin.
     come_back : callable
-        Brings the bench in the path, or that of a student, back after a server has ended: one that hides a fault
-        hides it from the first request on.
+        Revives the bench in the path, or the bench of a student, after a restart: a hidden fault stays hidden from
+        the first request on.
     is_blind : callable
         Whether a fault is hidden from a person, on the bench in the path or on that of a student.
     open_paths : frozenset of str

@@ -1,4 +1,4 @@
-"""A change of what is kept: how it is written, and what is true in memory once it is."""
+"""A change of stored data: the write to the database, and the change in memory that follows it."""
 
 from __future__ import annotations
 

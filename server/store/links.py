@@ -155,7 +155,7 @@ def _found(row: LinkRow | None, link_id: str) -> LinkDetail:
 
 
 def _forget_oldest(session: Session) -> None:
-    """Keep the benches that were let go within their number."""
+    """Delete the oldest benches beyond their number."""
     newest = select(LinkRow.id).where(LinkRow.kind == "bench").order_by(LinkRow.created.desc())
     ids = list(session.scalars(newest.offset(MOST_LET_GO)))
     session.execute(delete(LinkRow).where(LinkRow.id.in_(ids)))

@@ -106,7 +106,7 @@ def rescue(path: Path) -> int:
 
 
 def is_readable(path: Path) -> bool:
-    """Return whether a file is there and whole, as far as its description tells."""
+    """Return whether a file exists and its footer can be read."""
     try:
         pq.read_metadata(path)
     except (OSError, pa.ArrowException):
