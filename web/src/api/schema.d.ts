@@ -2285,7 +2285,7 @@ export interface paths {
         };
         /**
          * Get Class Game
-         * @description Show the table of a class with what everybody handed in, and what the seed hides from each.
+         * @description Show the table of a class with all settings handed in, and the hidden facts of each student.
          */
         get: operations["get_class_game_api_v1_classes__class_id__games__game_id__get"];
         put?: never;
