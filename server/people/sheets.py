@@ -230,9 +230,10 @@ class Sheets:
         ApiError
             If it has not been begun, or cannot be done now.
         """
-        sheet, work = self.get(sheet_id), self._must_have(person, sheet_id)
-        bench = self._benches.find(work.bench_id)
+        sheet = self.get(sheet_id)
         async with self._turn:
+            work = self._must_have(person, sheet_id)
+            bench = self._benches.find(work.bench_id)
             progress = work.progress.model_copy(deep=True)
             what(progress, sheet, bench.status.tick if bench is not None else 0)
             await self._database.keep(self._keeping(work, progress))

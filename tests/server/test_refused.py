@@ -11,14 +11,12 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import pytest
-from sqlalchemy.exc import OperationalError
 
 from scenarios.campaign.executor import Processes
 from server.people.access import DOORS, SOCKET
 from server.runs.queue import Queue
-from server.store.database import Database
 from tests.server.conftest import Live
-from tests.server.world import World
+from tests.server.world import Injector, World
 from tests.server.writing_doors import AFTER_ALL, CASES, WITHOUT
 
 
@@ -40,27 +38,6 @@ def world(live: Live, monkeypatch: pytest.MonkeyPatch) -> Iterator[World]:
         yield made
         made.end()
     live.service.joining._tries._buckets.clear()
-
-
-class Injector:
-    """Fails one database call, counted from the moment it is told to."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.left, self.has_failed = -1, False
-        run = Database.run
-
-        async def failing(database: Database, work: Any) -> Any:
-            self.left -= 1
-            if self.left == -1 and self.is_armed:
-                self.has_failed = True
-                raise OperationalError("a statement", {}, Exception("the database is gone"))
-            return await run(database, work)
-
-        self.is_armed = False
-        monkeypatch.setattr(Database, "run", failing)
-
-    def arm(self, calls: int) -> None:
-        self.left, self.has_failed, self.is_armed = calls, False, True
 
 
 def test_every_door_that_writes_is_tried() -> None:

@@ -6,8 +6,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import pytest
+from sqlalchemy.exc import OperationalError
+
 from server.people.access import API
 from server.store.base import Base
+from server.store.database import Database
 from tests.server.conftest import Live
 from tests.server.people.group import Somebody, join, open_class, the_teacher
 
@@ -123,3 +127,24 @@ class World:
                 query = table.select()
                 rows[table.name] = sorted(map(str, service.database.transact(lambda s, q=query: list(s.execute(q)))))
         return {**self.live.on_loop(memory()), "files": files, **rows}
+
+
+class Injector:
+    """Fails one database call, counted from the moment it is told to."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.left, self.has_failed = -1, False
+        run = Database.run
+
+        async def failing(database: Database, work: Any) -> Any:
+            self.left -= 1
+            if self.left == -1 and self.is_armed:
+                self.has_failed = True
+                raise OperationalError("a statement", {}, Exception("the database is gone"))
+            return await run(database, work)
+
+        self.is_armed = False
+        monkeypatch.setattr(Database, "run", failing)
+
+    def arm(self, calls: int) -> None:
+        self.left, self.has_failed, self.is_armed = calls, False, True
