@@ -56,6 +56,7 @@ from server.security.body import BodyLimit
 from server.security.frames import Frames
 from server.security.gate import Gate
 from server.security.headers import SecurityHeaders
+from server.security.heads import Heads
 from server.security.identity import Identity, token_of
 from server.security.origin import OriginPolicy
 from server.service import Service
@@ -161,12 +162,14 @@ def create_app(settings: Settings) -> FastAPI:
         frames = routes.install(app, service)
     app.router.default = Page()
     # A request passes the middleware that was added last first.
+    app.add_middleware(Heads)
     app.add_middleware(BodyLimit, limit=settings.body_limit_bytes)
     app.add_middleware(
         Gate,
         identity=identity,
         people=service.people,
         driving=service.driving,
+        come_back=service.come_back,
         is_blind=service.views.is_blind,
         origin=OriginPolicy(settings.host, settings.allowed_hosts, public, settings.classroom),
         open_paths=frozenset({"/metrics"}) if settings.metrics_open else frozenset(),

@@ -9,6 +9,7 @@ from http import HTTPStatus
 from typing import Any
 from urllib.parse import urlencode
 
+import pyarrow as pa
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, RedirectResponse, Response
@@ -29,6 +30,7 @@ LONGEST = 300
 """Characters of a message, a field or a hint: one line a person reads."""
 METHODS = ("DELETE", "GET", "PATCH", "POST", "PUT")
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+STORAGE = "the database cannot be used now; the log says why"
 
 
 class ErrorBody(BaseModel):
@@ -168,6 +170,18 @@ def _given(error: Any) -> str:
     return f" (got {given!r})" if isinstance(given, str) and len(given) <= 40 else ""
 
 
+REFUSED = (InputError, ApiError, DBAPIError)
+"""What refuses something for one of several people; nothing has changed for that person then."""
+
+
+def why(error: Exception) -> str:
+    """Return in words why something was refused."""
+    if isinstance(error, DBAPIError):
+        log.error("the database refused: %s", error.orig)
+        return STORAGE
+    return str(error)
+
+
 def install(app: FastAPI, prefix: str) -> None:
     """Answer every failure of ``app`` in the one shape.
 
@@ -195,16 +209,22 @@ def install(app: FastAPI, prefix: str) -> None:
     @app.exception_handler(DBAPIError)
     async def _(_request: Request, error: DBAPIError) -> JSONResponse:
         log.error("the database refused: %s", error.orig)
-        body = ErrorBody(code="storage", message="the database cannot be used now; the log says why")
+        body = ErrorBody(code="storage", message=STORAGE)
         return reply(503, body, {"Retry-After": "5"})
 
     @app.exception_handler(OSError)
     async def _(_request: Request, error: OSError) -> JSONResponse:
+        if error.errno is None:  # the reader of traces reports damaged files so
+            return unreadable(error)
         if error.errno not in FULL:
             raise error
         log.error("no room to write: %s", error)
         body = ErrorBody(code="no_space", message=f"the answer cannot be made: {error.strerror}")
         return reply(507, body)
+
+    @app.exception_handler(pa.ArrowException)
+    async def _(_request: Request, error: pa.ArrowException) -> JSONResponse:
+        return unreadable(error)
 
     @app.exception_handler(InputError)
     async def _(_request: Request, error: InputError) -> JSONResponse:
@@ -224,6 +244,13 @@ def install(app: FastAPI, prefix: str) -> None:
         if error.status_code == 405:
             headers["Allow"] = ", ".join(allowed(request))
         return reply(error.status_code, ErrorBody(code=code, message=message), headers)
+
+
+def unreadable(error: Exception) -> JSONResponse:
+    """Answer for a file that is damaged."""
+    log.error("a file cannot be read: %s", error)
+    body = ErrorBody(code="damaged", message="the file cannot be read: it is damaged", hint="the log says where")
+    return reply(410, body)
 
 
 def allowed(request: Request) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from typing import Any
 from urllib.parse import urlsplit
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
@@ -32,6 +33,12 @@ class Platform(BaseModel):
         if parts.scheme not in ("http", "https") or not parts.hostname:
             raise ValueError("must be an address such as https://moodle.example/mod/lti/auth.php")
         return given
+
+    @field_validator("deployment_ids", mode="before")
+    @classmethod
+    def _are_texts(cls, given: Any) -> Any:
+        """Take whole numbers too: some platforms show their ids so."""
+        return [str(one) if type(one) is int else one for one in given] if isinstance(given, list) else given
 
     @field_validator("frames")
     @classmethod

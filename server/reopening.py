@@ -89,7 +89,11 @@ class Reopening:
             if link is None:
                 raise not_found("bench", bench_id, "it was closed, or let go too long ago")
             session = await self.open_link(link, bench_id)
-            await self._links.delete(bench_id)
+            try:
+                await self._links.delete(bench_id)
+            except BaseException:
+                await self._close_bench(session, comes_back=True)
+                raise
             return session
 
     async def run(self, clock: Clock) -> None:

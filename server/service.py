@@ -7,7 +7,7 @@ import contextlib
 import importlib.util
 import logging
 import secrets
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from typing import TYPE_CHECKING
 
 import pyarrow as pa
@@ -46,9 +46,11 @@ from server.runs.jobs import Jobs
 from server.runs.queue import Queue
 from server.runs.sweeps import Sweeps
 from server.runs.thresholds import Thresholds
+from server.security.callers import Callers
 from server.security.limits import Buckets
 from server.security.public import PublicOrigin
 from server.settings import Settings
+from server.store.change import Change
 from server.store.database import Database
 from server.store.keeping import Keeping
 from server.store.links import Links
@@ -98,7 +100,7 @@ class Service:
         self.staging = Staging(self.benches, self.engine)
         self.checkpoints = Checkpoints(settings.data / "benches", self.engine, self._kept)
         self.student_benches = StudentBenches(
-            self.database, self.people, self.benches, self.close_bench, self.checkpoints
+            self.database, self.people, self.benches, self.swap, self.close_benches, self.checkpoints
         )
         self.blinds, self.votes = Blinds(self.database, self.engine, self._turn_pages), Votes(self.database, shard)
         game_table = GameTable(self.database)
@@ -129,7 +131,7 @@ class Service:
             self.queue.processes,
             settings.run_workers,
             self._turn_pages,
-            self.close_bench,
+            self.swap,
         )
         self.keeping = Keeping(self.database, self.shared, settings)
         self.safety = Safety(
@@ -137,6 +139,7 @@ class Service:
         )
         self.watchdog = Watchdog(self.engine, self.safety)
         self.commands = Buckets(settings.command_rate_per_s, settings.command_burst, clock=self.clock)
+        self.callers = Callers(settings.trusted_proxies)
         self.joining = Joining(self.classes, self.clock)
         self.sheets = Sheets(
             self.database,
@@ -145,7 +148,7 @@ class Service:
             self.people,
             self.benches,
             self.engine,
-            self.close_bench,
+            self.swap,
             self.blinds,
         )
         self.viewers = _viewers()
@@ -210,13 +213,38 @@ class Service:
 
     async def close_bench(self, session: Session, *, comes_back: bool = False) -> None:
         """Close a bench, its streams and its 3D view; unless it comes back, links to watch it end too."""
-        await self.blinds.close(session)
+        await self.database.keep(*self._leaving(session, comes_back))
+        await self._shut(session, comes_back)
+
+    async def close_benches(self, sessions: Sequence[Session], *changes: Change) -> None:
+        """Close benches for good as something else changes: all of it, or nothing where it cannot be kept."""
+        await self.database.keep(*(change for one in sessions for change in self._leaving(one)), *changes)
+        for session in sessions:
+            await self._shut(session)
+
+    async def swap(self, made: Session, before: Sequence[Session], *changes: Change) -> None:
+        """Let a bench that was just made take the place of others; where that cannot be kept, it is gone again."""
+        try:
+            await self.database.keep(*(change for one in before for change in self._leaving(one)), *changes)
+        except BaseException:
+            await self._shut(made)
+            raise
+        for session in before:
+            await self._shut(session)
+
+    def _leaving(self, session: Session, comes_back: bool = False) -> list[Change]:
+        """Return what changes as a bench closes."""
+        changes = self.blinds.closing(session)
+        if not comes_back:
+            watchers = self.people.watchers(session.id)
+            changes += [*self.lesson.forgetting(session.id), *map(self.people.removal, watchers)]
+        return changes
+
+    async def _shut(self, session: Session, comes_back: bool = False) -> None:
+        """Stop a bench for good, with its streams and its 3D view."""
         await self.benches.close_bench(session)
         if not comes_back:
             self.driving.forget(session.id)
-            await self.lesson.forget(session.id)
-            for watcher in self.people.watchers(session.id):
-                await self.people.remove(watcher)
         self.hub.close_bench(session.id)
         self.idling.forget(session.id)
         await self.checkpoints.forget(session.id)
@@ -241,6 +269,14 @@ class Service:
             if not await self.student_benches.bring_back(bench_id):
                 self.driving.forget(bench_id)
                 await self.lesson.forget(bench_id)
+
+    async def come_back(self, person: Person, bench_id: str) -> None:
+        """Revive the bench of a request, or the bench of the student who sends it, before all benches are back."""
+        wanted = bench_id or self.people.bench_of(person)
+        if not wanted or self.benches.find(wanted) is not None or not self.student_benches.may_come(wanted):
+            return
+        if self.people.owner(wanted) is not None or wanted in self.people.seen_by_students():
+            await self.student_benches.bring_back(wanted)
 
     async def close_streams(self) -> None:
         """Tell every page that the server stops, and close its stream."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import tomllib
 from dataclasses import dataclass
-from ipaddress import ip_address
+from ipaddress import ip_address, ip_network
 from pathlib import Path
 from typing import Any, Literal
 
@@ -48,6 +48,10 @@ class Settings(BaseSettings):
     allowed_hosts: list[str] = Field([], description="Further host names the page may be opened under.")
     public_origin: str = Field(
         "", description="Address of the page behind a proxy, such as https://lab.example or https://lab.example/bench."
+    )
+    trusted_proxies: list[str] = Field(
+        [],
+        description="Addresses or networks of proxies whose X-Forwarded-For says where a request is from; for limits.",
     )
     classroom: bool = Field(
         False, description="Serve a class on this network without TLS; the token is accepted from this machine alone."
@@ -115,6 +119,12 @@ class Settings(BaseSettings):
     scheduler: str = Field("", description="Dask scheduler for campaigns; processes of this machine if unset.")
     log_format: str = Field("auto", pattern="^(auto|text|json)$", description="Log lines: text, json, or by terminal.")
     log_level: str = Field("INFO", pattern="^(DEBUG|INFO|WARNING|ERROR)$", description="Least severe line logged.")
+
+    @field_validator("trusted_proxies")
+    @classmethod
+    def _are_networks(cls, given: list[str]) -> list[str]:
+        """Refuse a text that is neither an address nor a network."""
+        return [str(ip_network(one)) for one in given]
 
     @field_validator("public_origin")
     @classmethod

@@ -7,7 +7,6 @@ from datetime import datetime
 from typing import Any
 
 import numpy as np
-from latex2mathml.converter import convert
 from markdown_it import MarkdownIt
 from markupsafe import Markup
 from mdit_py_plugins.dollarmath import dollarmath_plugin
@@ -15,12 +14,13 @@ from mdit_py_plugins.dollarmath import dollarmath_plugin
 from core.format import format_short
 from scenarios.report.axis import Axis
 from scenarios.report.html import page
+from scenarios.report.mathml import mathml
 from scenarios.report.svg import Chart, Series, paint
 
 
 def _math(latex: str, options: dict[str, Any]) -> str:
-    """Set mathematics as MathML, which browsers draw without any script or font."""
-    return str(convert(latex, display="block" if options["display_mode"] else "inline"))
+    """Set mathematics."""
+    return mathml(latex, is_block=options["display_mode"])
 
 
 MARKDOWN = (

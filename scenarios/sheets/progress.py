@@ -37,7 +37,8 @@ class StepProgress(BaseModel):
     tick: int = 0
     values: dict[str, float | str | None] = {}
     trace: dict[str, Any] = {}
-    blind_before: int | None = None
+    hidden: str = ""
+    """Id of the question by which the step has hidden a fault."""
 
     def points(self, step: AnyStep) -> float:
         """Return the points of the step so far; wrong answers and hints can bring them below 0."""

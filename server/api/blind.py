@@ -7,13 +7,12 @@ from typing import Any
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from core.errors import InputError
 from server.api.bodies import Body, StrictRoute
 from server.api.classes import Outcomes
 from server.api.deps import PersonDep, RateLimited, ServiceDep, SessionDep
 from server.api.students import students_of
 from server.bench.blind import Question
-from server.errors import ApiError
+from server.errors import REFUSED, ApiError, why
 from server.people.blind_class import begin_for
 from server.people.blinds import Answer
 
@@ -131,7 +130,7 @@ async def reveal_class(class_id: str, service: ServiceDep, person: PersonDep) ->
         try:
             await service.blinds.reveal(session, person)
             done += 1
-        except (InputError, ApiError) as error:
-            failed.append(f"{student.name}: {error}")
+        except REFUSED as error:
+            failed.append(f"{student.name}: {why(error)}")
     service.audit.add("teacher", "blind", f"showed {done} students what was hidden", class_id)
     return Outcomes(done=done, failed=failed)

@@ -7,7 +7,6 @@ import asyncio
 from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, Field
 
-from core.errors import InputError
 from server.api.benches import NewBench
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
@@ -15,7 +14,7 @@ from server.api.joining import address_of, give_session
 from server.api.students import student_of, students_of
 from server.bench.commands import Command
 from server.classroom import join_addresses
-from server.errors import ApiError
+from server.errors import REFUSED, why
 from server.people.classes import Class
 from server.people.person import Person
 from server.people.sheet_work import brief
@@ -126,8 +125,14 @@ async def end_code(class_id: str, service: ServiceDep, request: Request) -> Clas
 async def join_class(class_id: str, body: Join, request: Request, response: Response, service: ServiceDep) -> Joined:
     """Join a class by its code."""
     person, secret = await service.joining.join(address_of(request), body.code, body.name, class_id)
+    try:
+        bench = await service.student_benches.get(person)
+    except BaseException:
+        service.people.drop(person)  # or the name would be taken
+        raise
+    service.classes.note_joined(person)
     give_session(request, response, person, secret)
-    return Joined(id=person.id, session=secret, bench=(await service.student_benches.get(person)).id)
+    return Joined(id=person.id, session=secret, bench=bench.id)
 
 
 @router.get("/{class_id}/members", response_model=Members)
@@ -154,8 +159,8 @@ async def command_all(class_id: str, body: ForAll, service: ServiceDep) -> Outco
         try:
             session = await service.student_benches.get(person)
             await service.benches.command(session, body.command, "teacher")
-        except (InputError, ApiError) as error:
-            return f"{person.name}: {error}"
+        except REFUSED as error:
+            return f"{person.name}: {why(error)}"
         return None
 
     said = await asyncio.gather(*(one(person) for person in students))

@@ -55,11 +55,11 @@ def get_person(connection: HTTPConnection) -> Person:
 PersonDep = Annotated[Person, Depends(get_person)]
 
 
-def get_caller(request: Request, person: PersonDep) -> str:
+def get_caller(request: Request, person: PersonDep, service: ServiceDep) -> str:
     """Name the caller for the event log: a student by name, the teacher by address, as all programs share one token."""
     if not person.is_teacher:
         return person.name
-    return f"api {request.client.host}" if request.client else "api"
+    return f"api {service.callers.address(request)}".rstrip()
 
 
 def get_seen(session: SessionDep, service: ServiceDep, person: PersonDep) -> Seen:

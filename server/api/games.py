@@ -19,7 +19,7 @@ from server.people.person import Person
 router = APIRouter(tags=["games"], route_class=StrictRoute)
 
 GameId = Annotated[str, Path(max_length=40)]
-Seed = Annotated[int, Query(ge=0, le=MOST, description="The same one is the same game for all of a class")]
+Seed = Annotated[int, Query(ge=0, le=MOST, description="Each student of a class has a game of their own at it")]
 
 
 class GameCard(BaseModel):
@@ -96,33 +96,33 @@ async def begin_game(game_id: GameId, body: Begin, service: ServiceDep, person: 
     _must_play(person)
     if person.role == "student":
         service.driving.check(service.people.bench_of(person), person)  # the one before is gone with it
-    await service.games.begin(person, game_id, body.seed, body.hand_in)
+    begun = await service.games.begin(person, game_id, body.seed, body.hand_in)
     await service.checkpoints.write()  # that of a student hides it after a crash too
-    return await service.games.view(person, game_id, body.seed)
+    return begun
 
 
 @router.post("/games/{game_id}/attempts", status_code=201, dependencies=[RateLimited])
 async def hand_in(game_id: GameId, body: HandIn, service: ServiceDep, person: PersonDep) -> Play:
     """Hand in: the server judges it by the rule, and the last attempt of the answer has the points."""
     _must_play(person)
-    outcome = await service.games.hand_in(person, game_id, body.seed, body.hand_in)
-    service.audit.add(person.name, "game", f"{game_id}, seed {body.seed}: {outcome.points:.1f} points", person.class_id)
-    return await service.games.view(person, game_id, body.seed)
+    judged = await service.games.hand_in(person, game_id, body.seed, body.hand_in)
+    points = judged.attempts[-1].outcome.points
+    service.audit.add(person.name, "game", f"{game_id}, seed {body.seed}: {points:.1f} points", person.class_id)
+    return judged
 
 
 @router.post("/games/{game_id}/reveal", dependencies=[RateLimited])
 async def reveal_game(game_id: GameId, body: Look, service: ServiceDep, person: PersonDep) -> Play:
     """Show what a seed hides; the caller cannot hand in at it any more."""
     _must_play(person)
-    await service.games.look(person, game_id, body.seed)
-    return await service.games.view(person, game_id, body.seed)
+    return await service.games.look(person, game_id, body.seed)
 
 
 @router.get("/classes/{class_id}/games/{game_id}")
 async def get_class_game(
     class_id: str, game_id: GameId, service: ServiceDep, person: PersonDep, seed: Seed = 1
 ) -> ClassGame:
-    """Show the table of a class with what everybody handed in, and what the seed hides."""
+    """Show the table of a class with all settings handed in, and the hidden facts of each student."""
     await service.classes.row(class_id)
     return await service.games.of_class(person, class_id, game_id, seed)
 

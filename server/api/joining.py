@@ -15,6 +15,7 @@ from server.people.joining import join_page
 from server.people.person import Person
 from server.security.gate import lead_on, page
 from server.security.identity import Identity
+from server.service import Service
 from server.store.base import now
 
 router = APIRouter(include_in_schema=False)
@@ -44,6 +45,7 @@ async def join(request: Request, service: ServiceDep) -> Response:
     except ApiError as error:
         text = join_page(_action(service), code, name, error.body)
         return HTMLResponse(text, error.status_code, {**FORM, **(error.headers or {})})
+    service.classes.note_joined(person)
     response = RedirectResponse("/", 303)
     give_session(request, response, person, secret)
     return response
@@ -55,7 +57,7 @@ async def watch(link: str, request: Request, service: ServiceDep) -> Response:
     person = service.people.by_secret(link)
     if person is None or person.role != "watcher":
         try:
-            service.joining.check(address_of(request))
+            service.joining.note_wrong(address_of(request))
         except ApiError as error:
             status = error.status_code
             return HTMLResponse(page(status, "Too many tries", "Wait a minute."), status, error.headers)
@@ -75,7 +77,7 @@ def give_session(request: Request, response: Response, person: Person, secret: s
 
 def address_of(request: Request) -> str:
     """Return where a request comes from."""
-    return request.client.host if request.client else ""
+    return cast(Service, request.app.state.service).callers.address(request)
 
 
 def _action(service: ServiceDep) -> str:

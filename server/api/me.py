@@ -63,5 +63,6 @@ async def raise_hand(body: Hand, person: PersonDep, service: ServiceDep) -> Me:
     """Raise a hand, or take it down; the teacher sees it."""
     if person.role != "student":
         raise ApiError(403, "forbidden", "only a student of a class has a hand to raise")
+    me = await get_me(person, service)
     (service.people.hands.add if body.raised else service.people.hands.discard)(person.id)
-    return await get_me(person, service)
+    return me.model_copy(update={"hand": body.raised})

@@ -8,7 +8,6 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Path, Query, Response
 from pydantic import BaseModel, Field
 
-from core.errors import InputError
 from core.format import format_short
 from scenarios.report.sheet import sheet_html
 from scenarios.sheets.sheet import Sheet
@@ -16,7 +15,7 @@ from server.api.bodies import Body, StrictRoute
 from server.api.classes import Outcomes
 from server.api.deps import PersonDep, RateLimited, ServiceDep
 from server.api.students import student_of, students_of
-from server.errors import ApiError, not_found
+from server.errors import REFUSED, ApiError, not_found, why
 from server.people.grades import Grade, grades_csv, grades_of
 from server.people.person import Person
 from server.people.sheet_view import SheetView
@@ -142,6 +141,17 @@ async def answer_step(sheet_id: Id, step_id: Id, body: StepAnswer, person: Perso
     return await service.sheets.view(person, sheet_id)
 
 
+@router.post("/sheets/{sheet_id}/steps/{step_id}/hide", status_code=201, dependencies=[RateLimited])
+async def hide_in_step(sheet_id: Id, step_id: Id, person: PersonDep, service: ServiceDep) -> SheetView:
+    """Hide the fault of the step that is open, on a new bench of the sheet; the answer to it closes the step."""
+    _must_work(person)
+    if person.role == "student":
+        service.driving.check(service.people.bench_of(person), person)  # the one before is gone with it
+    await service.sheets.hide(person, sheet_id, step_id)
+    await service.checkpoints.write()  # the bench of a student hides it after a crash too
+    return await service.sheets.view(person, sheet_id)
+
+
 @router.post("/sheets/{sheet_id}/steps/{step_id}/hint", dependencies=[RateLimited])
 async def take_hint(sheet_id: Id, step_id: Id, person: PersonDep, service: ServiceDep) -> SheetView:
     """Take the next hint, for the points that it costs."""
@@ -186,8 +196,8 @@ async def begin_for_all(class_id: Id, body: SheetForAll, service: ServiceDep) ->
     async def one(person: Person) -> str | None:
         try:
             await service.sheets.begin(person, body.sheet)
-        except (InputError, ApiError) as error:
-            return f"{person.name}: {error}"
+        except REFUSED as error:
+            return f"{person.name}: {why(error)}"
         return None
 
     failed = [said for person in chosen if (said := await one(person)) is not None]

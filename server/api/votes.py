@@ -105,5 +105,4 @@ async def cast(body: NewBallot, person: PersonDep, service: ServiceDep) -> OpenV
     """Answer the vote of one's class, or change one's answer."""
     if person.role != "student":
         raise ApiError(403, "forbidden", "only a student of a class votes")
-    await service.votes.cast(person, body.vote, Ballot(answer=body.answer, at_ms=body.at_ms))
-    return await service.votes.of(person)
+    return await service.votes.cast(person, body.vote, Ballot(answer=body.answer, at_ms=body.at_ms))

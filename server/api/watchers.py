@@ -60,6 +60,6 @@ async def end_watcher(watcher_id: str, session: SessionDep, service: ServiceDep)
     """End a link to watch; pages that it opened are closed."""
     for person in service.people.watchers(session.id):
         if person.id == watcher_id:
-            service.audit.add("teacher", "watcher", "ended a link to watch", session.class_id, session.id)
-            return await service.people.remove(person)
+            await service.people.remove(person)
+            return service.audit.add("teacher", "watcher", "ended a link to watch", session.class_id, session.id)
     raise not_found("link to watch", watcher_id)

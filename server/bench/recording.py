@@ -95,7 +95,7 @@ class Records:
         if not recorder.is_open:
             await asyncio.to_thread(recorder.join)
             return await self._store.get(recording.id)
-        return await self._store.begin(recording.id, tick)
+        return self._store.begin(recording, tick)
 
     async def end(self, session: Session, recording_id: str) -> Recording:
         """End a recording and wait until its file is whole."""

@@ -16,6 +16,11 @@ MEMBERSHIP = "http://purl.imsglobal.org/vocab/lis/v2/membership"
 INSTRUCTORS = ("Instructor", "ContentDeveloper", "Administrator")
 
 
+def text_of(found: object) -> str:
+    """Return a text, or the digits of a whole number, as some platforms send ids; of anything else nothing."""
+    return found if isinstance(found, str) else str(found) if type(found) is int else ""
+
+
 @dataclass(frozen=True)
 class Launch:
     """The message that a platform has signed.
@@ -32,11 +37,11 @@ class Launch:
     claims: Mapping[str, Any]
 
     def text(self, *path: str) -> str:
-        """Return a text of the message; nothing where it has none."""
+        """Return a text of the message, of a number its digits; nothing where it has none."""
         found: Any = self.claims
         for name in path:
             found = found.get(name) if isinstance(found, Mapping) else None
-        return found if isinstance(found, str) else ""
+        return text_of(found)
 
     @property
     def user(self) -> str:

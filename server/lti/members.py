@@ -7,6 +7,7 @@ from datetime import timedelta
 from typing import Any
 
 from sqlalchemy import delete, select
+from sqlalchemy.orm import Session
 
 from scenarios import library
 from server.api.benches import NewBench
@@ -17,6 +18,7 @@ from server.people.name import LONGEST_NAME, clean, in_one_line
 from server.people.person import Person
 from server.service import Service
 from server.store.base import now
+from server.store.change import Change
 from server.store.people import ClassRow, LtiKeyRow
 
 LASTS = timedelta(days=14)
@@ -65,8 +67,10 @@ class Members:
         if (known := await self._known(key)) is not None:
             return await classes.prolong(known.class_id, now() + LASTS)
         name = in_one_line(launch.course_name)[:100] or "Course"
-        made = await classes.open(name, _wanted(launch.scenario), LASTS.total_seconds() / 3600.0, 0.0, "lti")
-        await self._keep(LtiKeyRow(key=key, class_id=made.id))
+        hours = LASTS.total_seconds() / 3600.0
+        made = await classes.open(
+            name, _wanted(launch.scenario), hours, 0.0, "lti", lambda id_: [_known_as(LtiKeyRow(key=key, class_id=id_))]
+        )
         return await classes.row(made.id)
 
     async def _student(self, launch: Launch, group: ClassRow) -> tuple[Person, str]:
@@ -75,8 +79,12 @@ class Members:
         for person in self._service.people.students(group.id):
             if known is not None and person.id == known.person_id:
                 return await self._service.people.renew(person, group.until)
-        person, secret = await self._service.classes.admit(group, self._free_name(launch.name, group.id))
-        await self._keep(LtiKeyRow(key=key, class_id=group.id, person_id=person.id))
+        person, secret = await self._service.classes.admit(
+            group,
+            self._free_name(launch.name, group.id),
+            lambda id_: [_known_as(LtiKeyRow(key=key, class_id=group.id, person_id=id_))],
+        )
+        self._service.classes.note_joined(person)
         return person, secret
 
     def _free_name(self, given: str, class_id: str) -> str:
@@ -104,12 +112,17 @@ class Members:
 
     async def _known(self, key: str) -> LtiKeyRow | None:
         """Return the row of a hash; hashes of classes that are over are forgotten."""
-        gone = delete(LtiKeyRow).where(LtiKeyRow.class_id.not_in(select(ClassRow.id)))
-        await self._service.database.run(lambda session: session.execute(gone))
-        return await self._service.database.run(lambda session: session.get(LtiKeyRow, key))
 
-    async def _keep(self, row: LtiKeyRow) -> None:
-        await self._service.database.run(lambda session: session.merge(row))
+        def known(session: Session) -> LtiKeyRow | None:
+            session.execute(delete(LtiKeyRow).where(LtiKeyRow.class_id.not_in(select(ClassRow.id))))
+            return session.get(LtiKeyRow, key)
+
+        return await self._service.database.run(known)
+
+
+def _known_as(row: LtiKeyRow) -> Change:
+    """Keep the class or the student of a hash."""
+    return Change(lambda session: session.merge(row))
 
 
 def _wanted(scenario: str) -> dict[str, Any]:

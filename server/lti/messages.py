@@ -7,10 +7,13 @@ browser that ends a launch is the one that began it is checked by a third secret
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import jwt
+from cryptography.hazmat.primitives.asymmetric.rsa import RSAPublicKey
 from pylti1p3.cookie import CookieService
 from pylti1p3.deep_link import DeepLink
 from pylti1p3.deep_link_resource import DeepLinkResource
@@ -22,14 +25,21 @@ from pylti1p3.request import Request
 from pylti1p3.session import SessionService
 
 from server.errors import ApiError
-from server.lti.launch import CLAIM, DEEP_LINKING, Launch
-from server.lti.tool import Tool, Web
+from server.lti.keys import KeySets
+from server.lti.launch import CLAIM, DEEP_LINKING, Launch, text_of
+from server.lti.tool import Tool
 from server.people.person import hash_of, new_secret
 from server.platforms import Platform
 from server.security.once import Once
 
 LOGIN_S = 300.0
 ALGORITHM = "RS256"
+TOLERANCE_S = 60.0
+"""How far the clocks of a platform and of this server may differ."""
+FAR_S = 1e12
+"""Times are nearer to 1970 than this."""
+SIGNATURE_ALONE: Any = {f"verify_{name}": False for name in ("aud", "iss", "sub", "jti", "exp", "nbf", "iat")}
+"""The library compares audience and issuer itself; times are checked by our tolerance."""
 
 
 @dataclass(frozen=True)
@@ -104,15 +114,57 @@ class _Login(OIDCLogin[_Parameters, Tool, _Memory, _Memory, str]):
 class _Message(MessageLaunch[_Parameters, Tool, _Memory, _Memory]):
     """The end of a launch."""
 
+    key: RSAPublicKey | None = None
+    """The key of the platform, by the id that the message names."""
+    now: float = 0.0
+    """The time by our clock."""
+
     def _get_request_param(self, key: str) -> str:
         return self._request.get_param(key)
 
-    def get_public_key(self) -> tuple[str, str]:
-        """Return the key of the platform that signed; the algorithm is ours to say, not the message's."""
-        key, algorithm = super().get_public_key()
-        if algorithm != ALGORITHM:
-            raise LtiException(f"signed by {algorithm}, not by {ALGORITHM}")
-        return key, algorithm
+    def key_id(self) -> str:
+        """Return the id of the key that signed; the algorithm is ours to say, not the message's."""
+        self.validate_jwt_format()
+        header, body = self._jwt.get("header"), self._jwt.get("body")
+        if not isinstance(header, dict) or not isinstance(body, dict):
+            raise LtiException("Invalid JWT format, can't be decoded")
+        if (algorithm := header.get("alg")) != ALGORITHM:
+            raise LtiException(f"Unable to find public key: signed by {algorithm}, not by {ALGORITHM}")
+        if not (kid := header.get("kid")) or not isinstance(kid, str):
+            raise LtiException("JWT KID not found")
+        return kid
+
+    def get_client_id(self) -> str:
+        """Return the client id of the audience; of several, ``azp``."""
+        body = self._get_jwt_body()
+        audience: Any = body.get("aud")
+        if isinstance(audience, list):
+            named = body.get("azp") if len(audience) > 1 else audience[0] if audience else None
+            if named not in audience:
+                raise LtiException("it is for several tools, and does not say for which")
+            audience = named
+        if not isinstance(audience, str):
+            raise LtiException("Client id not registered for this issuer")
+        return audience
+
+    def _get_deployment_id(self) -> str:
+        return text_of(super()._get_deployment_id())
+
+    def validate_jwt_signature(self) -> _Message:
+        """Check signature and times."""
+        if self.key is None:
+            raise LtiException("Unable to find public key")
+        try:
+            jwt.decode(self._get_id_token(), self.key, algorithms=[ALGORITHM], options=SIGNATURE_ALONE)
+        except jwt.PyJWTError as error:
+            raise LtiException(f"Can't decode id_token: {error}") from error
+        body: Mapping[str, Any] = self._get_jwt_body()
+        if (past_s := self.now - _time_of(body, "exp")) >= TOLERANCE_S:
+            raise LtiException(f"it has expired {past_s:.0f} s ago by the clock of this server")
+        for name in ("iat", *(["nbf"] if "nbf" in body else [])):
+            if (ahead_s := _time_of(body, name) - self.now) > TOLERANCE_S:
+                raise LtiException(f"its time ({name}) is {ahead_s:.0f} s ahead of the clock of this server")
+        return self
 
 
 class Messages:
@@ -122,11 +174,15 @@ class Messages:
     ----------
     tool : Tool
         This server's keys and platforms.
+    key_sets : KeySets
+        The keys of platforms.
     """
 
-    def __init__(self, tool: Tool) -> None:
-        self._tool = tool
+    def __init__(self, tool: Tool, key_sets: KeySets) -> None:
+        self._tool, self._key_sets = tool, key_sets
         self._logins = Once[Login](LOGIN_S)
+        self.clock: Callable[[], float] = time.time
+        """Seconds since 1970, by which messages are too old or too new."""
 
     def begin(self, given: Mapping[str, str], launch_url: str) -> tuple[str, str, str]:
         """Return where a browser goes to be told who it is, the state, and the secret that this browser keeps.
@@ -149,8 +205,8 @@ class Messages:
         except OIDCException as error:
             raise _refused(str(error)) from None
 
-    def end(self, given: Mapping[str, str]) -> tuple[Launch, Login]:
-        """Return a launch that a platform has signed; asks the platform for its keys, so call it in a thread.
+    async def end(self, given: Mapping[str, str]) -> tuple[Launch, Login]:
+        """Return a launch that a platform has signed.
 
         Raises
         ------
@@ -164,25 +220,27 @@ class Messages:
         if given.get("error"):
             raise _refused(given.get("error_description") or given["error"])
         memory = _Memory(login.nonce, state)
-        with Web() as web:
-            message = _Message(_Parameters(given), self._tool, memory, memory, requests_session=web)
-            # the audience is compared with the client id by the library itself
-            message.set_jwt_verify_options({"verify_aud": False, "require": ["exp", "iat", "nonce"]})  # type: ignore[dict-item]
-            try:
-                message.validate()
-                claims: Mapping[str, Any] = message.get_launch_data()
-            except LtiException as error:
-                raise _refused(str(error)) from None
-            except (KeyError, TypeError, AttributeError, ValueError, AssertionError):
-                raise _refused("the message is not one of LTI 1.3") from None
-        audience = claims["aud"]
-        if isinstance(audience, list) and len(audience) > 1 and claims.get("azp") != login.platform.client_id:
-            raise _refused("the message is for several tools, and does not say that it is for this one")
-        if (message.get_iss(), message.get_client_id()) != (login.platform.issuer, login.platform.client_id):
-            raise _refused("the launch ended at another platform than it began")
+        message = _Message(_Parameters(given), self._tool, memory, memory)
+        message.set_auto_validation(enable=False)
+        try:
+            kid = message.key_id()
+            named = self._tool.platform(str(message.get_iss()), message.get_client_id())
+            if named is not None and named != login.platform:
+                raise LtiException("the launch ended at another platform than it began")
+            message.key = await self._key_sets.key(login.platform.key_set_url, kid)
+            message.now = self.clock()
+            message.validate()
+            claims: Mapping[str, Any] = message.get_launch_data()
+        except LtiException as error:
+            raise _refused(str(error)) from None
+        except (KeyError, TypeError, AttributeError, ValueError, AssertionError):
+            raise _refused("the message is not one of LTI 1.3") from None
         if not (message.is_resource_launch() or message.is_deep_link_launch()):
             raise _refused("only links to exercises, and the choice of one, can be launched")
-        return Launch(login.platform, claims), login
+        launch = Launch(login.platform, claims)
+        if not launch.user:
+            raise _refused("the platform does not say who the user is")
+        return launch, login
 
     def link(self, launch: Launch, resource: DeepLinkResource) -> tuple[str, str]:
         """Return where the choice of an exercise goes, and the signed message."""
@@ -192,6 +250,14 @@ class Messages:
         if settings.get("data") is None:  # to be sent back if it came, and only then
             del message["https://purl.imsglobal.org/spec/lti-dl/claim/data"]
         return str(settings.get("deep_link_return_url", "")), str(answer.encode_jwt(message))  # type: ignore[no-untyped-call]
+
+
+def _time_of(claims: Mapping[str, Any], name: str) -> float:
+    """Return a time of a message, seconds since 1970."""
+    found = claims.get(name)
+    if not isinstance(found, int | float) or isinstance(found, bool) or not abs(found) < FAR_S:
+        raise LtiException(f"its time {name} is missing or no number")
+    return float(found)
 
 
 def _refused(why: str) -> ApiError:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import hmac
 from dataclasses import dataclass
 from typing import Annotated, cast
@@ -20,6 +19,7 @@ from server.api.bodies import Body, StrictRoute
 from server.api.deps import PersonDep, ServiceDep
 from server.api.joining import address_of, give_session
 from server.errors import ApiError, body_of, not_found
+from server.lti.keys import KeySets
 from server.lti.launch import Launch
 from server.lti.members import Members
 from server.lti.messages import Login, Messages
@@ -51,14 +51,16 @@ class Lti:
     messages: Messages
     members: Members
     scores: Scores
+    key_sets: KeySets
     frames: Frames
     launches: Once[tuple[Launch, Login]]
     choices: Once[Launch]
     tries: Buckets
 
     async def close(self) -> None:
-        """Stop sending scores."""
+        """Stop sending scores and asking for keys."""
         await self.scores.close()
+        self.key_sets.close()
 
 
 def install(app: FastAPI, service: Service) -> Frames:
@@ -67,14 +69,16 @@ def install(app: FastAPI, service: Service) -> Frames:
     tool = Tool(settings.lti, settings.data)
     origins = sorted({origin for platform in settings.lti for origin in platform.frames})
     frames = Frames(LTI, " ".join(origins), frozenset({f"{LTI}/login", f"{LTI}/launch"}))
+    key_sets = KeySets(service.clock)
     scores = Scores(tool, service.audit, lambda work: brief(work, service.sheets.get(work.sheet_id)))
     service.sheets.on_kept = scores.changed
     app.state.lti = Lti(
         service,
         tool,
-        Messages(tool),
+        Messages(tool, key_sets),
         Members(service, tool),
         scores,
+        key_sets,
         frames,
         Once[tuple[Launch, Login]](CODE_S),
         Once[Launch](CHOICE_S),
@@ -141,7 +145,7 @@ async def end_launch(request: Request, lti: LtiDep) -> Response:
     """Take what the platform signed, and lead on: a learner to the bench, an instructor to a choice."""
     try:
         given = await _parameters(request, lti)
-        launch, login = await asyncio.to_thread(lti.messages.end, given)
+        launch, login = await lti.messages.end(given)
         if launch.is_choice:
             return await _ask_for_choice(launch, lti)
         if launch.is_instructor:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 from pylti1p3.assignments_grades import AssignmentsGradesService
@@ -26,6 +27,9 @@ QUIET_S = 2.0
 """How long a score has to stay before it is sent."""
 FIRST_WAIT_S, LONGEST_WAIT_S, MOST_TRIES = 5.0, 600.0, 12
 """Between tries the wait doubles; after the last, some two hours later, the next change or launch tries again."""
+
+THREADS = 2
+"""That wait for platforms, and for nothing else."""
 
 Key = tuple[str, str]
 """A person and a sheet."""
@@ -79,6 +83,7 @@ class Scores:
         self._wanted: dict[Key, Score] = {}
         self._sent: dict[Key, Score] = {}
         self._tasks: dict[Key, asyncio.Task[None]] = {}
+        self._pool = ThreadPoolExecutor(THREADS, thread_name_prefix="combbench-scores")
 
     def aim(self, person: Person, launch: Launch, work: Work | None) -> None:
         """Send the score of a sheet where a launch says from now on, and what there is of it at once."""
@@ -111,6 +116,7 @@ class Scores:
         for task in list(self._tasks.values()):
             task.cancel()
         await asyncio.gather(*self._tasks.values(), return_exceptions=True)
+        self._pool.shutdown(wait=False, cancel_futures=True)
 
     async def _send(self, key: Key) -> None:
         """Send the score of a sheet until the platform has it as it is."""
@@ -120,7 +126,7 @@ class Scores:
                 await asyncio.sleep(self._quiet_s)
                 score, target = self._wanted[key], self._targets[key]
                 try:
-                    await asyncio.to_thread(self._post, target, score)
+                    await asyncio.get_running_loop().run_in_executor(self._pool, self._post, target, score)
                 except (LtiException, LtiServiceException, RequestException, ValueError, KeyError) as error:
                     tries += 1
                     self._note_failure(target, key[1], error, tries)

@@ -22,6 +22,7 @@ class Need(Enum):
 
     NOTHING = "nothing"
     SESSION = "any session"
+    MEMBER = "the session of a student"
     WATCH = "may watch the bench in the path"
     MAY_DRIVE = "may drive the bench in the path, also while others drive"
     DRIVE = "may drive the bench in the path, and nobody else does"
@@ -54,15 +55,8 @@ _DOORS = {
         POST {API}/devices/spread  *
         GET {API}/scenarios  *
         GET {API}/scenarios/{{scenario_id}}  *
-        POST {API}/scenarios/check
-        GET {API}/units
-        POST {API}/units
-        GET {API}/units/{{name}}
         GET {API}/benches  *
         POST {API}/benches  *
-        GET {API}/parameter-sets
-        GET {API}/parameter-sets/{{set_id}}
-        GET {API}/parameter-sets/{{set_id}}/difference
         GET {API}/recordings
         GET {API}/recordings/{{recording_id}}
         GET {API}/recordings/{{recording_id}}/trace
@@ -75,6 +69,7 @@ _DOORS = {
         GET {API}/sheets/{{sheet_id}}/report  *
         POST {API}/sheets/{{sheet_id}}/begin
         POST {API}/sheets/{{sheet_id}}/steps/{{step_id}}/answer  *
+        POST {API}/sheets/{{sheet_id}}/steps/{{step_id}}/hide
         POST {API}/sheets/{{sheet_id}}/steps/{{step_id}}/hint  *
         POST {API}/sheets/{{sheet_id}}/steps/{{step_id}}/close  *
         PUT {API}/sheets/{{sheet_id}}/recordings/{{recording_id}}
@@ -88,6 +83,15 @@ _DOORS = {
         POST {API}/theory/persistency  *
         POST {API}/theory/aliases  *
         POST {API}/theory/instability-map  *
+    """,
+    Need.MEMBER: f"""
+        POST {API}/scenarios/check
+        GET {API}/units
+        POST {API}/units
+        GET {API}/units/{{name}}
+        GET {API}/parameter-sets
+        GET {API}/parameter-sets/{{set_id}}
+        GET {API}/parameter-sets/{{set_id}}/difference
     """,
     Need.WATCH: f"""
         GET {BENCH}  *

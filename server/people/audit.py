@@ -14,6 +14,7 @@ from server.bench.events import Event
 from server.bench.session import Session
 from server.clock import Clock
 from server.store.base import now
+from server.store.change import Change
 from server.store.database import Database
 from server.store.people import AuditRow
 
@@ -104,7 +105,13 @@ class Audit:
         rows = await self._database.run(lambda session: list(session.scalars(query)))
         return [AuditEntry.model_validate(row) for row in rows]
 
-    async def forget(self, class_id: str) -> None:
+    def forgetting(self, class_id: str) -> Change:
         """Forget what was done in a class."""
-        await self.write()
-        await self._database.run(lambda session: session.execute(delete(AuditRow).where(AuditRow.class_id == class_id)))
+        gone = delete(AuditRow).where(AuditRow.class_id == class_id)
+        return Change(lambda session: session.execute(gone), lambda: self.drop(class_id))
+
+    def drop(self, class_id: str) -> None:
+        """Drop the entries of a class that are not written yet."""
+        waiting = [row for row in self._waiting if row["class_id"] != class_id]
+        self._waiting.clear()
+        self._waiting.extend(waiting)

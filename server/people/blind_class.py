@@ -12,8 +12,8 @@ from core.errors import InputError
 from scenarios.schema import Scenario
 from server.bench.blind import Blind, bank_of, hide
 from server.bench.making import read_scenario
-from server.errors import ApiError
-from server.people.blinds import OF_DRAW, Blinds
+from server.errors import REFUSED, why
+from server.people.blinds import OF_DRAW, Blinds, hidden_on
 from server.people.classes import Classes
 from server.people.person import Person
 
@@ -52,8 +52,8 @@ async def begin_for(
     for person in students:
         try:
             await _begin(classes, blinds, person, scenario, exercise, shows)
-        except (InputError, ApiError) as error:
-            failed.append(f"{person.name}: {error}")
+        except REFUSED as error:
+            failed.append(f"{person.name}: {why(error)}")
     return failed
 
 
@@ -76,8 +76,9 @@ async def _begin(
         "time_scale": None,
         "own_scale": True,
     }
-    session = await classes.benches.replace(person, wanted, hidden)
-    await blinds.note(session, person, exercise)
+    await classes.benches.replace(
+        person, wanted, hidden, lambda made: [blinds.noting(made, person, hidden_on(made), exercise)]
+    )
 
 
 def quiet(source: str | dict[str, Any]) -> Scenario:

@@ -10,6 +10,7 @@ from typing import Literal
 
 from pydantic import BaseModel, Field
 from sqlalchemy import delete, select
+from sqlalchemy.orm import Session as DatabaseSession
 
 from core.errors import InputError, unknown
 from server.bench.blind import GAME_HINT, Blind, hide
@@ -20,6 +21,7 @@ from server.people.brier import points
 from server.people.draw import draw
 from server.people.person import Person
 from server.store.base import now
+from server.store.change import Change
 from server.store.database import Database
 from server.store.people import BlindAnswerRow
 
@@ -33,7 +35,9 @@ class Answer(BaseModel):
     """A hidden fault, and the answer to it."""
 
     id: str
-    exercise: str = Field(description="Shared by the students of a class who were asked at once; empty: alone")
+    exercise: str = Field(
+        description="Shared by the students who were asked the same; empty: they hid it from themselves"
+    )
     class_id: str
     person_id: str
     name: str
@@ -78,20 +82,20 @@ class Blinds:
         rows = await self._database.run(lambda session: list(session.scalars(query)))
         self._answers = {row.id: Answer.model_validate(row.answer) for row in rows}
 
-    def of_person(self, person_id: str, exercise: str | None = None) -> list[Answer]:
-        """Return the answers of somebody, given or revealed, oldest first; exercise "" is one they began themselves."""
-        return [
-            one
-            for one in self._answers.values()
-            if one.person_id == person_id and one.state != "hidden" and exercise in (None, one.exercise)
-        ]
+    def find(self, question: str) -> Answer | None:
+        """Return the answer to a question, by its id."""
+        return self._answers.get(question)
+
+    def of_person(self, person_id: str) -> list[Answer]:
+        """Return the answers of a person, given or revealed, oldest first."""
+        return [one for one in self._answers.values() if one.person_id == person_id and one.state != "hidden"]
 
     def of_class(self, class_id: str) -> list[Answer]:
-        """Return what the teacher hid from the students of a class, oldest first, also what nobody has answered yet."""
+        """Return the hidden faults of the exercises of a class, oldest first, answered or not."""
         return [one for one in self._answers.values() if one.class_id == class_id and one.exercise]
 
     def last_of(self, person_id: str) -> Answer | None:
-        """Return what the teacher hid last from a student."""
+        """Return the last fault that an exercise hid from a student."""
         found = (one for one in reversed(self._answers.values()) if one.person_id == person_id and one.exercise)
         return next(found, None)
 
@@ -115,8 +119,10 @@ class Blinds:
             words = [str(seed), *([person.id, str(len(self.of_person(person.id)))] if secret else [])]
             which, when = draw(secret, *words, "fault"), draw(secret, *words, "moment") / OF_DRAW
 
+            id_ = secrets.token_hex(8)
+
             def chosen() -> Blind:
-                return hide(session.board, session.document, secrets.token_hex(8), shows, which, when)
+                return hide(session.board, session.document, id_, shows, which, when)
 
             def inject() -> None:
                 session.hiding.clear()
@@ -124,36 +130,24 @@ class Blinds:
                 session.hiding.inject(person.name)
 
             blind = await self._engine.call(chosen)  # refuses before anything has changed
+            await self._database.keep(self.noting(session, person, blind, seed=seed))
             session.hiding.begin(blind)  # from here on no page and no program is told more
             await self._turn_pages(session)
             try:
                 await self._engine.call(inject)
             except InputError:  # the bench has no such fault
                 session.hiding.view = None
+                self._answers.pop(id_)
+                self._database.run_later(_deleted([id_]))
                 raise
             finally:
                 await self._turn_pages(session)
-            await self.note(session, person, seed=seed)
 
-    async def note(self, session: Session, person: Person, exercise: str = "", seed: int | None = None) -> Answer:
-        """Keep that a fault is hidden from somebody."""
-        blind = _of(session)
-        answer = Answer(
-            id=blind.question.id,
-            exercise=exercise,
-            class_id=session.class_id,
-            person_id=person.id,
-            name=person.name,
-            bench=session.id,
-            title=session.scenario.head.title or session.scenario.id,
-            seed=seed,
-            truth=blind.truth,
-            factors=dict(zip(blind.question.answers, blind.question.factors, strict=True)),
-            came_tick=blind.came_tick,
-            began=now(),
-        )
-        await self._keep(answer)
-        return answer
+    def noting(
+        self, session: Session, person: Person, blind: Blind, exercise: str = "", seed: int | None = None
+    ) -> Change:
+        """Note a hidden fault."""
+        return self._keeping(_unanswered(session, person, blind, exercise, seed))
 
     async def commit(self, session: Session, person: Person, said: str, confidence: float) -> Answer:
         """Take an answer, count it and reveal the fault; one that was given before a crash stays what it was.
@@ -166,7 +160,7 @@ class Blinds:
             If it is none of the answers.
         """
         async with self._turn:
-            blind = _of(session)
+            blind = hidden_on(session)
             answers = blind.question.answers
             if said not in answers:
                 raise unknown("answer", said, answers, "said")
@@ -183,37 +177,43 @@ class Blinds:
             If nothing is hidden here.
         """
         async with self._turn:
-            _of(session)
+            hidden_on(session)
             return await self._end(session, person, {"state": "revealed"})
 
-    async def close(self, session: Session) -> None:
-        """Keep that the bench of a hidden fault has gone without an answer."""
-        if (blind := session.hiding.blind) is not None and (known := self._answers.get(blind.question.id)) is not None:
-            await self._keep(known.model_copy(update={"state": "revealed", "ended": now()}))
+    def closing(self, session: Session) -> list[Change]:
+        """Note that the bench of a hidden fault goes without an answer."""
+        blind = session.hiding.blind
+        known = self._answers.get(blind.question.id) if blind is not None else None
+        if known is None or known.state != "hidden":
+            return []
+        return [self._keeping(known.model_copy(update={"state": "revealed", "ended": now()}))]
 
-    async def forget(self, class_id: str) -> None:
+    def forgetting(self, class_id: str) -> Change:
         """Forget what was answered in a class."""
-        self._answers = {key: one for key, one in self._answers.items() if one.class_id != class_id}
         statement = delete(BlindAnswerRow).where(BlindAnswerRow.class_id == class_id)
-        await self._database.run(lambda session: session.execute(statement))
+
+        def take() -> None:
+            self._answers = {key: one for key, one in self._answers.items() if one.class_id != class_id}
+
+        return Change(lambda session: session.execute(statement), take)
 
     async def _end(self, session: Session, person: Person, said: dict[str, object]) -> Answer:
         """Keep how it ended, then serve everything again: a crash between the two reveals on the next try."""
-        blind = _of(session)
-        answer = self._answers.get(blind.question.id) or await self.note(session, person)
+        blind = hidden_on(session)
+        answer = self._answers.get(blind.question.id) or _unanswered(session, person, blind)
         if answer.state == "hidden":
             tick, verdicts = await self._engine.call(lambda: (session.board.tick, verdicts_of(session)))
             came = blind.came_tick
             took = (tick - came) * session.dt_ms if came is not None and tick >= came else None
-            ending = {"ended_tick": tick, "took_ms": took, "verdicts": verdicts, "ended": now()}
+            ending = {"came_tick": came, "ended_tick": tick, "took_ms": took, "verdicts": verdicts, "ended": now()}
             answer = answer.model_copy(update={**said, **ending})
-            await self._keep(answer)
+            await self._database.keep(self._keeping(answer))
         await self._engine.call(session.hiding.reveal, person.name)
         await self._turn_pages(session)
         return answer
 
-    async def _keep(self, answer: Answer) -> None:
-        """Write an answer; of somebody alone the oldest are forgotten."""
+    def _keeping(self, answer: Answer) -> Change:
+        """Keep an answer; without a class the oldest are deleted."""
         row = BlindAnswerRow(
             id=answer.id,
             class_id=answer.class_id or None,
@@ -221,16 +221,45 @@ class Blinds:
             began=answer.began,
             answer=answer.model_dump(mode="json"),
         )
-        await self._database.run(lambda session: session.merge(row))
-        self._answers[answer.id] = answer
-        alone = [key for key, one in self._answers.items() if not one.class_id and one.state != "hidden"]
-        if old := alone[:-ALONE_KEPT]:
-            self._answers = {key: one for key, one in self._answers.items() if key not in old}
-            statement = delete(BlindAnswerRow).where(BlindAnswerRow.id.in_(old))
-            await self._database.run(lambda session: session.execute(statement))
+        after = {**self._answers, answer.id: answer}
+        old = [key for key, one in after.items() if not one.class_id and one.state != "hidden"][:-ALONE_KEPT]
+
+        def write(session: DatabaseSession) -> None:
+            session.merge(row)
+            _deleted(old)(session)
+
+        def take() -> None:
+            self._answers[answer.id] = answer
+            for key in old:
+                self._answers.pop(key, None)
+
+        return Change(write, take)
 
 
-def _of(session: Session) -> Blind:
+def _deleted(ids: list[str]) -> Callable[[DatabaseSession], object]:
+    """Return what deletes the rows of some answers."""
+    return lambda session: session.execute(delete(BlindAnswerRow).where(BlindAnswerRow.id.in_(ids)))
+
+
+def _unanswered(session: Session, person: Person, blind: Blind, exercise: str = "", seed: int | None = None) -> Answer:
+    """Return the record of a hidden fault without an answer."""
+    return Answer(
+        id=blind.question.id,
+        exercise=exercise,
+        class_id=session.class_id,
+        person_id=person.id,
+        name=person.name,
+        bench=session.id,
+        title=session.scenario.head.title or session.scenario.id,
+        seed=seed,
+        truth=blind.truth,
+        factors=dict(zip(blind.question.answers, blind.question.factors, strict=True)),
+        came_tick=blind.came_tick,
+        began=now(),
+    )
+
+
+def hidden_on(session: Session) -> Blind:
     """Return what is hidden on a bench, or refuse."""
     if (blind := session.hiding.blind) is None:
         raise ApiError(409, "conflict", "no fault is hidden on this bench")

@@ -5,16 +5,17 @@ from __future__ import annotations
 import asyncio
 import hmac
 import logging
+from collections.abc import Callable, Sequence
 from datetime import datetime, timedelta
 from typing import Any
 
 from pydantic import BaseModel, Field
-from sqlalchemy import delete, select, update
+from sqlalchemy import delete, select
+from sqlalchemy.orm import Session
 
-from core.errors import InputError
 from server.bench.making import prepare
 from server.clock import Clock
-from server.errors import ApiError, not_found
+from server.errors import REFUSED, ApiError, not_found, why
 from server.people.audit import Audit
 from server.people.blinds import Blinds
 from server.people.code import new_class_id, new_code, shown, split
@@ -27,6 +28,7 @@ from server.people.person import Person, hash_of, new_secret
 from server.people.student_benches import StudentBenches
 from server.people.votes import Votes
 from server.store.base import now
+from server.store.change import Change
 from server.store.database import Database
 from server.store.people import ClassRow
 
@@ -103,9 +105,15 @@ class Classes:
         self._turn = asyncio.Lock()
 
     async def open(
-        self, name: str, wanted: dict[str, Any], hours: float, code_minutes: float, actor: str = "teacher"
+        self,
+        name: str,
+        wanted: dict[str, Any],
+        hours: float,
+        code_minutes: float,
+        actor: str = "teacher",
+        also: Callable[[str], Sequence[Change]] = lambda _: (),
     ) -> Class:
-        """Open a class; students can join at once.
+        """Open a class; students can join at once. What ``also`` returns for its id is kept with it.
 
         Raises
         ------
@@ -126,24 +134,28 @@ class Classes:
             created=now(),
             until=now() + timedelta(hours=hours),
         )
-        await self._database.run(lambda session: session.add(row))
+        code = _let_in(row, code_minutes)
+        await self._database.keep(Change(lambda session: session.add(row)), *also(row.id))
+        self._codes[row.id] = code
         self._audit.add(actor, "class", f"opened the class {name}", row.id)
-        return await self.new_code(row.id, code_minutes)
+        return self._shown(row)
 
     async def new_code(self, class_id: str, minutes: float) -> Class:
         """Let students join for a while by a new code; an earlier one opens nothing any more."""
-        row = await self.row(class_id)
-        code, until = new_code(), min(row.until, now() + timedelta(minutes=minutes))
-        await self._change(class_id, code_hash=hash_of(code), code_until=until)
-        self._codes[class_id] = code
-        return await self.get(class_id)
+        codes: list[str] = []
+        row = await self._changed(class_id, lambda row: codes.append(_let_in(row, minutes)))
+        self._codes[class_id] = codes[0]
+        return self._shown(row)
 
     async def close_joining(self, class_id: str) -> Class:
         """Let nobody else join."""
-        await self.row(class_id)
-        await self._change(class_id, code_hash=None, code_until=None)
+
+        def close(row: ClassRow) -> None:
+            row.code_hash = row.code_until = None
+
+        row = await self._changed(class_id, close)
         self._codes.pop(class_id, None)
-        return await self.get(class_id)
+        return self._shown(row)
 
     async def all(self) -> list[Class]:
         """List the classes, oldest first."""
@@ -174,14 +186,18 @@ class Classes:
                 raise ApiError(409, "conflict", f"somebody is called {name} here already", "name", "add a letter to it")
             return await self.admit(row, name)
 
-    async def admit(self, row: ClassRow, name: str) -> tuple[Person, str]:
+    async def admit(
+        self, row: ClassRow, name: str, also: Callable[[str], Sequence[Change]] = lambda _: ()
+    ) -> tuple[Person, str]:
         """Let a student in whose name is clean and free; return the person and the secret of the session."""
         if len(self._people.students()) >= self._most:
             text = f"the class is full: this server has room for {self._most} students"
             raise ApiError(409, "limit", text, hint="tell your teacher, who can raise max_students")
-        person, secret = await self._people.add("student", name, row.until, row.id)
-        self._audit.add(name, "joined", "joined the class", row.id)
-        return person, secret
+        return await self._people.add("student", name, row.until, row.id, also=also)
+
+    def note_joined(self, person: Person) -> None:
+        """Note in the log that a student has joined."""
+        self._audit.add(person.name, "joined", "joined the class", person.class_id)
 
     def is_called(self, class_id: str, name: str) -> bool:
         """Whether somebody in a class has a name."""
@@ -189,10 +205,11 @@ class Classes:
 
     async def prolong(self, class_id: str, until: datetime) -> ClassRow:
         """Let a class last longer; return its row, or refuse with 404."""
-        row = await self.row(class_id)
-        if until > row.until:
-            await self._change(class_id, until=until)
-        return await self.row(class_id)
+
+        def prolong(row: ClassRow) -> None:
+            row.until = max(row.until, until)
+
+        return await self._changed(class_id, prolong)
 
     async def begin_all(self, class_id: str, wanted: dict[str, Any]) -> list[str]:
         """Begin a scenario on the bench of every student, and for all who join later; return what went wrong, by name.
@@ -204,43 +221,58 @@ class Classes:
         """
         await self.row(class_id)
         await self._check(wanted)
+
+        def begin(row: ClassRow) -> None:
+            row.scenario, row.sheet = wanted, None
+
+        await self._changed(class_id, begin)
         failed: list[str] = []
         for person in self._people.students(class_id):
             try:
                 await self.benches.replace(person, wanted)
-            except (InputError, ApiError) as error:
-                failed.append(f"{person.name}: {error}")
-        await self._change(class_id, scenario=wanted, sheet=None)
+            except REFUSED as error:
+                failed.append(f"{person.name}: {why(error)}")
         self._audit.add("teacher", "scenario", "began a scenario on all benches", class_id)
         return failed
 
     async def keep_sheet(self, class_id: str, sheet_id: str) -> None:
         """Let all who join later begin with a sheet."""
-        await self._change(class_id, sheet=sheet_id)
+
+        def keep(row: ClassRow) -> None:
+            row.sheet = sheet_id
+
+        await self._changed(class_id, keep)
 
     async def remove(self, person: Person) -> None:
         """Send a student away: the session ends, the bench is closed."""
-        bench = self.benches.find(person)
-        # The session ends first, or the page would say that its bench is gone.
-        await self._people.remove(person)
-        if bench is not None:
-            await self.benches.remove(bench)
-        await self._votes.forget(person_id=person.id)
-        await self._games.forget(person_id=person.id)
+        await self.benches.remove([person], *self._removal(person))
         self._audit.add("teacher", "removed", f"sent {person.name} away", person.class_id)
+
+    def _removal(self, person: Person) -> list[Change]:
+        """Forget a student; the session ends first, or the page would say that its bench is gone."""
+        votes, games = self._votes.forgetting(person_id=person.id), self._games.forgetting(person_id=person.id)
+        return [self._people.removal(person), votes, games]
 
     async def end(self, class_id: str) -> None:
         """End a class: close sessions and benches, delete names and what people did."""
         await self.row(class_id)
-        self._codes.pop(class_id, None)
-        for person in self._people.students(class_id):
-            await self.remove(person)
-        self._lesson.end(class_id)
-        await self._audit.forget(class_id)
-        await self._blinds.forget(class_id)
-        await self._votes.forget(class_id)
-        await self._games.forget(class_id)
-        await self._database.run(lambda session: session.execute(delete(ClassRow).where(ClassRow.id == class_id)))
+        students = self._people.students(class_id)
+        gone = delete(ClassRow).where(ClassRow.id == class_id)
+
+        def take() -> None:
+            self._codes.pop(class_id, None)
+            self._lesson.end(class_id)
+
+        await self.benches.remove(
+            students,
+            *(change for person in students for change in self._removal(person)),
+            self._audit.forgetting(class_id),
+            self._blinds.forgetting(class_id),
+            self._votes.forgetting(class_id),
+            self._games.forgetting(class_id),
+            Change(lambda session: session.execute(gone), take),
+        )
+        self._audit.drop(class_id)  # entries of the benches as they closed
 
     async def run(self, clock: Clock) -> None:
         """Reopen the benches of all students, then end classes whose time is over, now and again and again."""
@@ -257,6 +289,10 @@ class Classes:
                     await self.end(row.id)
         except Exception:
             log.exception("a class that is over could not be ended; it is tried again")
+
+    def students(self, class_id: str) -> list[Person]:
+        """List the students of a class, in the order in which they came."""
+        return self._people.students(class_id)
 
     async def row(self, class_id: str) -> ClassRow:
         """Return the row of a class, or refuse with 404."""
@@ -279,9 +315,19 @@ class Classes:
         query = select(ClassRow).order_by(ClassRow.created)
         return await self._database.run(lambda session: list(session.scalars(query)))
 
-    async def _change(self, class_id: str, **values: Any) -> None:
-        statement = update(ClassRow).where(ClassRow.id == class_id).values(**values)
-        await self._database.run(lambda session: session.execute(statement))
+    async def _changed(self, class_id: str, how: Callable[[ClassRow], object]) -> ClassRow:
+        """Change the row of a class and return it, or refuse with 404."""
+
+        def change(session: Session) -> ClassRow | None:
+            row = session.get(ClassRow, class_id[:32])
+            if row is not None:
+                how(row)
+            return row
+
+        row = await self._database.run(change)
+        if row is None:
+            raise not_found("class", class_id, "it may have ended")
+        return row
 
     def _shown(self, row: ClassRow) -> Class:
         """Describe a class; its code is known only to the process that made it."""
@@ -299,6 +345,13 @@ class Classes:
             code_until=row.code_until if _lasts(row.code_until) else None,
             path=f"/join?code={row.id}{code}" if code else None,
         )
+
+
+def _let_in(row: ClassRow, minutes: float) -> str:
+    """Let students join for a while by a new code, and return it."""
+    code = new_code()
+    row.code_hash, row.code_until = hash_of(code), min(row.until, now() + timedelta(minutes=minutes))
+    return code
 
 
 def _lasts(until: datetime | None) -> bool:

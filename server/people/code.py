@@ -8,8 +8,9 @@ from collections.abc import Container
 
 from server.store.links import LETTERS
 
-CLASS_LETTERS, CODE_LETTERS = 4, 6
-"""The first letters say which class it is; the others are the secret, some 7e8 of them, and tries are limited."""
+CLASS_LETTERS, CODE_LETTERS = 4, 8
+"""The first letters say which class it is; the others are the secret, some 7e11 of them. At a thousand tries a second
+all of them take twenty years, and a code lasts for hours."""
 
 
 def new_class_id(shard: str, taken: Container[str]) -> str:
@@ -26,8 +27,8 @@ def new_code() -> str:
 
 
 def shown(class_id: str, code: str) -> str:
-    """Write a code as people read it aloud, such as ``K7M4 X9P 2TQ``."""
-    return f"{class_id} {code[:3]} {code[3:]}".upper()
+    """Write a code as people read it aloud, such as ``K7M4 X9P2 TQ5H``."""
+    return f"{class_id} {code[:4]} {code[4:]}".upper()
 
 
 def shard_of(typed: str) -> str:

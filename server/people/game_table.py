@@ -13,6 +13,7 @@ from sqlalchemy.orm import Session
 from scenarios.games.game import Outcome
 from server.people.person import Person
 from server.store.base import now
+from server.store.change import Change
 from server.store.database import Database
 from server.store.people import GameAttemptRow
 
@@ -63,61 +64,57 @@ class GameTable:
     def __init__(self, database: Database) -> None:
         self._database = database
 
-    async def turns(self, person: Person, game: str, seed: int) -> Turns:
-        """Return what somebody did at a game and a seed."""
-        query = _of_game(game, seed).where(GameAttemptRow.person_id == person.id).order_by(GameAttemptRow.at)
-        rows = await self._rows(query)
-        return Turns(
-            attempts=[_attempt(row) for row in rows if row.points is not None],
-            looked=any(row.points is None for row in rows),
-        )
+    async def of(self, person: Person, game: str, seed: int) -> tuple[Turns, list[Standing]]:
+        """Return the attempts of a person at a game and a seed, and the table of the class."""
+        return await self._database.run(lambda session: _seen(session, person, game, seed))
 
-    async def lines(self, class_id: str, game: str, seed: int, person: Person, tells: bool) -> list[Standing]:
-        """Return the table of a class, or of somebody alone: most points first, of the same the earlier first.
+    async def of_class(self, class_id: str, game: str, seed: int, teacher: Person) -> list[Standing]:
+        """Return the whole table of a class."""
+        return await self._database.run(lambda session: _lines(session, class_id, game, seed, teacher))
 
-        Parameters
-        ----------
-        class_id : str
-            Empty for the table of those who are in no class.
-        person : Person
-            Who asks: own lines say what was handed in.
-        tells : bool
-            Whether the lines of others say it too.
-        """
-        query = _of_game(game, seed).where(GameAttemptRow.class_id == (class_id or None))
-        query = query.where(GameAttemptRow.points.is_not(None)).limit(MOST_SHOWN)
-        order = GameAttemptRow.points.desc(), GameAttemptRow.at, GameAttemptRow.id
-        return [
-            Standing(
-                id=row.id,
-                name=row.name,
-                mine=row.person_id == person.id,
-                points=row.points or 0.0,
-                at=row.at,
-                handed_in=row.attempt["handed_in"] if tells or row.person_id == person.id else None,
-            )
-            for row in await self._rows(query.order_by(*order))
-        ]
-
-    async def add(self, person: Person, game: str, seed: int, handed: dict[str, Any], outcome: Outcome) -> Attempt:
-        """Keep an attempt."""
+    async def add(
+        self, person: Person, game: str, seed: int, handed: dict[str, Any], outcome: Outcome
+    ) -> tuple[Turns, list[Standing]]:
+        """Keep an attempt; return attempts and table with it."""
         row = _row(person, game, seed)
         row.points, row.attempt = outcome.points, {"handed_in": handed, "outcome": outcome.model_dump()}
-        await self._database.run(lambda session: _keep(session, row))
-        return _attempt(row)
+        return await self._database.run(lambda session: _keep(session, row, person))
 
-    async def looked(self, person: Person, game: str, seed: int) -> None:
-        """Keep that somebody was shown what is hidden."""
+    async def looked(self, person: Person, game: str, seed: int) -> tuple[Turns, list[Standing]]:
+        """Keep that a person has seen the hidden facts; return attempts and table."""
         row = _row(person, game, seed)
-        await self._database.run(lambda session: _keep(session, row))
+        return await self._database.run(lambda session: _keep(session, row, person))
 
-    async def forget(self, class_id: str = "", person_id: str = "") -> None:
-        """Forget the attempts of a class that has ended, or of a student who has gone."""
+    def forgetting(self, class_id: str = "", person_id: str = "") -> Change:
+        """Forget the attempts of a class that ends, or of a student who goes."""
         column, value = (GameAttemptRow.class_id, class_id) if class_id else (GameAttemptRow.person_id, person_id)
-        await self._database.run(lambda session: session.execute(delete(GameAttemptRow).where(column == value)))
+        return Change(lambda session: session.execute(delete(GameAttemptRow).where(column == value)))
 
-    async def _rows(self, query: Any) -> list[GameAttemptRow]:
-        return await self._database.run(lambda session: list(session.scalars(query)))
+
+def _seen(session: Session, person: Person, game: str, seed: int) -> tuple[Turns, list[Standing]]:
+    query = _of_game(game, seed).where(GameAttemptRow.person_id == person.id).order_by(GameAttemptRow.at)
+    rows = list(session.scalars(query))
+    attempts = [_attempt(row) for row in rows if row.points is not None]
+    turns = Turns(attempts=attempts, looked=any(row.points is None for row in rows))
+    return turns, _lines(session, person.class_id, game, seed, person)
+
+
+def _lines(session: Session, class_id: str, game: str, seed: int, person: Person) -> list[Standing]:
+    """Return the table: most points first, of the same the earlier first."""
+    query = _of_game(game, seed).where(GameAttemptRow.class_id == (class_id or None))
+    query = query.where(GameAttemptRow.points.is_not(None)).limit(MOST_SHOWN)
+    order = GameAttemptRow.points.desc(), GameAttemptRow.at, GameAttemptRow.id
+    return [
+        Standing(
+            id=row.id,
+            name=row.name,
+            mine=row.person_id == person.id,
+            points=row.points or 0.0,
+            at=row.at,
+            handed_in=row.attempt["handed_in"],
+        )
+        for row in session.scalars(query.order_by(*order))
+    ]
 
 
 def _of_game(game: str, seed: int) -> Any:
@@ -142,10 +139,11 @@ def _attempt(row: GameAttemptRow) -> Attempt:
     return Attempt(id=row.id, at=row.at, **row.attempt)
 
 
-def _keep(session: Session, row: GameAttemptRow) -> None:
+def _keep(session: Session, row: GameAttemptRow, person: Person) -> tuple[Turns, list[Standing]]:
     """Add a row; of the same person the oldest are forgotten."""
     session.add(row)
     session.flush()
     mine = GameAttemptRow.person_id == row.person_id
     newest = select(GameAttemptRow.id).where(mine).order_by(GameAttemptRow.at.desc()).limit(MOST_OF_ONE)
     session.execute(delete(GameAttemptRow).where(mine, GameAttemptRow.id.not_in(newest)))
+    return _seen(session, person, row.game, row.seed)

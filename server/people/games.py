@@ -19,9 +19,9 @@ from server.bench.engine import Engine
 from server.bench.session import Session
 from server.errors import ApiError
 from server.people.classes import Classes
-from server.people.draw import draw
 from server.people.game_table import Attempt, GameTable, Standing, Turns
 from server.people.person import Person
+from server.people.student_benches import Swap
 
 
 class Play(BaseModel):
@@ -38,12 +38,19 @@ class Play(BaseModel):
     bench: str | None = Field(description="The bench on which the caller plays it")
 
 
+class StudentGame(BaseModel):
+    """The game of a student."""
+
+    name: str
+    draw: int = Field(description="The seed that gives the same game headless; it is secret")
+    hidden: list[Fact]
+
+
 class ClassGame(BaseModel):
     """A game of a class, as its teacher sees it."""
 
-    draw: int = Field(description="The seed that gives the same game headless; it is secret")
     table: list[Standing]
-    hidden: list[Fact]
+    students: list[StudentGame] = Field(description="In the order in which they came; each has a game of their own")
 
 
 class Games:
@@ -65,8 +72,8 @@ class Games:
         How many hand-ins are judged at once; 0 for none.
     turn : callable
         Closes the pages of a bench, so that they come back to what may be seen of it now.
-    close_bench : callable
-        Closes a bench and its streams.
+    swap : callable
+        Lets a bench take the place of others.
     """
 
     def __init__(
@@ -78,19 +85,24 @@ class Games:
         processes: Processes,
         workers: int,
         turn: Callable[[Session], Awaitable[None]],
-        close_bench: Callable[[Session], Awaitable[None]],
+        swap: Swap,
     ) -> None:
         self._table, self._classes, self._benches, self._engine = table, classes, benches, engine
-        self._processes, self._turn_pages, self._close_bench = processes, turn, close_bench
+        self._processes, self._turn_pages, self._swap = processes, turn, swap
         self._is_open, self._room = workers > 0, asyncio.Semaphore(max(1, workers))
         self._judging: set[str] = set()
 
     async def view(self, person: Person, name: str, seed: int) -> Play:
         """Show a game at a seed to somebody."""
-        game, number = game_of(name), await self._drawn(person.class_id, name, seed)
-        turns = await self._table.turns(person, name, seed)
+        number = await self._drawn(person, name, seed)
+        return await self._shown(person, name, seed, number, *await self._table.of(person, name, seed))
+
+    async def _shown(
+        self, person: Person, name: str, seed: int, number: int, turns: Turns, table: list[Standing]
+    ) -> Play:
+        """Show a game; the settings of others come with the last attempt."""
+        game = game_of(name)
         left = _left(game, turns)
-        table = await self._table.lines(person.class_id, name, seed, person, tells=left == 0)
         bench = self._bench_of(person, Played(game=name, seed=seed))
         return Play(
             game=name,
@@ -99,18 +111,25 @@ class Games:
             left=left,
             attempts=turns.attempts,
             best=table[0].points if table else None,
-            table=table,
+            table=[line if line.mine or left == 0 else line.model_copy(update={"handed_in": None}) for line in table],
             hidden=await asyncio.to_thread(game.hidden, number) if left == 0 else None,
             bench=bench.id if bench is not None else None,
         )
 
     async def of_class(self, teacher: Person, class_id: str, name: str, seed: int) -> ClassGame:
         """Show a game of a class to its teacher."""
-        game, number = game_of(name), await self._drawn(class_id, name, seed)
-        table = await self._table.lines(class_id, name, seed, teacher, tells=True)
-        return ClassGame(draw=number, table=table, hidden=await asyncio.to_thread(game.hidden, number))
+        game, students = game_of(name), self._classes.students(class_id)
+        numbers = [await self._drawn(student, name, seed) for student in students]
+        hidden = await asyncio.to_thread(lambda: [game.hidden(number) for number in numbers])
+        return ClassGame(
+            table=await self._table.of_class(class_id, name, seed, teacher),
+            students=[
+                StudentGame(name=student.name, draw=number, hidden=facts)
+                for student, number, facts in zip(students, numbers, hidden, strict=True)
+            ],
+        )
 
-    async def begin(self, person: Person, name: str, seed: int, values: Mapping[str, Any]) -> Session:
+    async def begin(self, person: Person, name: str, seed: int, values: Mapping[str, Any]) -> Play:
         """Give somebody the bench of a game; what was handed in stays, and what is over hides nothing any more.
 
         Raises
@@ -120,11 +139,12 @@ class Games:
         ApiError
             If a fault is hidden on the bench of a student.
         """
-        game, number = game_of(name), await self._drawn(person.class_id, name, seed)
+        game, number = game_of(name), await self._drawn(person, name, seed)
         played = Played(game=name, seed=seed)
         handed = game.read(number, values) if values else None
         document = await asyncio.to_thread(game.bench, number, handed)
-        over = _left(game, await self._table.turns(person, name, seed)) == 0
+        seen = await self._table.of(person, name, seed)
+        over = _left(game, seen[0]) == 0
 
         def hide(_: object) -> Blind:
             may_set = [f"diagnosers.{DIAGNOSER}.{field}" for field in game.turned]
@@ -143,14 +163,13 @@ class Games:
             blind = (await self._classes.benches.get(person)).hiding.blind
             if blind is not None and blind.question.game is None:
                 raise ApiError(409, "blind", "a fault is hidden on your bench", hint=HINT)
-            return await self._classes.benches.replace(person, wanted, None if over else hide)
-        before = self._benches_of(person)
-        made = await self._benches.create(**wanted, hide=None if over else hide)
-        for session in before:
-            await self._close_bench(session)
-        return made
+            await self._classes.benches.replace(person, wanted, None if over else hide)
+        else:
+            before = self._benches_of(person)
+            await self._swap(await self._benches.create(**wanted, hide=None if over else hide), before)
+        return await self._shown(person, name, seed, number, *seen)
 
-    async def hand_in(self, person: Person, name: str, seed: int, values: Mapping[str, Any]) -> Outcome:
+    async def hand_in(self, person: Person, name: str, seed: int, values: Mapping[str, Any]) -> Play:
         """Judge what somebody hands in, and keep it.
 
         Raises
@@ -162,36 +181,37 @@ class Games:
         """
         if not self._is_open:
             raise ApiError(409, "runs_disabled", "this server takes no headless runs (run_workers = 0)")
-        game, number = game_of(name), await self._drawn(person.class_id, name, seed)
+        game, number = game_of(name), await self._drawn(person, name, seed)
         handed = game.read(number, values)
         if person.id in self._judging:
             raise ApiError(409, "conflict", "what you handed in before is still judged", hint="wait for its points")
         self._judging.add(person.id)
         try:
-            if not _left(game, await self._table.turns(person, name, seed)):
+            turns, _ = await self._table.of(person, name, seed)
+            if not _left(game, turns):
                 text = f"you have no attempt left at seed {seed}"
                 raise ApiError(409, "limit", text, hint="take another seed")
             outcome = await self._judged(name, number, handed.model_dump())
-            await self._table.add(person, name, seed, handed.model_dump(), outcome)
+            seen = await self._table.add(person, name, seed, handed.model_dump(), outcome)
         finally:
             self._judging.discard(person.id)
-        await self._tell(person, game, seed)
-        return outcome
+        await self._tell(person, game, seed, seen[0])
+        return await self._shown(person, name, seed, number, *seen)
 
-    async def look(self, person: Person, name: str, seed: int) -> None:
+    async def look(self, person: Person, name: str, seed: int) -> Play:
         """Show somebody what a game hides; nothing can be handed in after that."""
-        game = game_of(name)
+        game, number = game_of(name), await self._drawn(person, name, seed)
         if person.id in self._judging:
             raise ApiError(409, "conflict", "what you handed in is still judged", hint="wait for its points")
-        if _left(game, await self._table.turns(person, name, seed)):
-            await self._table.looked(person, name, seed)
-        await self._tell(person, game, seed)
+        seen = await self._table.of(person, name, seed)
+        if _left(game, seen[0]):
+            seen = await self._table.looked(person, name, seed)
+        await self._tell(person, game, seed, seen[0])
+        return await self._shown(person, name, seed, number, *seen)
 
-    async def _drawn(self, class_id: str, name: str, seed: int) -> int:
-        """Return the seed of a game; that of a class nobody can work out who has no more than the seed of the class."""
-        if not class_id:
-            return seed
-        return draw((await self._classes.row(class_id)).secret, "game", name, str(seed))
+    async def _drawn(self, person: Person, name: str, seed: int) -> int:
+        """Return the seed of a game; for a student it is drawn from the secret of the class and the student."""
+        return await self._classes.draw(person, "game", name, str(seed)) if person.class_id else seed
 
     async def _judged(self, name: str, number: int, handed: dict[str, Any]) -> Outcome:
         """Judge in a process of its own: it takes a second of computing."""
@@ -203,10 +223,10 @@ class Games:
                 text = "the process that judges was lost; nothing is counted"
                 raise ApiError(503, "unavailable", text, hint="hand in again") from error
 
-    async def _tell(self, person: Person, game: Game[Any], seed: int) -> None:
+    async def _tell(self, person: Person, game: Game[Any], seed: int, turns: Turns) -> None:
         """Let the bench of a game that is over show everything."""
         session = self._bench_of(person, Played(game=game.id, seed=seed))
-        if session is None or _left(game, await self._table.turns(person, game.id, seed)):
+        if session is None or _left(game, turns):
             return
         await self._engine.call(session.hiding.reveal, person.name)
         await self._turn_pages(session)

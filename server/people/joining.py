@@ -13,10 +13,8 @@ from server.people.person import Person
 from server.security.limits import Buckets
 from server.security.visitor import STYLE
 
-JOINS_PER_S, JOINS_AT_ONCE = 2.0, 80
-"""Tries of one address; a whole class may share it."""
-WRONG = 10.0
-"""Cost of a wrong code: eight at once, then one in five seconds; all codes would take a hundred years."""
+WRONG_PER_S, WRONG_AT_ONCE = 0.2, 8
+"""Wrong codes and links of one address that are answered as such; a whole class may share it."""
 
 PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <title>Join a class · CombBench</title>
@@ -45,10 +43,10 @@ class Joining:
 
     def __init__(self, classes: Classes, clock: Callable[[], float]) -> None:
         self._classes = classes
-        self._tries = Buckets(JOINS_PER_S, JOINS_AT_ONCE, clock=clock)
+        self._tries = Buckets(WRONG_PER_S, WRONG_AT_ONCE, clock=clock)
 
-    def check(self, address: str) -> None:
-        """Refuse an address from which too much is tried."""
+    def note_wrong(self, address: str) -> None:
+        """Note that what came from an address was wrong; refuse one from which too much of that comes."""
         if not self._tries.take(address):
             headers = {"Retry-After": "10"}
             raise ApiError(429, "rate_limited", "too many tries from here", hint="wait a minute", headers=headers)
@@ -56,19 +54,20 @@ class Joining:
     async def join(self, address: str, code: str, name: str, class_id: str = "") -> tuple[Person, str]:
         """Let a student in, into one class if it is named; return the person and the secret of the session.
 
+        A right code never pays for wrong ones from the same address. The number of codes keeps strangers from guessing.
+
         Raises
         ------
         ApiError
-            As `Classes.join`, for the code of another class, and for an address from which too much is tried.
+            As `Classes.join`, for the code of another class, and for an address from which too many were wrong.
         """
-        self.check(address)
         if class_id and split(code)[0] != class_id:
             raise ApiError(422, "invalid", "begins with the id of another class", "code")
         try:
             return await self._classes.join(code, name)
         except ApiError as error:
             if error.body.code == "wrong_code":
-                self._tries.take(address, WRONG)
+                self.note_wrong(address)
             raise
 
 

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import secrets
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from pydantic import BaseModel, Field
 from sqlalchemy import select, update
+from sqlalchemy.orm import Session
 
 from server.errors import ApiError
 from server.people.audit import Audit
 from server.people.lease import Pages
 from server.people.people import People
 from server.people.person import Person
+from server.store.change import Change
 from server.store.database import Database
 from server.store.people import ClassRow
 
@@ -53,21 +57,19 @@ class Lesson:
 
     async def show(self, class_id: str, bench_id: str, title: str) -> None:
         """Let all students of a class see a bench."""
-        await self._show(class_id, bench_id)
+        await self._database.keep(self._showing(class_id, bench_id))
         self._audit.add("teacher", "shown", f"showed {title} to all", class_id, bench_id)
         self._pages.call(self._people.students(class_id))
 
     async def end_showing(self, class_id: str) -> None:
         """Let the students of a class see their own benches again."""
-        if bench_id := self._people.shown_to(class_id):
-            await self._show(class_id, "")
-            self._audit.add("teacher", "shown", "ended showing a bench to all", class_id, bench_id)
-            self._pages.call(self._people.students(class_id))
+        await self._database.keep(*self._ending([class_id]))
 
     async def give_layout(self, class_id: str, name: str, layout: dict[str, Any] | None) -> None:
         """Arrange the panels of all students of a class, also of those who join later."""
-        given = self._layouts[class_id] = GivenLayout(id=secrets.token_hex(4), name=name, layout=layout)
-        await self._change(class_id, layout=given.model_dump())
+        given = GivenLayout(id=secrets.token_hex(4), name=name, layout=layout)
+        take = partial(self._layouts.__setitem__, class_id, given)
+        await self._database.keep(Change(_changed(class_id, layout=given.model_dump()), take))
         self._audit.add("teacher", "layout", f"gave the layout {name} to all", class_id)
         self._pages.call(self._people.students(class_id))
 
@@ -82,20 +84,40 @@ class Lesson:
         self._people.hands.discard(person.id)
         self._pages.call([person])
 
+    def forgetting(self, bench_id: str) -> list[Change]:
+        """End showing a bench that goes."""
+        return self._ending(self._people.shown_at(bench_id))
+
     async def forget(self, bench_id: str) -> None:
         """End showing a bench that is gone."""
-        for class_id in self._people.shown_at(bench_id):
-            await self.end_showing(class_id)
+        await self._database.keep(*self.forgetting(bench_id))
 
     def end(self, class_id: str) -> None:
         """Forget what was shown to a class that has ended; its row goes with it."""
         self._people.show(class_id, "")
         self._layouts.pop(class_id, None)
 
-    async def _show(self, class_id: str, bench_id: str) -> None:
-        self._people.show(class_id, bench_id)
-        await self._change(class_id, shown=bench_id or None)
+    def _showing(self, class_id: str, bench_id: str) -> Change:
+        take = partial(self._people.show, class_id, bench_id)
+        return Change(_changed(class_id, shown=bench_id or None), take)
 
-    async def _change(self, class_id: str, **values: Any) -> None:
-        change = update(ClassRow).where(ClassRow.id == class_id).values(**values)
-        await self._database.run(lambda session: session.execute(change))
+    def _ending(self, classes: list[str]) -> list[Change]:
+        """Let the students of some classes see their own benches again, where they are shown another."""
+
+        def ending(class_id: str, bench_id: str) -> Change:
+            change = self._showing(class_id, "")
+
+            def take() -> None:
+                change.take()
+                self._audit.add("teacher", "shown", "ended showing a bench to all", class_id, bench_id)
+                self._pages.call(self._people.students(class_id))
+
+            return Change(change.write, take)
+
+        return [ending(one, bench_id) for one in classes if (bench_id := self._people.shown_to(one))]
+
+
+def _changed(class_id: str, **values: Any) -> Callable[[Session], object]:
+    """Return what changes the row of a class."""
+    change = update(ClassRow).where(ClassRow.id == class_id).values(**values)
+    return lambda session: session.execute(change)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import secrets
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import datetime
 from typing import cast
@@ -17,6 +18,7 @@ from sqlalchemy import delete, select, update
 from server.people.access import Need
 from server.people.person import Person, Role, hash_of, new_secret
 from server.store.base import now
+from server.store.change import Change
 from server.store.database import Database
 from server.store.people import PersonRow
 
@@ -64,9 +66,18 @@ class People:
         return person
 
     async def add(
-        self, role: Role, name: str, until: datetime, class_id: str | None = None, bench_id: str | None = None
+        self,
+        role: Role,
+        name: str,
+        until: datetime,
+        class_id: str | None = None,
+        bench_id: str | None = None,
+        also: Callable[[str], Sequence[Change]] = lambda _: (),
     ) -> tuple[Person, str]:
-        """Let somebody in; return the person and the secret of the session, which is kept nowhere."""
+        """Add a person; return the person and the secret of the session, which is kept nowhere.
+
+        What ``also`` returns for the id of the person is kept with it.
+        """
         secret = self._new_secret()
         row = PersonRow(
             id=secrets.token_hex(8),
@@ -78,7 +89,7 @@ class People:
             joined=now(),
             until=until,
         )
-        await self._database.run(lambda session: session.add(row))
+        await self._database.keep(Change(lambda session: session.add(row)), *also(row.id))
         return self._take(row), secret
 
     async def renew(self, person: Person, until: datetime) -> tuple[Person, str]:
@@ -122,14 +133,16 @@ class People:
         """Return the student whose bench it is; nobody for a bench of the teacher."""
         return next((one for one in self.students() if self.bench_of(one) == bench_id), None)
 
-    async def give_bench(self, person: Person, bench_id: str) -> None:
+    def giving(self, person: Person, bench_id: str) -> Change:
         """Make a bench that of a student, who keeps the right to see what was recorded on those before."""
-        before = self.benches_of(person)
-        self._earlier[person.id] = [one for one in before if one != bench_id][-MOST_EARLIER:]
-        self._benches[person.id] = bench_id
-        values = {"bench_id": bench_id, "earlier": self._earlier[person.id]}
-        change = update(PersonRow).where(PersonRow.id == person.id).values(**values)
-        await self._database.run(lambda session: session.execute(change))
+        earlier = [one for one in self.benches_of(person) if one != bench_id][-MOST_EARLIER:]
+        values = {"bench_id": bench_id, "earlier": earlier}
+        given = update(PersonRow).where(PersonRow.id == person.id).values(**values)
+
+        def take() -> None:
+            self._earlier[person.id], self._benches[person.id] = earlier, bench_id
+
+        return Change(lambda session: session.execute(given), take)
 
     def lend(self, student: Person, bench_id: str) -> None:
         """Let a student see and drive a bench of the teacher."""
@@ -174,14 +187,26 @@ class People:
         """Return the benches that students see beside their own: what is shown and what is lent."""
         return {*self._shown.values(), *self._lent.values()}
 
+    def removal(self, person: Person) -> Change:
+        """End a session for good; its open sockets are closed."""
+        gone = delete(PersonRow).where(PersonRow.id == person.id)
+        return Change(lambda session: session.execute(gone), lambda: self._forget(person))
+
     async def remove(self, person: Person) -> None:
         """End a session for good; its open sockets are closed."""
+        await self._database.keep(self.removal(person))
+
+    def drop(self, person: Person) -> None:
+        """Undo `add`; the row is deleted as soon as the database allows it."""
+        self._forget(person)
+        self._database.run_later(self.removal(person).write)
+
+    def _forget(self, person: Person) -> None:
         self._by_hash.pop(self._hashes.pop(person.id, ""), None)
         for kept in (self._benches, self._earlier, self._lent):
             kept.pop(person.id, None)
         self.hands.discard(person.id)
         self._check_again()
-        await self._database.run(lambda session: session.execute(delete(PersonRow).where(PersonRow.id == person.id)))
 
     async def until_refused(self, person: Person, need: Need, bench_id: str) -> bool:
         """Wait until somebody may no longer pass a door; return whether that is because the session has ended."""
@@ -208,6 +233,8 @@ class People:
             return False
         if need is Need.SESSION:
             return True
+        if need is Need.MEMBER:
+            return person.role == "student"
         if not bench_id:
             return False
         if bench_id in (self.bench_of(person), self.lent_to(person)):

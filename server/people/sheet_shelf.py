@@ -15,6 +15,7 @@ from scenarios.sheets.check import check
 from scenarios.sheets.sheet import Sheet
 from server.errors import ApiError, not_found
 from server.store.base import now
+from server.store.change import Change
 from server.store.database import Database, reason_of
 from server.store.people import SheetRow
 
@@ -34,7 +35,7 @@ class Shelf:
     """
 
     def __init__(self, database: Database) -> None:
-        self._database = database
+        self.database = database
         self._own: dict[str, Sheet] = {}
         self._unread: set[str] = set()
 
@@ -42,9 +43,9 @@ class Shelf:
         """Take in the sheets that somebody opened, at another process perhaps, and drop those that were deleted."""
         known = set(self._own)
         try:
-            there = await self._database.run(lambda session: set(session.scalars(select(SheetRow.id))))
+            there = await self.database.run(lambda session: set(session.scalars(select(SheetRow.id))))
             query = select(SheetRow).where(SheetRow.id.in_(there - known - self._unread)).order_by(SheetRow.created)
-            new = await self._database.run(lambda session: list(session.scalars(query)))
+            new = await self.database.run(lambda session: list(session.scalars(query)))
         except DBAPIError as error:  # a class goes on with the sheets that are known
             log.warning("the sheets cannot be looked up: %s", reason_of(error))
             return
@@ -77,13 +78,13 @@ class Shelf:
         sheet = await asyncio.to_thread(check, text, name)
         if len(self._own) >= MOST_OWN:
             raise ApiError(409, "limit", f"{MOST_OWN} sheets are open, the limit", hint="delete one first")
-        await self._database.run(lambda session: session.add(SheetRow(id=name, text=text, created=now())))
+        await self.database.run(lambda session: session.add(SheetRow(id=name, text=text, created=now())))
         self._own[name] = sheet
         return sheet
 
-    async def delete(self, sheet_id: str) -> None:
+    def deletion(self, sheet_id: str) -> Change:
         """Delete a sheet that somebody wrote."""
         if sheet_id not in self._own:
             raise not_found("sheet of your own", sheet_id, "those of the library stay")
-        del self._own[sheet_id]
-        await self._database.run(lambda session: session.execute(delete(SheetRow).where(SheetRow.id == sheet_id)))
+        gone = delete(SheetRow).where(SheetRow.id == sheet_id)
+        return Change(lambda session: session.execute(gone), lambda: self._own.pop(sheet_id, None))

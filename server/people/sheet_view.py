@@ -187,7 +187,7 @@ def rule_of(sheet: Sheet, step: AnyStep) -> str:
     if isinstance(step, Hold):
         return f"{worth} when this has held for {format_short(step.for_ms, 'ms')} of device time."
     if isinstance(step, Blind):
-        return f"{worth} times the score of your next blind answer, out of 100."
+        return f"{worth} times the score of your answer to the fault that is hidden here, out of 100."
     said = [f"{worth}."]
     asked = step.asks
     if isinstance(asked, Number):

@@ -10,6 +10,7 @@ from sqlalchemy import delete, select, tuple_
 
 from scenarios.sheets.progress import Progress
 from scenarios.sheets.sheet import Sheet
+from server.store.change import Change
 from server.store.database import Database
 from server.store.people import SheetProgressRow
 
@@ -55,28 +56,36 @@ class Works:
         found = [work for work in self._all.values() if person_id in ("", work.person_id)]
         return sorted((w for w in found if class_id in ("", w.class_id)), key=lambda w: w.begun, reverse=True)
 
-    async def keep(self, work: Work) -> None:
-        """Write what somebody did."""
-        self._all[work.person_id, work.sheet_id] = work
+    def keeping(self, work: Work, progress: Progress | None = None) -> Change:
+        """Keep the work of a person, with another progress if there is one."""
         row = SheetProgressRow(
             person_id=work.person_id,
             sheet_id=work.sheet_id,
             class_id=work.class_id or None,
             bench_id=work.bench_id,
             begun=work.begun,
-            progress=work.progress.model_dump(),
+            progress=(progress or work.progress).model_dump(),
         )
-        await self._database.run(lambda session: session.merge(row))
 
-    async def forget(self, works: list[Work]) -> None:
+        def take() -> None:
+            work.progress = progress or work.progress
+            self._all[work.person_id, work.sheet_id] = work
+
+        return Change(lambda session: session.merge(row), take)
+
+    def forgetting(self, works: list[Work]) -> list[Change]:
         """Forget what was done at some sheets."""
         keys = [(work.person_id, work.sheet_id) for work in works]
-        for key in keys:
-            self._all.pop(key, None)
-        if keys:
-            table = SheetProgressRow
-            gone = delete(table).where(tuple_(table.person_id, table.sheet_id).in_(keys))
-            await self._database.run(lambda session: session.execute(gone))
+        if not keys:
+            return []
+        table = SheetProgressRow
+        gone = delete(table).where(tuple_(table.person_id, table.sheet_id).in_(keys))
+
+        def take() -> None:
+            for key in keys:
+                self._all.pop(key, None)
+
+        return [Change(lambda session: session.execute(gone), take)]
 
 
 class SheetBrief(BaseModel):

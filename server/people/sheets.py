@@ -4,29 +4,36 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Awaitable, Callable
-from typing import Any
+import secrets
+from collections.abc import Callable
+from dataclasses import replace
 
+from core.board.board import Board
 from core.errors import InputError
-from scenarios.sheets.begin import begin
+from scenarios.sheets.begin import SEEDS
 from scenarios.sheets.look import known_limits
 from scenarios.sheets.progress import Progress
-from scenarios.sheets.sheet import Blind, Hold, Sheet
+from scenarios.sheets.sheet import Blind as BlindStep
+from scenarios.sheets.sheet import Hold, Sheet
 from server.bench.benches import Benches
+from server.bench.blind import HINT, Blind, hide
 from server.bench.engine import Engine
 from server.bench.session import Session
 from server.bench.watch import KeptWatch
 from server.clock import Clock
 from server.errors import ApiError, not_found
-from server.people.blinds import Blinds
+from server.people.blinds import OF_DRAW, Blinds, hidden_on
 from server.people.classes import Classes
 from server.people.people import People
 from server.people.person import Person
+from server.people.sheet_bench import SheetBenches
 from server.people.sheet_shelf import Shelf
 from server.people.sheet_view import SheetView, view_of
 from server.people.sheet_watch import Done, SheetWatch
 from server.people.sheet_work import Work, Works
+from server.people.student_benches import Swap
 from server.store.base import now
+from server.store.change import Change
 from server.store.database import Database
 
 log = logging.getLogger(__name__)
@@ -52,10 +59,10 @@ class Sheets:
         Where benches are made.
     engine : Engine
         Whose thread may look at a bench.
-    close_bench : callable
-        Closes a bench and its streams.
+    swap : callable
+        Lets a bench take the place of others.
     blinds : Blinds
-        Knows the answers to hidden faults.
+        Keeps the hidden faults of sheets, and the answers.
     """
 
     def __init__(
@@ -66,14 +73,14 @@ class Sheets:
         people: People,
         benches: Benches,
         engine: Engine,
-        close_bench: Callable[[Session], Awaitable[None]],
+        swap: Swap,
         blinds: Blinds,
     ) -> None:
         self._classes, self._people = classes, people
         self._benches, self._engine = benches, engine
-        self._close_bench, self._blinds = close_bench, blinds
+        self._sheet_benches, self._blinds = SheetBenches(classes, benches, swap), blinds
         self.shelf = shelf
-        self._works = Works(database)
+        self._database, self._works = database, Works(database)
         self._turn = asyncio.Lock()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._tasks: set[asyncio.Task[None]] = set()
@@ -115,8 +122,11 @@ class Sheets:
 
     async def delete(self, sheet_id: str) -> None:
         """Delete a sheet that somebody wrote, and what was done at it."""
-        await self.shelf.delete(sheet_id)
-        await self._forget([work for work in self._works.all() if work.sheet_id == sheet_id])
+        gone, works = self.shelf.deletion(sheet_id), [one for one in self._works.all() if one.sheet_id == sheet_id]
+        if self.shelf.database is self._database:
+            return await self._forget(works, gone)
+        await self._forget(works)
+        await self.shelf.database.keep(gone)
 
     def works(self, person_id: str = "", class_id: str = "") -> list[Work]:
         """List who works at what, latest first: of one person, or of a class."""
@@ -147,35 +157,60 @@ class Sheets:
             If the bench cannot be made.
         """
         sheet = self.get(sheet_id)
-        purpose = {word: await self._classes.draw(person, sheet.id, word) for word in _purposes(sheet)}
-        beginning = await asyncio.to_thread(begin, sheet, purpose.__getitem__)
-        scale = sheet.head.bench.time_scale
-        wanted: dict[str, Any] = {
-            "source": sheet.head.bench.scenario,
-            "values": beginning.values,
-            "seed": None,
-            "paused": False,
-            "time_scale": scale,
-            "own_scale": scale is None,
-            "quiet_lead": False,
-        }
+        beginning = await self._sheet_benches.beginning(person, sheet)
         async with self._turn:
             before = self._works.get(person.id, sheet_id)
             progress = before.progress if before is not None else Progress(facts=beginning.facts)
             work = Work(person.id, person.class_id, sheet_id, "", now(), progress)
 
-            async def keep(session: Session) -> None:
-                work.bench_id = session.id
-                await self._keep(work)
+            def kept(made: Session) -> list[Change]:
+                work.bench_id = made.id
+                return [self._keeping(work)]
 
-            if person.role == "student":
-                await self._classes.benches.replace(person, wanted, before_shown=keep)
-            else:
-                await keep(await self._benches.create(**wanted))
-                if before is not None and (old := self._benches.find(before.bench_id)) is not None:
-                    await self._close_bench(old)
+            await self._sheet_benches.give(person, sheet, beginning.values, before, kept)
         await self._follow(work)
         return work
+
+    async def hide(self, person: Person, sheet_id: str, step_id: str) -> None:
+        """Hide the fault of the step that is open, on a new bench of the sheet; its answer closes the step.
+
+        All of it is drawn for the student and the step, anew after each answer: the student has had no hand on the
+        bench, and knows nothing of the fault.
+
+        Raises
+        ------
+        ApiError
+            If the sheet has not been begun, or something is hidden already.
+        InputError
+            If the step is not open, or hides nothing.
+        """
+        sheet, number = self.get(sheet_id), len(self._blinds.of_person(person.id))
+        exercise = f"{sheet_id} {step_id}"
+        which, when, noise = [
+            await self._classes.draw(person, exercise, str(number), word) for word in ("fault", "moment", "noise")
+        ]
+        beginning = await self._sheet_benches.beginning(person, sheet)
+
+        def hidden(board: Board) -> Blind:
+            return hide(board, board.spec.document, secrets.token_hex(8), False, which, when / OF_DRAW)
+
+        async with self._turn:
+            work = self._must_have(person, sheet_id)
+            step = work.progress.must_be_open(sheet, step_id)
+            if not isinstance(step, BlindStep):
+                raise InputError("hides nothing", "step", code="conflict")
+            bench = self._benches.find(work.bench_id)
+            if bench is not None and bench.hiding.blind is not None:
+                raise ApiError(409, "blind", "a fault is hidden here already", hint=HINT)
+
+            def kept(made: Session) -> list[Change]:
+                blind, progress = hidden_on(made), work.progress.model_copy(deep=True)
+                progress.of(step).hidden = blind.question.id
+                now_there = replace(work, bench_id=made.id, progress=progress)
+                return [self._keeping(now_there), self._blinds.noting(made, person, blind, exercise)]
+
+            values = {**beginning.values, "seed": noise % SEEDS}
+            await self._sheet_benches.give(person, sheet, values, work, kept, hidden)
 
     async def _welcome(self, person: Person) -> None:
         """Begin the sheet of the class with somebody who has just joined."""
@@ -195,14 +230,20 @@ class Sheets:
         ApiError
             If it has not been begun, or cannot be done now.
         """
-        sheet, work = self.get(sheet_id), self._works.get(person.id, sheet_id)
+        sheet = self.get(sheet_id)
+        async with self._turn:
+            work = self._must_have(person, sheet_id)
+            bench = self._benches.find(work.bench_id)
+            progress = work.progress.model_copy(deep=True)
+            what(progress, sheet, bench.status.tick if bench is not None else 0)
+            await self._database.keep(self._keeping(work, progress))
+        await self._follow(work)
+
+    def _must_have(self, person: Person, sheet_id: str) -> Work:
+        work = self._works.get(person.id, sheet_id)
         if work is None:
             raise ApiError(409, "conflict", "the sheet has not been begun", "sheet", "begin it first")
-        bench = self._benches.find(work.bench_id)
-        async with self._turn:
-            what(work.progress, sheet, bench.status.tick if bench is not None else 0)
-            await self._keep(work)
-        await self._follow(work)
+        return work
 
     async def start_over(self, person: Person, sheet_id: str) -> None:
         """Forget what somebody did at a sheet."""
@@ -214,7 +255,7 @@ class Sheets:
         if sheet is None:
             return
         step = work.progress.open_step(sheet)
-        if isinstance(step, Blind):
+        if isinstance(step, BlindStep):
             return await self._follow_blind(work, step)
         bench = self._benches.find(work.bench_id)
         if bench is None:
@@ -253,43 +294,44 @@ class Sheets:
 
     def _held(self, work: Work, step: Hold, found: Done) -> None:
         """Close a step whose conditions have held; on the event loop."""
-        work.progress.held(step, found.values, found.trace, found.tick)
-        task = asyncio.get_running_loop().create_task(self._held_kept(work))
+        task = asyncio.get_running_loop().create_task(self._held_kept(work, step, found))
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
-    async def _held_kept(self, work: Work) -> None:
+    async def _held_kept(self, work: Work, step: Hold, found: Done) -> None:
         async with self._turn:
+            work.progress.held(step, found.values, found.trace, found.tick)
             if self._works.get(work.person_id, work.sheet_id) is work:
-                await self._keep(work)
+                await self._database.keep(self._keeping(work))
         await self._follow(work)
 
-    async def _follow_blind(self, work: Work, step: Blind) -> None:
-        """Close a step of blind diagnosis once its answer has been committed."""
-        answers = self._blinds.of_person(work.person_id)
-        state = work.progress.of(step)
-        if state.blind_before is None:
-            state.blind_before = len(answers)
-            await self._keep(work)
-        elif len(answers) > state.blind_before:
-            answer = answers[state.blind_before]
+    async def _follow_blind(self, work: Work, step: BlindStep) -> None:
+        """Close a step of blind diagnosis once its hidden fault has an answer or is revealed."""
+        answer = self._blinds.find(work.progress.of(step).hidden)
+        if answer is None or answer.ended_tick is None:
+            return  # a bench that has gone is no answer
+        async with self._turn:
+            if work.progress.of(step).done:
+                return
+            progress = work.progress.model_copy(deep=True)
+            state = progress.of(step)
             state.share, state.done = min(max(answer.points / 100.0, 0.0), 1.0), True
             state.values = {"score": answer.points, "right": "yes" if answer.said == answer.truth else "no"}
-            await self._keep(work)
+            await self._database.keep(self._keeping(work, progress))
 
-    async def _keep(self, work: Work) -> None:
-        """Write what somebody did."""
-        await self._works.keep(work)
-        self.on_kept(work)
+    def _keeping(self, work: Work, progress: Progress | None = None) -> Change:
+        """Keep the work of a person, with another progress if there is one."""
+        change = self._works.keeping(work, progress)
 
-    async def _forget(self, works: list[Work]) -> None:
-        """Forget the work at some sheets."""
+        def take() -> None:
+            change.take()
+            self.on_kept(work)
+
+        return Change(change.write, take)
+
+    async def _forget(self, works: list[Work], *changes: Change) -> None:
+        """Forget the work at some sheets, as something changes."""
+        await self._database.keep(*self._works.forgetting(works), *changes)
         for work in works:
             if (bench := self._benches.find(work.bench_id)) is not None:
                 bench.watch = None
-        await self._works.forget(works)
-
-
-def _purposes(sheet: Sheet) -> list[str]:
-    """List the purposes for which a sheet draws numbers."""
-    return ["device", "noise", *(f"number {name}" for name in sheet.head.draws)]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Awaitable, Callable
-from typing import Any
+from collections.abc import Awaitable, Callable, Sequence
+from typing import Any, Protocol
 
 from sqlalchemy import select
 
@@ -19,14 +19,29 @@ from server.bench.watch import KeptWatch
 from server.errors import not_found
 from server.people.people import People
 from server.people.person import Person
+from server.store.change import Change
 from server.store.database import Database
 from server.store.people import ClassRow
 
 log = logging.getLogger(__name__)
 
 
-async def _nothing(_: Person | Session) -> None:
+async def _nothing(_: Person) -> None:
     """Do nothing more."""
+
+
+class Swap(Protocol):
+    """Lets a bench that was just made take the place of others."""
+
+    def __call__(self, made: Session, before: Sequence[Session], *changes: Change) -> Awaitable[None]:
+        """Change all of it, or close the bench again where it cannot be kept."""
+
+
+class CloseBenches(Protocol):
+    """Closes benches and their streams."""
+
+    def __call__(self, sessions: Sequence[Session], *changes: Change) -> Awaitable[None]:
+        """Change all of it, or nothing where it cannot be kept."""
 
 
 class StudentBenches:
@@ -40,8 +55,10 @@ class StudentBenches:
         Knows which bench is whose.
     benches : Benches
         Where they are made.
-    close_bench : callable
-        Closes a bench and its streams.
+    swap : callable
+        Lets a bench take the place of others, as something changes.
+    close : callable
+        Closes benches and their streams, as something changes.
     checkpoints : Checkpoints
         From which they come back after a crash.
     """
@@ -51,12 +68,15 @@ class StudentBenches:
         database: Database,
         people: People,
         benches: Benches,
-        close_bench: Callable[[Session], Awaitable[None]],
+        swap: Swap,
+        close: CloseBenches,
         checkpoints: Checkpoints,
     ) -> None:
         self._database, self._people, self._benches = database, people, benches
-        self._close_bench, self._checkpoints = close_bench, checkpoints
+        self._swap, self._close, self._checkpoints = swap, close, checkpoints
         self._turn = asyncio.Lock()
+        self._all_back = False
+        self._given_up: set[str] = set()
         self.welcome: Callable[[Person], Awaitable[None]] = _nothing
         """Called before a student gets the first bench; it may give one."""
         self.on_revived: Callable[[Session, KeptWatch | None], None] = lambda *_: None
@@ -86,37 +106,35 @@ class StudentBenches:
             if wanted is None:
                 raise not_found("class", person.class_id, "it may have ended")
             with kept():
-                return await self._make(person, wanted, None)
+                return await self._make(person, wanted, [])
 
     async def replace(
         self,
         person: Person,
         wanted: dict[str, Any],
         hide: Callable[[Board], Blind] | None = None,
-        before_shown: Callable[[Session], Awaitable[None]] = _nothing,
+        also: Callable[[Session], Sequence[Change]] = lambda _: (),
     ) -> Session:
-        """Give a student another bench in place of the one that is there, with a hidden fault if one is chosen.
+        """Replace the bench of a student, with a hidden fault if ``hide`` chooses one.
 
-        The old bench closes, and then the pages of the student go to the new one. ``before_shown`` is awaited before
-        that, so that the pages find all they ask for.
+        The old bench closes, and then the pages of the student go to the new one. What ``also`` returns for the new
+        bench has changed before that, so that the pages find all they ask for.
 
         Raises
         ------
         InputError
             If it cannot be made; the student keeps the bench there is.
+        DBAPIError
+            If it cannot be kept; the same then.
         """
         async with self._turn:
             before = self.find(person)
-            made = await self._make(person, wanted, hide)
-            await before_shown(made)
-            if before is not None:
-                await self._close_bench(before)
-            return made
+            return await self._make(person, wanted, [before] if before is not None else [], hide, also)
 
-    async def remove(self, bench: Session) -> None:
-        """Close the bench of a student."""
+    async def remove(self, people: Sequence[Person], *changes: Change) -> None:
+        """Close the benches of students, as something changes."""
         async with self._turn:
-            await self._close_bench(bench)
+            await self._close([bench for one in people if (bench := self.find(one)) is not None], *changes)
 
     async def recover(self, students: list[Person]) -> None:
         """Bring all benches back, as they were shortly before the server ended; forget those without an owner."""
@@ -126,7 +144,12 @@ class StudentBenches:
                     await self.get(person)
             except Exception:
                 log.exception("the bench of %s could not be brought back", person.id)
+        self._all_back = True
         await self._checkpoints.forget_others()
+
+    def may_come(self, bench_id: str) -> bool:
+        """Whether a bench that is not there may be on its way back: until all that can come have come."""
+        return not self._all_back and bench_id not in self._given_up
 
     async def bring_back(self, bench_id: str) -> bool:
         """Bring a bench back that students see beside their own; return whether it is there."""
@@ -137,15 +160,24 @@ class StudentBenches:
         """Return a bench that goes on from its checkpoint, if it has one that this version can read."""
         found = await self._checkpoints.load(bench_id) if bench_id else None
         if found is None:
+            self._given_up.add(bench_id)
             return None
         try:
             return await self._benches.revive(found, self.on_revived)
         except Exception:
             log.exception("bench %s cannot go on from what was kept", bench_id)
+            self._given_up.add(bench_id)
             return None
 
-    async def _make(self, person: Person, wanted: dict[str, Any], hide: Callable[[Board], Blind] | None) -> Session:
+    async def _make(
+        self,
+        person: Person,
+        wanted: dict[str, Any],
+        before: Sequence[Session],
+        hide: Callable[[Board], Blind] | None = None,
+        also: Callable[[Session], Sequence[Change]] = lambda _: (),
+    ) -> Session:
         """Make a bench and give it to a student."""
         made = await self._benches.create(**wanted, class_id=person.class_id, hide=hide)
-        await self._people.give_bench(person, made.id)
+        await self._swap(made, before, self._people.giving(person, made.id), *also(made))
         return made

@@ -13,6 +13,7 @@ from sqlalchemy.orm import Session
 from scenarios.lecture import Span
 from server.errors import ApiError, not_found
 from server.people.person import Person
+from server.store.change import Change
 from server.store.database import Database
 from server.store.people import BallotRow, VoteRow
 
@@ -152,22 +153,10 @@ class Votes:
 
     async def of(self, person: Person) -> OpenVote | None:
         """Return the vote of a student's class, with the student's own answer and nobody else's."""
+        return await self._database.run(lambda session: _open_vote(session, person))
 
-        def found(session: Session) -> OpenVote | None:
-            row = _of_class(session, person.class_id) if person.class_id else None
-            if row is None:
-                return None
-            mine = session.get(BallotRow, (row.id, person.id))
-            vote = _vote(session, row)
-            return OpenVote(
-                **vote.model_dump(include={"id", "question", "state", "results", "right"}),
-                mine=Ballot(answer=mine.answer, at_ms=mine.at_ms) if mine is not None else None,
-            )
-
-        return await self._database.run(found)
-
-    async def cast(self, person: Person, vote_id: str, ballot: Ballot) -> None:
-        """Take a student's answer in place of an earlier one.
+    async def cast(self, person: Person, vote_id: str, ballot: Ballot) -> OpenVote | None:
+        """Take a student's answer in place of an earlier one; return the vote with it.
 
         Raises
         ------
@@ -175,7 +164,7 @@ class Votes:
             If the vote is not of the student's class, not open, or has no such answer or moment.
         """
 
-        def cast(session: Session) -> None:
+        def cast(session: Session) -> OpenVote | None:
             row = session.get(VoteRow, vote_id[:32])
             if row is None or not person.class_id or row.class_id != person.class_id:
                 raise not_found("vote", vote_id)
@@ -189,11 +178,13 @@ class Votes:
             if when is not None and not when["from_ms"] <= (ballot.at_ms or 0.0) <= when["until_ms"]:
                 raise ApiError(422, "invalid", f"must be from {when['from_ms']:g} to {when['until_ms']:g}", "at_ms")
             session.merge(BallotRow(vote_id=row.id, person_id=person.id, **ballot.model_dump()))
+            session.flush()
+            return _open_vote(session, person)
 
-        await self._database.run(cast)
+        return await self._database.run(cast)
 
-    async def forget(self, class_id: str = "", person_id: str = "") -> None:
-        """Forget the vote of a class that has ended, or the ballots of a student who has gone."""
+    def forgetting(self, class_id: str = "", person_id: str = "") -> Change:
+        """Forget the vote of a class that ends, or the ballots of a student who goes."""
 
         def forgotten(session: Session) -> None:
             if person_id:
@@ -201,7 +192,7 @@ class Votes:
             if class_id and (row := _of_class(session, class_id)) is not None:
                 _forget(session, row.id)
 
-        await self._database.run(forgotten)
+        return Change(forgotten)
 
     async def _shown(self, work: Callable[[Session], VoteRow]) -> Vote:
         """Do something to a vote, and describe it."""
@@ -225,6 +216,19 @@ def _forget(session: Session, vote_id: str) -> None:
     """Delete a vote and its ballots."""
     session.execute(delete(BallotRow).where(BallotRow.vote_id == vote_id))
     session.execute(delete(VoteRow).where(VoteRow.id == vote_id))
+
+
+def _open_vote(session: Session, person: Person) -> OpenVote | None:
+    """Describe the vote of a student's class to the student."""
+    row = _of_class(session, person.class_id) if person.class_id else None
+    if row is None:
+        return None
+    mine = session.get(BallotRow, (row.id, person.id))
+    vote = _vote(session, row)
+    return OpenVote(
+        **vote.model_dump(include={"id", "question", "state", "results", "right"}),
+        mine=Ballot(answer=mine.answer, at_ms=mine.at_ms) if mine is not None else None,
+    )
 
 
 def _vote(session: Session, row: VoteRow) -> Vote:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import shutil
 from collections.abc import Sequence
 from datetime import datetime
@@ -10,7 +9,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
-from sqlalchemy import Delete, Select, delete, or_, select, update
+from sqlalchemy import Select, delete, or_, select, update
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session, defer
 
@@ -22,6 +21,8 @@ from server.store.database import Database
 from server.store.models import RequestRow, of_process
 
 ACTIVE = ("queued", "running")
+AT_ONCE = 500
+"""Rows deleted by one statement."""
 MOST = 200
 """Rows of one list."""
 LONGEST_LABEL = 120
@@ -181,17 +182,25 @@ class Requests:
     async def rename(self, kind: Kind, row_id: str, label: str) -> RequestRow:
         """Give a run or a campaign a name; an empty one takes it away."""
         name = clean_label(label)
-        await self.get(kind, row_id)
-        await self.update(row_id, label=name)
-        return await self.get(kind, row_id)
+
+        def named(session: Session) -> RequestRow | None:
+            row = session.get(RequestRow, row_id)
+            if row is not None and row.kind == kind:
+                row.label = name
+                return row
+            return None
+
+        row = await self._database.run(named)
+        if row is None:
+            raise not_found(kind, row_id)
+        return row
 
     async def remove(self, kind: Kind, ids: Sequence[str] | None) -> int:
         """Remove some that have ended, or all of this process if none is named; return how many.
 
         If one of them cannot be removed, none is.
 
-        Files go first: on a full disk the row can be deleted only after they have made room. Results stay, for others
-        share them.
+        Results stay, for others share them.
         """
         if ids is None:
             ended = (RequestRow.kind == kind, RequestRow.state.not_in(ACTIVE), of_process(self._shard))
@@ -205,10 +214,17 @@ class Requests:
                 self.check_here(rows[row_id])
                 if (state := rows[row_id].state) in ACTIVE:
                     raise ApiError(409, "conflict", f"the {kind} {row_id} is {state}; cancel it first", "ids")
-        for row_id in dict.fromkeys(ids):
-            await asyncio.to_thread(shutil.rmtree, self.folders[kind] / row_id, ignore_errors=True)
-            statement: Delete = delete(RequestRow).where(RequestRow.id == row_id, RequestRow.state.not_in(ACTIVE))
-            await self._database.run(lambda session, s=statement: session.execute(s))  # type: ignore[misc]
+
+        def delete_rows(session: Session) -> None:
+            for first in range(0, len(ids), AT_ONCE):
+                some = RequestRow.id.in_(ids[first : first + AT_ONCE])
+                session.execute(delete(RequestRow).where(some, RequestRow.state.not_in(ACTIVE)))
+
+        def remove() -> None:
+            for row_id in ids:
+                shutil.rmtree(self.folders[kind] / row_id, ignore_errors=True)
+
+        await self._database.run_or_make_room(delete_rows, remove)
         return len(set(ids))
 
     async def _rows(self, query: Select[Any]) -> list[RequestRow]:

@@ -11,6 +11,7 @@ handed over, and for no more of it.
 from __future__ import annotations
 
 import asyncio
+import itertools
 import logging
 import os
 import shutil
@@ -39,6 +40,8 @@ log = logging.getLogger(__name__)
 
 Shown = TypeVar("Shown")
 CANCEL_S = 5.0
+LONGEST_WAIT_S = 5
+"""Between two tries to note how a request ended; the first two follow at once."""
 
 
 class Requested(ABC, Generic[Shown]):
@@ -247,6 +250,15 @@ class Queue:
         return told
 
     async def _end(self, row_id: str, state: str, **values: Any) -> None:
-        """Note how a request ended."""
+        """Note how a request ended, as soon as the database can be written."""
         self._metrics.runs.labels(state).inc()
-        await self.requests.update(row_id, state=state, finished=now(), **values)
+        values = {"state": state, "finished": now(), **values}
+        for tries in itertools.count():
+            try:
+                await self.requests.update(row_id, **values)
+                return
+            except DBAPIError as error:
+                if self._is_closing:
+                    raise  # the next start resumes it
+                log.error("the end of %s is not in the database yet: %s", row_id, reason_of(error))
+                await asyncio.sleep(min(tries, LONGEST_WAIT_S))

@@ -7,7 +7,7 @@ import contextlib
 import html
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from urllib.parse import urlencode
 
 from starlette.requests import HTTPConnection, Request
@@ -39,6 +39,7 @@ LARGE = 1 << 20
 MOST_SOCKETS = 8
 """Open streams and 3D views of one student."""
 
+WHOSE = {Need.TEACHER: "the teacher", Need.MEMBER: "the teacher or a student"}
 WAY_IN = (
     "CombBench printed an address with a token when it started; open that one. "
     "`combbench doctor` says where the token is kept."
@@ -60,6 +61,9 @@ class Gate:
         Knows who drives each bench.
     origin : OriginPolicy
         Checks the host and the origin.
+    come_back : callable
+        Revives the bench in the path, or the bench of a student, after a restart: a hidden fault stays hidden from
+        the first request on.
     is_blind : callable
         Whether a fault is hidden from a person, on the bench in the path or on that of a student.
     open_paths : frozenset of str
@@ -82,6 +86,7 @@ class Gate:
         people: People,
         driving: Driving,
         origin: OriginPolicy,
+        come_back: Callable[[Person, str], Awaitable[None]],
         is_blind: Callable[[Person, str], bool],
         open_paths: frozenset[str] = frozenset(),
         prefix: str = "",
@@ -91,7 +96,7 @@ class Gate:
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         self._app, self._identity, self._people, self._driving = app, identity, people, driving
-        self._origin, self._is_blind = origin, is_blind
+        self._origin, self._come_back, self._is_blind = origin, come_back, is_blind
         self._open, self._prefix, self._frames, self._units = open_paths, prefix, frames, units
         self._student_events = student_events
         self._requests = Buckets(REQUESTS_PER_S, REQUESTS_AT_ONCE, clock=clock)
@@ -119,6 +124,8 @@ class Gate:
         method = SOCKET if scope["type"] == "websocket" else scope["method"]
         need, bench_id = need_of(method, scope["path"])
         if self._is_open(scope) or self._people.may(person, need, bench_id):
+            if person is not None and need is not Need.NOTHING:
+                await self._come_back(person, bench_id)
             if person is not None and self._is_blind(person, bench_id) and not serves_blind(method, scope["path"]):
                 await self._refuse(scope, receive, send, 403, CLOSE_ROLE, "blind", REFUSAL, HINT)
                 return
@@ -132,7 +139,7 @@ class Gate:
         elif person is None:
             await self._refuse(scope, receive, send, 401, CLOSE_AUTH, "unauthorised", "an access token is needed")
         else:
-            whose = "the teacher" if need is Need.TEACHER else "the person who has this bench"
+            whose = WHOSE.get(need, "the person who has this bench")
             await self._refuse(scope, receive, send, 403, CLOSE_ROLE, "forbidden", f"only {whose} may do that")
 
     def _person(self, connection: HTTPConnection) -> Person | None:

@@ -16,6 +16,7 @@ from sqlalchemy.exc import ArgumentError, DBAPIError
 from sqlalchemy.orm import Session, sessionmaker
 
 from core.errors import InputError
+from server.store.change import Change
 
 if TYPE_CHECKING:
     from alembic.config import Config
@@ -126,6 +127,25 @@ class Database:
     async def run(self, work: Callable[[Session], T]) -> T:
         """Run ``work`` in a transaction on the database thread."""
         return await asyncio.get_running_loop().run_in_executor(self._thread, self.transact, work)
+
+    async def keep(self, *changes: Change) -> None:
+        """Write changes in one transaction, then make them true in memory; nothing changes if one cannot be written."""
+        if changes:
+            await self.run(lambda session: [change.write(session) for change in changes])
+        for change in changes:
+            change.take()
+
+    async def run_or_make_room(self, work: Callable[[Session], object], remove: Callable[[], object]) -> None:
+        """Delete rows, then their files; on a full disk the files go first, which makes room for the rows to go."""
+        try:
+            await self.run(work)
+        except DBAPIError as error:
+            if "full" not in reason_of(error):
+                raise
+            await asyncio.to_thread(remove)
+            await self.run(work)
+        else:
+            await asyncio.to_thread(remove)
 
     def run_later(self, work: Callable[[Session], object]) -> None:
         """Run ``work`` on the database thread behind what waits there; what goes wrong is logged."""

@@ -6,6 +6,7 @@ import asyncio
 import logging
 import shutil
 from datetime import UTC, datetime, timedelta
+from functools import partial
 from pathlib import Path
 
 from sqlalchemy import delete, select, true
@@ -83,10 +84,11 @@ class Keeping:
             query = select(table.id).where(table.finished < before, which)
             ids = await database.run(lambda session, q=query: list(session.scalars(q)))  # type: ignore[misc]
             for key in ids:
-                # The files go first: on a full disk the row can be deleted only after they have made room.
-                await asyncio.to_thread(_remove, self._settings.data / folder, key)
                 statement = delete(table).filter_by(id=key)
-                await database.run(lambda session, s=statement: session.execute(s))  # type: ignore[misc]
+                await database.run_or_make_room(
+                    lambda session, s=statement: session.execute(s),  # type: ignore[misc]
+                    partial(_remove, self._settings.data / folder, key),
+                )
             count += len(ids)
         if count:
             log.info("deleted %d recordings and runs older than %g days", count, self._settings.retention_days)

@@ -8,7 +8,8 @@ from datetime import datetime
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict
-from sqlalchemy import delete, func, select, update
+from sqlalchemy import delete, func, select
+from sqlalchemy.orm import Session
 
 from server.bench.experiment import THIS_VERSION, Experiment
 from server.errors import ApiError, not_found
@@ -96,15 +97,20 @@ class Links:
             content=plain,
             bytes=size,
         )
-        if bench_id is None:
+
+        def keep(session: Session) -> LinkRow:
             count = select(func.count()).select_from(LinkRow).where(LinkRow.kind != "bench")
-            if await self._database.run(lambda session: session.scalar(count) or 0) >= self._most:
+            if bench_id is None and (session.scalar(count) or 0) >= self._most:
                 text = f"{self._most} links are kept, the limit (max_links)"
                 raise ApiError(409, "too_many_links", text, hint="delete some first")
-        await self._database.run(lambda session: session.merge(row))
-        if bench_id is not None:
-            await self._forget_oldest()
-        return await self.get(row.id)
+            there = session.merge(row)
+            session.flush()
+            if bench_id is not None:
+                _forget_oldest(session)
+            session.refresh(there)
+            return there
+
+        return LinkDetail.model_validate(await self._database.run(keep))
 
     async def all(self, kind: Kind | None = None) -> list[Link]:
         """List links, newest first; benches that were let go are none."""
@@ -117,10 +123,7 @@ class Links:
 
     async def get(self, link_id: str) -> LinkDetail:
         """Return a link and what it leads to, or refuse with 404."""
-        row = await self._database.run(lambda session: session.get(LinkRow, link_id[:64]))
-        if row is None:
-            raise not_found("link", link_id, "it may have been deleted")
-        return LinkDetail.model_validate(row)
+        return _found(await self._database.run(lambda session: session.get(LinkRow, link_id[:64])), link_id)
 
     async def let_go(self, bench_id: str) -> LinkDetail | None:
         """Return the bench that was let go by this id, if there is one."""
@@ -129,20 +132,30 @@ class Links:
 
     async def change(self, link_id: str, **values: Any) -> LinkDetail:
         """Change the title or the note of a link; what it leads to stays."""
-        await self.get(link_id)
-        if values:
-            statement = update(LinkRow).where(LinkRow.id == link_id).values(**values)
-            await self._database.run(lambda session: session.execute(statement))
-        return await self.get(link_id)
+
+        def change(session: Session) -> LinkRow | None:
+            row = session.get(LinkRow, link_id[:64])
+            if row is not None:
+                for name, value in values.items():
+                    setattr(row, name, value)
+            return row
+
+        return _found(await self._database.run(change), link_id)
 
     async def delete(self, link_id: str) -> None:
         """Delete a link, or forget a bench that was let go."""
         await self._database.run(lambda session: session.execute(delete(LinkRow).where(LinkRow.id == link_id)))
 
-    async def _forget_oldest(self) -> None:
-        """Keep the benches that were let go within their number."""
-        newest = select(LinkRow.id).where(LinkRow.kind == "bench").order_by(LinkRow.created.desc())
-        beyond = newest.offset(MOST_LET_GO)
-        ids = await self._database.run(lambda session: list(session.scalars(beyond)))
-        if ids:
-            await self._database.run(lambda session: session.execute(delete(LinkRow).where(LinkRow.id.in_(ids))))
+
+def _found(row: LinkRow | None, link_id: str) -> LinkDetail:
+    """Describe a link, or refuse with 404."""
+    if row is None:
+        raise not_found("link", link_id, "it may have been deleted")
+    return LinkDetail.model_validate(row)
+
+
+def _forget_oldest(session: Session) -> None:
+    """Delete the oldest benches beyond their number."""
+    newest = select(LinkRow.id).where(LinkRow.kind == "bench").order_by(LinkRow.created.desc())
+    ids = list(session.scalars(newest.offset(MOST_LET_GO)))
+    session.execute(delete(LinkRow).where(LinkRow.id.in_(ids)))

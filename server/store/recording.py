@@ -70,6 +70,11 @@ class RecordingFile:
         self._sink.close()
         return convert(self._path)
 
+    def discard(self) -> None:
+        """Close a stream that nothing has come to, and leave no file."""
+        self._sink.close()
+        self._path.with_suffix(PART).unlink(missing_ok=True)
+
     def salvage(self) -> int:
         """Close a stream that cannot be written any more; keep the batches that have reached the disk."""
         with contextlib.suppress(OSError):
@@ -98,6 +103,15 @@ def rescue(path: Path) -> int:
         return 0
     except (OSError, pa.ArrowException):
         return 0
+
+
+def is_readable(path: Path) -> bool:
+    """Return whether a file exists and its footer can be read."""
+    try:
+        pq.read_metadata(path)
+    except (OSError, pa.ArrowException):
+        return False
+    return True
 
 
 def first_tick(path: Path) -> int:

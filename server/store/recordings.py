@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal
 
 import pyarrow as pa
 from pydantic import AfterValidator, BaseModel, ConfigDict
-from sqlalchemy import delete, select, update
+from sqlalchemy import Update, delete, select, update
 from sqlalchemy.exc import DBAPIError
 
 from scenarios.key import code_version
@@ -22,12 +22,13 @@ from server.bench.earlier import in_this_notation
 from server.errors import ApiError, not_found
 from server.store.database import Database, reason_of
 from server.store.models import RecordingRow
-from server.store.recording import EVENTS, PART, RecordingFile, events_of, first_tick, rescue
+from server.store.recording import EVENTS, PART, RecordingFile, events_of, first_tick, is_readable, rescue
 from server.version import VERSION
 
 log = logging.getLogger(__name__)
 
 OPEN = ("armed", "recording")
+DAMAGED = "cannot be read any more: it is damaged or gone"
 State = Literal["armed", "recording", "done", "cut_short", "failed", "aborted"]
 """It waits; it grows; it ended as intended; it ended early but is whole; it is empty; the server stopped."""
 
@@ -75,6 +76,12 @@ class About:
     seed: int
     layout: dict[str, Any] | None = None
     condition: str = ""
+
+
+def _damaged(recording_id: str) -> Update:
+    """Return what says of a recording that nothing of it can be read."""
+    table = RecordingRow
+    return update(table).where(table.id == recording_id).values(state="failed", ticks=0, reason=f"its file {DAMAGED}")
 
 
 class Recordings:
@@ -125,15 +132,19 @@ class Recordings:
         except OSError as error:
             text = f"the recording cannot be opened: {error.strerror or error}"
             raise ApiError(507, "no_space", text) from None
-        await self._database.run(lambda session: session.add(row))
+        try:
+            await self._database.run(lambda session: session.add(row))
+        except BaseException:
+            await asyncio.to_thread(file.discard)
+            raise
         return Recording.model_validate(row), file
 
-    async def begin(self, recording_id: str, start_tick: int) -> Recording:
-        """Note the first tick, which is known once the engine has begun."""
-        statement = update(RecordingRow).where(RecordingRow.id == recording_id)
-        statement = statement.values(start_tick=start_tick, state="recording")
-        await self._database.run(lambda session: session.execute(statement))
-        return await self.get(recording_id)
+    def begin(self, recording: Recording, start_tick: int) -> Recording:
+        """Note the first tick, which is known once the engine has begun; if it cannot be kept, the end notes it."""
+        begun: dict[str, Any] = {"start_tick": start_tick, "state": "recording"}
+        statement = update(RecordingRow).where(RecordingRow.id == recording.id, RecordingRow.finished.is_(None))
+        self._database.run_later(lambda session: session.execute(statement.values(**begun)))
+        return recording.model_copy(update=begun)
 
     def closer(self, recording_id: str) -> Callable[[int, int, str, bool], None]:
         """Return the function that closes the row, cut short or not; called on the recorder's thread."""
@@ -192,22 +203,36 @@ class Recordings:
         path = self.path(recording.id)
         if recording.state in OPEN or not path.is_file():
             raise not_found("finished trace of recording", recording_id, "stop the recording first")
+        if not await asyncio.to_thread(is_readable, path):
+            await self._database.run(lambda session: session.execute(_damaged(recording_id)))
+            raise ApiError(410, "damaged", f"the file of the recording {DAMAGED}", hint="delete it")
         return recording, path
 
     async def delete(self, recording_id: str) -> None:
-        """Delete a recording that has ended: the files first, because a full disk leaves no room to delete the row."""
+        """Delete a recording that has ended."""
         recording = await self.get(recording_id)
         if recording.state in OPEN:
             raise ApiError(409, "conflict", "the recording is under way", hint="stop it first")
-        for path in (self.path(recording_id).with_suffix(kind) for kind in (".parquet", PART, EVENTS)):
-            await asyncio.to_thread(path.unlink, missing_ok=True)
+        paths = [self.path(recording_id).with_suffix(kind) for kind in (".parquet", PART, EVENTS)]
+
+        def unlink() -> None:
+            for path in paths:
+                path.unlink(missing_ok=True)
+
+        gone = delete(RecordingRow).filter_by(id=recording_id)
+        await self._database.run_or_make_room(lambda session: session.execute(gone), unlink)
         self._unclosed.pop(recording_id, None)
-        await self._database.run(lambda session: session.execute(delete(RecordingRow).filter_by(id=recording_id)))
 
     async def recover(self) -> None:
         """Complete recordings after a crash: keep the ticks that reached the disk, mark the rows aborted."""
-        query = select(RecordingRow.id, RecordingRow.state)
-        known = {row.id: row.state for row in await self._database.run(lambda session: list(session.execute(query)))}
+        query = select(RecordingRow.id, RecordingRow.state, RecordingRow.ticks)
+        rows = await self._database.run(lambda session: list(session.execute(query)))
+        known = {row.id: row.state for row in rows}
+        for row in rows:
+            whole = row.state in OPEN or not row.ticks or self.path(row.id).with_suffix(PART).exists()
+            if not whole and not await asyncio.to_thread(is_readable, self.path(row.id)):
+                await self._database.run(lambda session, id_=row.id: session.execute(_damaged(id_)))  # type: ignore[misc]
+                log.warning("the file of recording %s %s", row.id, DAMAGED)
         for recording_id, state in known.items():
             # A full disk leaves the stream of a recording that has ended.
             if state in OPEN or self.path(recording_id).with_suffix(PART).exists():

@@ -35,5 +35,8 @@ def browser(lab: Live, platforms: tuple[Platform, Platform], monkeypatch: pytest
     monkeypatch.setenv("NO_PROXY", "127.0.0.1")
     platforms[0].scores.clear()
     yield Browser(lab, platforms[0])
+    platforms[0].key_set = None
+    lab.app.state.lti.key_sets._known.clear()
+    lab.app.state.lti.tries._buckets.clear()
     for group in lab.http.get("/api/v1/classes").json()["classes"]:
         lab.http.delete(f"/api/v1/classes/{group['id']}")

@@ -54,6 +54,13 @@ class Platform:
         self.key = key_of(client_id)
         self.scores: list[dict[str, Any]] = []
         self.tokens: list[dict[str, str]] = []
+        self.key_set: Any = None
+        """What it answers instead of its keys."""
+        self.asked = 0
+        """How often it was asked for its keys."""
+        self.shows_keys = threading.Event()
+        """Keys are answered only while it is set."""
+        self.shows_keys.set()
         self.refusals = 0
         """How many scores are refused before one is taken."""
         self.is_free = threading.Event()
@@ -119,9 +126,14 @@ class Platform:
         kind = {f"{CLAIM}message_type": "LtiDeepLinkingRequest", DEEP_LINKING: settings}
         return self.claims(nonce, "Instructor", **kind, **changed)
 
-    def sign(self, claims: dict[str, Any], key: Any = None) -> str:
-        """Return a message that is signed."""
-        return jwt.encode(claims, key or self.key, "RS256", {"kid": KID})
+    def sign(self, claims: dict[str, Any], key: Any = None, kid: str = KID) -> str:
+        """Return a message that is signed, however strange its claims are."""
+        return jwt.PyJWS().encode(json.dumps(claims).encode(), key or self.key, "RS256", {"kid": kid})
+
+
+def public_key(key: rsa.RSAPrivateKey, kid: str = KID, **changed: Any) -> dict[str, Any]:
+    """Return a key as a key set has it."""
+    return {**RSAAlgorithm.to_jwk(key.public_key(), as_dict=True), "kid": kid, "alg": "RS256", "use": "sig", **changed}
 
 
 class Handler(BaseHTTPRequestHandler):
@@ -133,8 +145,10 @@ class Handler(BaseHTTPRequestHandler):
         """Show the keys, the course, or the page that ends a login."""
         path, query = urlsplit(self.path).path, dict(parse_qsl(urlsplit(self.path).query))
         if path == "/keys":
-            public = RSAAlgorithm.to_jwk(self.platform.key.public_key(), as_dict=True)
-            self._answer(json.dumps({"keys": [{**public, "kid": KID, "alg": "RS256", "use": "sig"}]}))
+            self.platform.asked += 1
+            self.platform.shows_keys.wait(60)
+            usual = {"keys": [public_key(self.platform.key)]}
+            self._answer(json.dumps(usual if self.platform.key_set is None else self.platform.key_set))
         elif path == "/auth":
             message = self.platform.sign(self.platform.claims(query["nonce"]))
             fields = {"id_token": message, "state": query["state"]}

@@ -7,11 +7,15 @@ from pathlib import Path
 from typing import Any
 
 import jwt
+import pytest
+from sqlalchemy import select
 
+from server.store.people import LtiKeyRow
 from tests.server.conftest import Live
 from tests.server.lti.browser import Browser
 from tests.server.lti.platform import CLAIM, KID, MEMBERSHIP, key_of
 from tests.server.people.group import Somebody
+from tests.server.world import Injector
 
 
 def me(lab: Live, secret: str) -> dict[str, Any]:
@@ -166,3 +170,23 @@ def test_a_platform_that_is_not_configured_begins_nothing(browser: Browser) -> N
     assert browser.begin(iss="https://stranger.example").status_code == 403
     assert browser.begin(client_id="another tool").status_code == 403
     assert browser.begin(login_hint="").status_code == 403
+
+
+def test_a_launch_that_the_database_refuses_leaves_no_second_class_and_no_second_student(
+    lab: Live, browser: Browser, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    injector, calls = Injector(monkeypatch), 0
+    while True:
+        answer = browser.launch()
+        injector.arm(calls)
+        exchanged = browser.exchange(answer)
+        injector.is_armed = False
+        if not injector.has_failed:
+            break
+        assert exchanged.status_code == 503
+        calls += 1
+    assert calls > 5 and exchanged.status_code == 200
+    [group] = lab.http.get("/api/v1/classes").json()["classes"]
+    assert group["students"] == 1
+    rows = lab.service.database.transact(lambda session: list(session.scalars(select(LtiKeyRow))))
+    assert [row.person_id is None for row in rows].count(True) == 1 and len(rows) == 2

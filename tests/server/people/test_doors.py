@@ -24,6 +24,7 @@ ROLES = ("teacher", "student", "other student", "borrower", "onlooker", "watcher
 ALLOWED = {
     Need.NOTHING: set(ROLES),
     Need.SESSION: set(ROLES) - {"stranger"},
+    Need.MEMBER: set(ROLES) - {"stranger", "watcher", "other watcher"},
     Need.WATCH: {"teacher", "student", "watcher", "borrower", "onlooker"},
     Need.MAY_DRIVE: {"teacher", "student", "borrower"},
     Need.DRIVE: {"teacher", "student", "borrower"},

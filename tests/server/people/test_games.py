@@ -80,17 +80,17 @@ def test_a_class_has_games_of_its_own_and_a_table_that_keeps_secrets(live: Live)
     ada, bob, eve = join(live, group, "Ada"), join(live, group, "Bob"), join(live, other, "Eve")
     master = the_teacher(live)
     first = post(ada, f"{FILTER}/attempts", 201, seed=1, hand_in={"assumed_noise_scale": 3.0})
-    same = post(bob, f"{FILTER}/attempts", 201, seed=1, hand_in={"assumed_noise_scale": 3.0})
-    assert first["attempts"][0]["outcome"] == same["attempts"][0]["outcome"]  # the same game for all of the class
+    own = post(bob, f"{FILTER}/attempts", 201, seed=1, hand_in={"assumed_noise_scale": 3.0})
+    assert first["attempts"][0]["outcome"] != own["attempts"][0]["outcome"]  # each has a game of their own
     others = post(eve, f"{FILTER}/attempts", 201, seed=1, hand_in={"assumed_noise_scale": 3.0})
-    assert others["best"] != same["best"] and [line["name"] for line in others["table"]] == ["Eve"]
+    assert others["best"] != own["best"] and [line["name"] for line in others["table"]] == ["Eve"]
     assert look(master, FILTER, 1)["table"] == []  # of those in no class
 
-    better = post(bob, f"{FILTER}/attempts", 201, seed=1, hand_in={"assumed_noise_scale": 3.0, "process_noise_v": 0.1})
+    better = post(bob, f"{FILTER}/attempts", 201, seed=1, hand_in={"assumed_noise_scale": 3.0})
     ranked = better["table"]
     assert [line["points"] for line in ranked] == sorted((line["points"] for line in ranked), reverse=True)
-    ties = [line["name"] for line in ranked if line["points"] == first["attempts"][0]["outcome"]["points"]]
-    assert ties == ["Ada", "Bob"]  # of the same points the earlier is first
+    ties = [line["at"] for line in ranked if line["name"] == "Bob"]
+    assert len(ties) == 2 and ties == sorted(ties)  # of the same points the earlier is first
     for line in ranked:
         assert line["mine"] == (line["name"] == "Bob") and (line["handed_in"] is None) == (line["name"] == "Ada")
     done = post(bob, f"{FILTER}/reveal", 200, seed=1)
@@ -99,16 +99,30 @@ def test_a_class_has_games_of_its_own_and_a_table_that_keeps_secrets(live: Live)
 
     seen = look(master, f"/api/v1/classes/{group['id']}/games/be-the-filter", 1)
     assert {line["name"] for line in seen["table"]} == {"Ada", "Bob"} and all(one["handed_in"] for one in seen["table"])
-    game = GAMES["be-the-filter"]
-    again = game.judge(seen["draw"], game.read(seen["draw"], {"assumed_noise_scale": 3.0}))
+    game, games = GAMES["be-the-filter"], {one["name"]: one for one in seen["students"]}
+    number = games["Ada"]["draw"]
+    again = game.judge(number, game.read(number, {"assumed_noise_scale": 3.0}))
     assert again.points == first["attempts"][0]["outcome"]["points"]
-    assert done["hidden"] == seen["hidden"] == [fact.model_dump() for fact in game.hidden(seen["draw"])]
+    for one in games.values():
+        assert one["hidden"] == [fact.model_dump() for fact in game.hidden(one["draw"])]
+    assert done["hidden"] == games["Bob"]["hidden"] != games["Ada"]["hidden"]
     live.http.delete(f"/api/v1/classes/{group['id']}/members/{ada.id}")
     assert {line["name"] for line in look(bob, FILTER, 1)["table"]} == {"Bob"}
     assert live.http.delete(f"/api/v1/classes/{group['id']}").status_code == 204
     kept = live.service.database.transact(lambda session: [row.name for row in session.scalars(select(GameAttemptRow))])
     assert "Eve" in kept and not {"Ada", "Bob"} & {*kept}  # what a class did goes with it
     live.http.delete(f"/api/v1/classes/{other['id']}")
+
+
+def test_a_second_name_is_told_nothing_of_the_game_of_the_first(live: Live, group: dict[str, Any]) -> None:
+    ada, again = join(live, group, "Ada"), join(live, group, "Ada again")
+    for path in (FILTER, FOOL):
+        told = post(again, f"{path}/reveal", 200, seed=4)["hidden"]
+        assert look(ada, path, 4)["hidden"] is None
+        assert post(ada, f"{path}/reveal", 200, seed=4)["hidden"] != told
+    benches = [post(one, f"{FILTER}/begin", 201, seed=5)["bench"] for one in (ada, again)]
+    documents = [live.service.benches.get(bench).scenario.document for bench in benches]
+    assert documents[0]["device"] != documents[1]["device"] and documents[0]["seed"] != documents[1]["seed"]
 
 
 def test_attempts_are_limited_and_refused_in_one_line(
@@ -253,7 +267,7 @@ def test_every_door_says_the_same_of_every_game(
     monkeypatch.setattr(type(GAMES["fool-the-bank"]), "kinds", lambda _, __: by_number(1))  # these are public
     for _ in range(count):
         number = chance.randrange(2**31)
-        monkeypatch.setattr("server.people.games.draw", lambda *_, n=number: n)
+        monkeypatch.setattr("server.people.classes.draw", lambda *_, n=number: n)
         ada.bench = post(ada, f"{game}/begin", 201, seed=1)["bench"]
         seen = ada.ask("GET", f"/api/v1/benches/{ada.bench}").json()
         hidden = live.service.benches.get(ada.bench).scenario.document
@@ -293,4 +307,4 @@ def draw_of(live: Live, student: Somebody) -> int:
     """Return the number that a student's game is drawn from."""
     person = live.service.people.by_secret(student.secret)
     shown = live.http.get(f"/api/v1/classes/{person.class_id}/games/be-the-filter?seed=1").json()
-    return int(shown["draw"])
+    return next(int(one["draw"]) for one in shown["students"] if one["name"] == person.name)

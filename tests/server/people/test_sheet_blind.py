@@ -56,7 +56,7 @@ value = "run_mass"
 ```
 """
 MASS = {"fault": "added_mass", "severity": 0.05}
-BEGUN = re.compile(r"begun [\d :-]+UTC")
+BEGUN = re.compile(r"(?:begun|written) [\d :-]+UTC")
 TO_COME = 900
 """Ticks after which a fault has come, at the usual pace."""
 
@@ -134,3 +134,103 @@ def test_a_step_is_looked_at_again_once_the_fault_is_told(
     assert at.step("run")["earned"] == 0.0
     at.do(kind="step", ticks=100)
     assert at.step("run")["earned"] == 1.0
+
+
+CASES = """+++
+schema = 1
+title = "Two cases"
+summary = "Each hides a fault."
+minutes = 5
+[bench]
+scenario = "first-look"
+drawn_device = true
+set = { "device.id" = "lcr-350" }
++++
+
+## First
+
+```step
+id = "first"
+kind = "blind"
+points = 4.0
+```
+
+## Second
+
+```step
+id = "second"
+kind = "blind"
+points = 2.0
+```
+"""
+
+
+@pytest.fixture
+def cases(live: Live) -> Iterator[tuple[str, dict[str, Any]]]:
+    """A sheet of two hidden faults, and a class."""
+    made, group = live.http.post(f"{API}/sheets", json={"text": CASES}).json()["id"], open_class(live, "At a sheet")
+    yield made, group
+    live.http.delete(f"{API}/classes/{group['id']}")
+    live.http.delete(f"{API}/sheets/{made}")
+
+
+def truth_of(live: Live, bench: str) -> str:
+    """Return what is hidden on a bench; no door tells it."""
+    return str(live.service.benches.get(bench).hiding.blind.truth)
+
+
+def test_a_step_takes_the_answer_to_the_fault_that_it_has_hidden_and_no_other(
+    live: Live, cases: tuple[str, dict[str, Any]]
+) -> None:
+    """Neither of a bench that the student has made easy, nor of the sheet's own after a hand on its noise."""
+    sheet, group = cases
+    at = AtSheet(live, sheet, join(live, group, "Ada"))
+    hypotheses = [{"name": "healthy"}, {"name": "m+50", "mass": 1.5}]
+    easy = {"sensor.noise_um": 0.0, "diagnosers.kalman.hypotheses": hypotheses}
+    for turn in range(2):
+        if turn == 0:
+            bench = at.ask("POST", "/benches", status=201, scenario="first-look", set=easy)["id"]
+        else:
+            bench = at.bench = at.ask("POST", f"/sheets/{sheet}/begin")["bench"]
+            at.do(kind="reset", values={"sensor.noise_um": 0.0})
+        at.ask("POST", f"/benches/{bench}/blind", status=201, seed=1)
+        said = at.ask("POST", f"/benches/{bench}/blind/answer", said=truth_of(live, bench), confidence=1.0)
+        assert said["points"] == 100.0
+        assert (at.step("first")["earned"], at.step("first")["can_go_on"]) == (0.0, True)
+    bench = at.ask("POST", f"/sheets/{sheet}/steps/first/hide", status=201)["bench"]
+    assert len(at.ask("GET", f"/benches/{bench}")["blind"]["answers"]) == 6
+    assert live.service.benches.get(bench).document["sensors"]["ideal"]["noise_um"] == 0.05
+    refused = at.ask("POST", f"/sheets/{sheet}/steps/first/hide", status=403)["error"]
+    assert refused["code"] == "blind"
+    at.ask("POST", f"/benches/{bench}/blind/answer", said=truth_of(live, bench), confidence=1.0)
+    assert at.step("first")["earned"] == 4.0
+    assert at.ask("POST", f"/sheets/{sheet}/steps/first/hide", status=422)["error"]["field"] == "step"
+
+
+def test_a_fault_that_is_given_up_earns_nothing_and_one_whose_bench_has_gone_is_hidden_anew(
+    live: Live, cases: tuple[str, dict[str, Any]]
+) -> None:
+    sheet, group = cases
+    at = AtSheet(live, sheet, join(live, group, "Ada"))
+    at.ask("POST", f"/sheets/{sheet}/steps/first/hide", status=201)
+    live.http.post(f"{API}/classes/{group['id']}/scenario", json={"scenario": "first-look"})
+    assert at.step("first")["can_go_on"]
+    bench = at.ask("POST", f"/sheets/{sheet}/steps/first/hide", status=201)["bench"]
+    at.ask("DELETE", f"/benches/{bench}/blind")
+    assert (at.step("first")["earned"], at.step("first")["can_go_on"]) == (0.0, False)
+    assert at.step("second")["can_go_on"]
+
+
+def test_no_two_names_and_no_two_steps_share_what_is_drawn(live: Live, cases: tuple[str, dict[str, Any]]) -> None:
+    """A second name that joins by the same code is told nothing of the first."""
+    sheet, group = cases
+    drawn: set[tuple[Any, ...]] = set()
+    for name in ("Ada", "Ben"):
+        at = AtSheet(live, sheet, join(live, group, name))
+        for step in ("first", "second"):
+            bench = at.ask("POST", f"/sheets/{sheet}/steps/{step}/hide", status=201)["bench"]
+            session = live.service.benches.get(bench)
+            drawn.add((session.board.spec.seed, session.hiding.blind.came_tick))
+            at.ask("DELETE", f"/benches/{bench}/blind")
+            at.look()
+    assert len(drawn) == 4

@@ -163,8 +163,8 @@ def blind_diagnosis(at: AtSheet) -> None:
     at.right("honest", "seventy")
     for name in ("first", "second"):
         assert at.step(name)["earned"] == 0.0
+        at.bench = at.ask("POST", f"/sheets/{at.sheet}/steps/{name}/hide", status=201)["bench"]
         path = f"/api/v1/benches/{at.bench}/blind"
-        assert at.live.http.post(path, json={"seed": 7}).status_code == 201
         truth = at.live.service.benches.get(at.bench).hiding.blind.truth  # no door tells it
         assert at.live.http.post(f"{path}/answer", json={"said": truth, "confidence": 1.0}).json()["points"] == 100.0
         assert at.step(name)["earned"] == at.step(name)["points"]

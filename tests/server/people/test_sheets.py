@@ -236,16 +236,16 @@ def test_the_page_that_is_led_to_the_bench_of_a_sheet_finds_the_sheet_there(
     """The end of the earlier bench leads a page to the new one, where it asks which sheet is on it."""
     group = open_class(live)
     ada = join(live, group, "Ada")
-    service, close = live.service, live.service.student_benches._close_bench
+    service, close = live.service, live.service.hub.close_bench
     seen: list[tuple[str, str]] = []
 
-    async def closing(bench: Any) -> None:
+    def closing(bench: str) -> None:
         person = next(one for one in service.people.students(group["id"]) if one.id == ada.id)
         work = service.sheets.current(person)
         seen.append((work[0].bench_id if work else "", service.people.bench_of(person)))
-        await close(bench)
+        close(bench)
 
-    monkeypatch.setattr(service.student_benches, "_close_bench", closing)
+    monkeypatch.setattr(service.hub, "close_bench", closing)
     assert live.http.post(f"{API}/classes/{group['id']}/sheet", json={"sheet": own}).json()["done"] == 1
     assert len(seen) == 1 and seen[0][0] == seen[0][1] != ada.bench
     monkeypatch.undo()

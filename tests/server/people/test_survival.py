@@ -164,3 +164,30 @@ def test_a_blind_bench_comes_back_blind_and_answers_stay(servers: Servers) -> No
         truth = next(one["truth"] for one in kept["answers"] if one["name"] == "Ada")
         right = ada.ask("POST", f"{benches[0]}/blind/answer", json={"said": truth, "confidence": 1.0}).json()
         assert right["points"] == 100.0 and len(got(ada, f"{benches[0]}/digest")["digest"]) == 64
+
+
+@pytest.mark.parametrize("servers", ["left"], indirect=True)
+def test_a_bench_is_there_for_who_asks_before_all_have_come_back(
+    servers: Servers, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """From the first request on, and one that hides a fault hides it from then on too."""
+    first, second = servers
+    with first as live:
+        group = open_class(live)
+        ada, ben, cy = (join(live, group, name) for name in ("Ada", "Ben", "Cy"))
+        assert ben.ask("POST", f"/api/v1/benches/{ben.bench}/blind", json={"seed": 1}).status_code == 201
+        assert cy.ask("POST", f"/api/v1/benches/{cy.bench}/blind", json={"seed": 1}).status_code == 201
+        advance(live, seconds=1.0)
+
+    async def nothing(*_: Any) -> None:
+        """Bring none back in the background."""
+
+    monkeypatch.setattr("server.people.student_benches.StudentBenches.recover", nothing)
+    with second as live:
+        ada, ben, cy = (Somebody(live, one.secret, one.bench) for one in (ada, ben, cy))
+        assert len(live.service.benches) == 0
+        assert got(ada, f"/api/v1/benches/{ada.bench}")["id"] == ada.bench
+        assert ben.ask("GET", f"/api/v1/benches/{ben.bench}/scenario").json()["error"]["code"] == "blind"
+        assert cy.ask("GET", "/api/v1/recordings").json()["error"]["code"] == "blind"
+        assert got(the_teacher(live), f"/api/v1/benches/{cy.bench}")["id"] == cy.bench
+        assert ada.ask("GET", "/api/v1/benches/..%2f..").status_code in (403, 404)

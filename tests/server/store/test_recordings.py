@@ -115,3 +115,36 @@ def test_what_was_under_way_at_a_crash_is_marked_and_kept(serve: Any, tmp_path: 
         found = live.http.get(f"/api/v1/recordings/{finished['id']}").json()
         assert found["state"] == "aborted" and found["ticks"] == finished["ticks"]
         assert live.http.get(f"/api/v1/recordings/{finished['id']}/trace").status_code == 200
+
+
+def test_a_recording_whose_file_is_damaged_says_so_and_is_not_called_done(serve: Any, tmp_path: Any) -> None:
+    def asked(live: Any, recording: dict[str, Any]) -> list[tuple[int, str]]:
+        path = f"/api/v1/recordings/{recording['id']}"
+        answers = [
+            live.http.get(f"{path}/trace?format=csv"),
+            live.http.get(f"{path}/trace"),
+            live.http.post(f"{path}/replay", json={}),
+            live.http.post(f"{path}/compare", json={"other": recording["id"]}),
+        ]
+        return [(answer.status_code, answer.json()["error"]["code"]) for answer in answers]
+
+    def state(live: Any, recording: dict[str, Any]) -> tuple[str, int]:
+        found = live.http.get(f"/api/v1/recordings/{recording['id']}").json()
+        return found["state"], found["ticks"]
+
+    with serve(folder=tmp_path) as live:
+        bench = live.bench(time_scale=0.05)
+        cut, garbled, later = (record(live, bench) for _ in range(3))
+        file = live.service.recordings.path
+        whole = file(cut["id"]).read_bytes()
+        file(cut["id"]).write_bytes(whole[: len(whole) // 2])
+        assert asked(live, cut) == [(410, "damaged")] * 4
+        assert state(live, cut) == ("failed", 0)
+        data = bytearray(file(garbled["id"]).read_bytes())
+        data[4 : len(data) // 2] = b"x" * (len(data) // 2 - 4)  # its description is whole
+        file(garbled["id"]).write_bytes(bytes(data))
+        answer = live.http.get(f"/api/v1/recordings/{garbled['id']}/trace?format=csv")
+        assert (answer.status_code, answer.json()["error"]["code"]) == (410, "damaged")
+        file(later["id"]).write_bytes(b"no recording")
+    with serve(folder=tmp_path) as live:  # a start looks at all of them
+        assert [state(live, one) for one in (cut, later)] == [("failed", 0)] * 2

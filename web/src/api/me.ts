@@ -32,6 +32,9 @@ const looksOn = ({ me, at }: MeStore): boolean =>
 
 export const useMay = (right: Right): boolean => useMe(({ me }) => may(right, me?.role));
 
+/** Whether the page was opened by a link to watch, which shows one bench and nothing else of the server. */
+export const useWatches = (): boolean => useMe(({ me }) => me?.role === "watcher");
+
 /** Ask who is at this page, and which bench is theirs. */
 export async function askMe(): Promise<Me> {
   return keep(await data(client.GET("/api/v1/me")));

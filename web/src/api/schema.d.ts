@@ -2285,7 +2285,7 @@ export interface paths {
         };
         /**
          * Get Class Game
-         * @description Show the table of a class with what everybody handed in, and what the seed hides.
+         * @description Show the table of a class with all settings handed in, and the hidden facts of each student.
          */
         get: operations["get_class_game_api_v1_classes__class_id__games__game_id__get"];
         put?: never;
@@ -2570,6 +2570,26 @@ export interface paths {
          * @description Answer the step that is open.
          */
         post: operations["answer_step_api_v1_sheets__sheet_id__steps__step_id__answer_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sheets/{sheet_id}/steps/{step_id}/hide": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Hide In Step
+         * @description Hide the fault of the step that is open, on a new bench of the sheet; the answer to it closes the step.
+         */
+        post: operations["hide_in_step_api_v1_sheets__sheet_id__steps__step_id__hide_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2950,7 +2970,7 @@ export interface components {
             id: string;
             /**
              * Exercise
-             * @description Shared by the students of a class who were asked at once; empty: alone
+             * @description Shared by the students who were asked the same; empty: they hid it from themselves
              */
             exercise: string;
             /** Class Id */
@@ -3856,15 +3876,13 @@ export interface components {
          * @description A game of a class, as its teacher sees it.
          */
         ClassGame: {
-            /**
-             * Draw
-             * @description The seed that gives the same game headless; it is secret
-             */
-            draw: number;
             /** Table */
             table: components["schemas"]["Standing"][];
-            /** Hidden */
-            hidden: components["schemas"]["Fact"][];
+            /**
+             * Students
+             * @description In the order in which they came; each has a game of their own
+             */
+            students: components["schemas"]["StudentGame"][];
         };
         /**
          * ClassList
@@ -7698,6 +7716,21 @@ export interface components {
              * @default false
              */
             can_go_on?: boolean;
+        };
+        /**
+         * StudentGame
+         * @description The game of a student.
+         */
+        StudentGame: {
+            /** Name */
+            name: string;
+            /**
+             * Draw
+             * @description The seed that gives the same game headless; it is secret
+             */
+            draw: number;
+            /** Hidden */
+            hidden: components["schemas"]["Fact"][];
         };
         /**
          * SweepList
@@ -13428,7 +13461,7 @@ export interface operations {
     get_game_api_v1_games__game_id__get: {
         parameters: {
             query?: {
-                /** @description The same one is the same game for all of a class */
+                /** @description Each student of a class has a game of their own at it */
                 seed?: number;
             };
             header?: never;
@@ -13567,7 +13600,7 @@ export interface operations {
     get_class_game_api_v1_classes__class_id__games__game_id__get: {
         parameters: {
             query?: {
-                /** @description The same one is the same game for all of a class */
+                /** @description Each student of a class has a game of their own at it */
                 seed?: number;
             };
             header?: never;
@@ -14147,6 +14180,38 @@ export interface operations {
         responses: {
             /** @description Successful Response */
             200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SheetView"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    hide_in_step_api_v1_sheets__sheet_id__steps__step_id__hide_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sheet_id: string;
+                step_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            201: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -13,6 +13,8 @@ export const sheets = {
   startOver: (id: string) => data(client.DELETE("/api/v1/sheets/{sheet_id}/progress", ofSheet(id))),
   answer: (id: string, step: string, answer: string) =>
     data(client.POST("/api/v1/sheets/{sheet_id}/steps/{step_id}/answer", { ...ofStep(id, step), body: { answer } })),
+  hide: (id: string, step: string) =>
+    data(client.POST("/api/v1/sheets/{sheet_id}/steps/{step_id}/hide", ofStep(id, step))),
   hint: (id: string, step: string) =>
     data(client.POST("/api/v1/sheets/{sheet_id}/steps/{step_id}/hint", ofStep(id, step))),
   close: (id: string, step: string) =>

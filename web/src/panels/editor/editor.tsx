@@ -1,5 +1,6 @@
 import { Button, Switch, TextInput } from "@mantine/core";
 import { useEffect, useState } from "react";
+import { useWatches } from "../../api/me";
 import { useAnswer } from "../../api/queries";
 import { units } from "../../api/units";
 import { beginWith, isUnitName, nameOfClass, useDraft } from "../../bench/unit-draft";
@@ -19,7 +20,9 @@ import { Versions } from "./versions";
 
 /** Write a unit: its text at the left, what it is at the right. */
 export function Editor() {
-  const list = useAnswer(["texts of units"], units.all);
+  const watches = useWatches();
+  const list = useAnswer(watches ? undefined : ["texts of units"], units.all);
+  if (watches) return <EmptyState title="No units here">A link to watch shows one bench.</EmptyState>;
   if (list.value?.refusal) return <EmptyState title="No units here">{sentence(list.value.refusal)}</EmptyState>;
   return <Bench list={list} />;
 }

@@ -91,6 +91,9 @@ function said(handed: HandedIn, { hand_in }: GameCard, { kinds = [] }: GamePlay)
     const { factor, unit } = shownIn(kind);
     return `${kind.title.toLowerCase()} ${formatShort(Number(handed.severity) * factor, unit, 3)}`;
   }
+  // another student is offered other faults
+  if (handed.fault !== undefined)
+    return `${String(handed.fault).replaceAll("_", " ")} ${formatShort(Number(handed.severity), "", 3)}`;
   const changed = hand_in.flatMap((parameter) => {
     const value = handed[parameter.name];
     if (typeof value !== "number" || value === parameter.default) return [];

@@ -32,6 +32,13 @@ it("lists every set by its name, with its scenario", async () => {
   expect(screen.getByText("soft").closest("li")).toHaveTextContent("from first-look");
 });
 
+it("asks for no set on a page that was opened by a link to watch", async () => {
+  be("watcher");
+  mountPanel();
+  expect(await screen.findByText("No sets here")).toBeVisible();
+  expect(server.asked("GET", "/parameter-sets")).toHaveLength(0);
+});
+
 it("keeps the values of now under a name, and lists it", async () => {
   server.on("GET", "/parameter-sets", { sets: [] });
   server.on("POST", "/benches/:id/parameter-sets", soft);

@@ -1,7 +1,7 @@
 import { Button, TextInput } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../../api/api";
-import { useMay } from "../../api/me";
+import { useMay, useWatches } from "../../api/me";
 import { usePanelVisible } from "../../api/panel-visible";
 import { useAnswer } from "../../api/queries";
 import { showError } from "../../bench/send";
@@ -16,7 +16,10 @@ const EVERY_MS = 10_000;
 
 /** Values of the bench under a name: kept, put back in one tick, compared. */
 export function SetsPanel() {
-  return usePanelVisible() ? <Sets /> : null;
+  const watches = useWatches();
+  const visible = usePanelVisible();
+  if (watches) return <EmptyState title="No sets here">A link to watch shows one bench.</EmptyState>;
+  return visible ? <Sets /> : null;
 }
 
 function Sets() {

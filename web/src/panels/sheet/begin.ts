@@ -18,6 +18,13 @@ export async function beginSheet(id: string): Promise<void> {
   showSheet();
 }
 
+/** Hide the fault of a step, on a new bench of the sheet. */
+export async function hideInStep(id: string, step: string): Promise<void> {
+  const view = await sheets.hide(id, step);
+  queryClient.setQueryData(["sheet", id], view);
+  if (view.bench) openOwn(view.bench);
+}
+
 /** Bring the sheet to the front, in a column of its own. */
 export function showSheet(): void {
   useView.setState({ sheet: true });

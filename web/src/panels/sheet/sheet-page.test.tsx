@@ -69,6 +69,17 @@ it("says at its field why an answer cannot be read", async () => {
   expect(screen.getByRole("textbox", { name: "How large?" })).toBeInvalid();
 });
 
+it("hides the fault of a blind step, and no second one while it is hidden", async () => {
+  const blind = { ...step, kind: "blind" as const, question: "" };
+  const section = { ...next, state: "open" as const, step: { ...blind, conditions: [] } };
+  server.on("GET", "/sheets/first-look", { ...asking, sections: [{ ...open, state: "done" }, section, ...rest] });
+  const { user } = await mountPage();
+  await user.click(screen.getByRole("button", { name: "Hide a fault" }));
+  expect(server.asked("POST", `${STEPS}/hide`)).toHaveLength(1);
+  connect({ ...bench, blind: { id: "q", game: null, answers: [], factors: [], shows: [], began_tick: 0, by_tick: 9 } });
+  await waitFor(() => expect(screen.queryByRole("button", { name: "Hide a fault" })).toBeNull());
+});
+
 it("asks for a hint", async () => {
   const { user } = await mountPage();
   await user.click(screen.getByRole("button", { name: "Hint, free" }));

@@ -9,7 +9,7 @@ import { showError } from "../../bench/send";
 import { EmptyState } from "../../ui/empty-state";
 import { formatShort } from "../../ui/format";
 import { Stale } from "../../ui/stale";
-import { beginSheet } from "./begin";
+import { beginSheet, hideInStep } from "./begin";
 import { HandedIn } from "./handed-in";
 import styles from "./sheet.module.css";
 import { SheetText } from "./sheet-text";
@@ -33,6 +33,7 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
   };
   const actions: StepActions = {
     answer: (step, answer) => take(sheets.answer(id, step, answer)),
+    hide: (step) => void hideInStep(id, step).then(again, showError),
     hint: (step) => void take(sheets.hint(id, step)).catch(showError),
     close: (step) => void take(sheets.close(id, step)).catch(showError),
   };

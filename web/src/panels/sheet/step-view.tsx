@@ -3,12 +3,14 @@ import { type FormEvent, useState } from "react";
 import { ApiError } from "../../api/client";
 import type { SheetStep } from "../../api/types";
 import { hypothesisWords } from "../../bench/hypothesis-words";
+import { useBench } from "../../stream/bench-store";
 import { formatCount, formatShort } from "../../ui/format";
 import { unitText } from "../../ui/unit-scale";
 import styles from "./sheet.module.css";
 
 export interface StepActions {
   answer(step: string, answer: string): Promise<unknown>;
+  hide(step: string): void;
   hint(step: string): void;
   close(step: string): void;
 }
@@ -21,6 +23,7 @@ interface StepProps {
 
 /** A step of a sheet: what is checked, what is still missing, what was answered, how points come and go. */
 export function StepView({ step, isOpen, actions }: StepProps) {
+  const isHiding = useBench((s) => Boolean(s.bench?.blind));
   const { id, rule, earned, points, hints = [], next_hint_costs: hintCosts, answers = [] } = step;
   return (
     <div className={styles.step} data-open={isOpen}>
@@ -58,6 +61,11 @@ export function StepView({ step, isOpen, actions }: StepProps) {
       </p>
       {isOpen && (
         <div className={styles.buttons}>
+          {step.kind === "blind" && !isHiding && (
+            <Button size="compact-sm" onClick={() => actions.hide(id)}>
+              Hide a fault
+            </Button>
+          )}
           {hintCosts != null && (
             <Button size="compact-sm" variant="default" onClick={() => actions.hint(id)}>
               {hintCosts > 0 ? `Hint, costs ${formatShort(hintCosts, "")}` : "Hint, free"}
