@@ -74,7 +74,7 @@ export function StepView({ step, isOpen, actions }: StepProps) {
   );
 }
 
-/** What is measured and what it is to be; how long it holds of how long it is to. */
+/** The quantities, the range of each, a tick where it holds; how long they hold of how long they have to. */
 function Conditions({ step, isOpen }: { step: SheetStep; isOpen: boolean }) {
   return (
     <>
@@ -83,7 +83,12 @@ function Conditions({ step, isOpen }: { step: SheetStep; isOpen: boolean }) {
           <li key={label} data-holds={holds}>
             <span aria-hidden="true">{holds ? "✓" : "○"}</span>
             <span>
-              {label}: <b>{hypothesisWords(now)}</b>
+              {label}
+              {now && (
+                <>
+                  : <b>{hypothesisWords(now)}</b>
+                </>
+              )}
               {wanted && ` (wanted: ${hypothesisWords(wanted)})`}
               <span className={styles.unseen}>{holds ? ", holds" : ", does not hold yet"}</span>
             </span>
