@@ -6,6 +6,7 @@ import { actions } from "../bench/actions";
 import { showPanel } from "../bench/dock";
 import { showError } from "../bench/send";
 import { useBench } from "../stream/bench-store";
+import { staleWords, useStaleSince } from "../stream/freshness";
 import { stream } from "../stream/stream";
 import { formatClock, formatTick } from "../ui/format";
 import styles from "./banner.module.css";
@@ -13,10 +14,6 @@ import { openOwnBench, startAgain, startBeside } from "./first-bench";
 import { tourSeen } from "./tours/run-tour";
 import { OfferTour } from "./tours/tour-list";
 import { useHints } from "./use-hints";
-import { useLasting } from "./use-lasting";
-
-/** A connection that is back this soon was not worth a word. */
-const BLINK_MS = 1000;
 
 /** One line under the header when something needs to be known: a trip, a lost connection, silence; else what to try. */
 export function Banner({ hints = true }: { hints?: boolean }) {
@@ -28,9 +25,7 @@ export function Banner({ hints = true }: { hints?: boolean }) {
   const tips = useHints();
   const drives = useMay("drive");
   const teaches = useMay("teach");
-  const lost = useLasting(connection.phase === "waiting" && !connection.reason?.quiet, BLINK_MS);
-  // a page that is busy itself hears late, and a line that comes and goes moves all panels
-  const silent = useLasting(connection.staleSince !== undefined, BLINK_MS);
+  const stale = useStaleSince();
 
   if (connection.phase === "closed" && connection.reason)
     return (
@@ -43,21 +38,25 @@ export function Banner({ hints = true }: { hints?: boolean }) {
         )}
       </Line>
     );
-  if (lost && connection.reason)
+  if (stale && connection.phase === "waiting" && connection.reason && !connection.reason.quiet)
     return (
-      <Line tone="alarm" title={connection.reason.title} text={connection.reason.advice}>
+      <Line
+        tone="alarm"
+        title={connection.reason.title}
+        text={`The page is ${staleWords(stale)}. ${connection.reason.advice}`}
+      >
         <Countdown until={connection.retryAt} />
         <Button size="compact-sm" variant="default" onClick={stream.retry}>
           Try now
         </Button>
       </Line>
     );
-  if (silent && connection.staleSince && connection.phase === "open")
+  if (stale)
     return (
       <Line
         tone="warn"
-        title={`Nothing heard since ${connection.staleSince.toLocaleTimeString()}`}
-        text="The panels show what came before. The page reconnects by itself."
+        title={`Nothing heard, ${staleWords(stale)}`}
+        text="The page shows the last values before, and reconnects by itself."
       />
     );
   if (trip)

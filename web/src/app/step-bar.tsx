@@ -10,6 +10,7 @@ import { conditionWords } from "../panels/condition/condition";
 import { type TruthSwitch, truthSwitches } from "../panels/lanes/delays";
 import { useBench } from "../stream/bench-store";
 import { currentEvents } from "../stream/event-log";
+import { staleWords, useBoardState, useStaleSince } from "../stream/freshness";
 import { formatIn, formatSi } from "../ui/format";
 import styles from "./step-bar.module.css";
 
@@ -26,7 +27,12 @@ export function StepWords({ bench, steps }: { bench: Bench; steps: BenchStep[] }
   const shown = next < 0 ? steps.length - 1 : next;
   const { words, tick, when } = steps[shown];
   const left = next >= 0 ? tick : (bench.samples ?? undefined);
-  const wait = when ? `when ${conditionWords(when, bench.signals)}` : waitWords(bench, left, next < 0);
+  const stale = useStaleSince();
+  const wait = stale
+    ? staleWords(stale)
+    : when
+      ? `when ${conditionWords(when, bench.signals)}`
+      : waitWords(bench, left, next < 0);
   return (
     <p className={styles.words}>
       <strong>
@@ -43,10 +49,11 @@ function Bar({ bench, steps }: { bench: Bench; steps: BenchStep[] }) {
   const ended = hasEnded(bench, steps);
   const [asked, setAsked] = useState<boolean | undefined>(undefined);
   const open = asked ?? ended;
-  const drives = useMay("drive");
+  const mayDrive = useMay("drive");
+  const drives = useBoardState() !== undefined && mayDrive;
   const repeats = drives && steps.every((step) => step.ofScenario);
   return (
-    <section className={styles.bar} aria-label="Steps of the scenario">
+    <section className={styles.bar} data-of-bench="" aria-label="Steps of the scenario">
       <StepWords bench={bench} steps={steps} />
       <div className={styles.actions}>
         <Button

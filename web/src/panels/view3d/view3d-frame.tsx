@@ -2,7 +2,7 @@ import { useEffect, useRef, useState } from "react";
 import { ticketed } from "../../api/launch";
 import { isInFrame, sessionHeaders } from "../../api/session";
 import { useView } from "../../bench/view-store";
-import { useBench } from "../../stream/bench-store";
+import { staleWords, useStaleSince } from "../../stream/freshness";
 import { hover } from "../../ui/hover";
 import { usePageVisible } from "../../ui/on-screen";
 import { useScheme } from "../../ui/use-canvas";
@@ -30,8 +30,7 @@ interface Look {
  * lose it.
  */
 export function View3dFrame({ path, visible: inSight }: { path: string; visible: boolean }) {
-  const waiting = useBench((s) => s.connection.phase === "waiting");
-  const gone = useBench((s) => s.connection.phase === "closed");
+  const stale = useStaleSince();
   const scheme = useScheme();
   const fontPx = useView((s) => s.fontPx);
   const frame = useRef<HTMLIFrameElement>(null);
@@ -74,7 +73,7 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
   }, []);
 
   useEffect(() => {
-    if (!closed || !visible || gone) return;
+    if (!closed || !visible || stale) return;
     const timer = setInterval(async () => {
       const answer = await fetch(path, { headers: sessionHeaders() }).catch(() => undefined);
       if (!answer?.ok) return;
@@ -82,7 +81,7 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
       setLoads((n) => n + 1);
     }, POLL_MS);
     return () => clearInterval(timer);
-  }, [closed, path, visible, gone]);
+  }, [closed, path, visible, stale]);
 
   const tell = (message: { scheme?: string; fontPx?: number; camera?: Camera; look?: Look; tick?: number | null }) =>
     frame.current?.contentWindow?.postMessage(message, window.location.origin);
@@ -118,9 +117,9 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
           </button>
         ))}
       </fieldset>
-      {closed || waiting || gone ? (
+      {closed || stale ? (
         <div className={styles.veil} role="status">
-          {gone ? "The 3D view is not connected" : "The 3D view waits for the server"}
+          {stale ? `The 3D view is ${staleWords(stale)}` : "The 3D view waits for the server"}
         </div>
       ) : (
         connected === 0 && (
