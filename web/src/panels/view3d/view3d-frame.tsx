@@ -7,6 +7,7 @@ import { hover } from "../../ui/hover";
 import { usePageVisible } from "../../ui/on-screen";
 import { useScheme } from "../../ui/use-canvas";
 import styles from "./view3d.module.css";
+import { softwareGl, useSceneFailed } from "./webgl";
 
 const POLL_MS = 1000;
 /** The traces come first: loading the 3D page holds the main thread for a while. */
@@ -62,6 +63,7 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
       if (event.source !== frame.current?.contentWindow || event.origin !== window.location.origin) return;
       const { viser: state, look: moved } = (event.data ?? {}) as { viser?: string; look?: Look };
       if (moved) look.current = moved;
+      if (state === "failed") useSceneFailed.setState({ failed: true });
       if (state === "closed") setClosed(true);
       if (state === "connected") {
         setClosed(false);
@@ -186,19 +188,6 @@ function query(scheme: string): URLSearchParams {
   const wanted = new URLSearchParams({ hideViserLogo: "1", fixedDpr: String(ratio) });
   if (scheme === "dark") wanted.set("darkMode", "1");
   return wanted;
-}
-
-let known: boolean | undefined;
-
-/** Whether WebGL is drawn by the processor here, which makes every pixel dear. */
-export function softwareGl(): boolean {
-  if (known !== undefined) return known;
-  const gl = document.createElement("canvas").getContext("webgl");
-  const info = gl?.getExtension("WEBGL_debug_renderer_info");
-  const renderer = gl && info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
-  gl?.getExtension("WEBGL_lose_context")?.loseContext();
-  known = /swiftshader|llvmpipe|software/i.test(renderer);
-  return known;
 }
 
 /** Where to look at the device from; the 3D page knows each by its name. */
