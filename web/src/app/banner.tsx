@@ -2,6 +2,7 @@ import { Button, CloseButton } from "@mantine/core";
 import { IconPlayerPlayFilled, IconSquare, IconSquareCheckFilled } from "@tabler/icons-react";
 import { type ReactNode, useEffect, useState } from "react";
 import { useMay } from "../api/me";
+import { micro } from "../api/micro";
 import { actions } from "../bench/actions";
 import { showPanel } from "../bench/dock";
 import { showError } from "../bench/send";
@@ -43,7 +44,7 @@ export function Banner({ hints = true }: { hints?: boolean }) {
       <Line
         tone="alarm"
         title={connection.reason.title}
-        text={`The page is ${staleWords(stale)}. ${connection.reason.advice}`}
+        text={`${capital(staleWords(stale))}. ${connection.reason.advice}`}
       >
         <Countdown until={connection.retryAt} />
         <Button size="compact-sm" variant="default" onClick={stream.retry}>
@@ -63,7 +64,7 @@ export function Banner({ hints = true }: { hints?: boolean }) {
     return (
       <Line
         tone="alarm"
-        title={`Tripped: ${trip.reason.replace(/^tripped: /, "")}`}
+        title={`Tripped: ${micro(trip.reason.replace(/^tripped: /, ""))}`}
         text={`at ${formatClock(trip.tick * dtMs)} s, ${formatTick(trip.tick)}. The voltage is off; the panels show the last values before.`}
       >
         {drives && (
@@ -157,6 +158,8 @@ function Guided({ scenario, label }: { scenario: string; label: string }) {
     </Button>
   );
 }
+
+const capital = (words: string): string => words.charAt(0).toUpperCase() + words.slice(1);
 
 function Line({
   tone,
