@@ -7,11 +7,12 @@ const signals = [
   { name: "plant.displacement", unit: "um", meaning: "", block: "plant", kind: "output" as const, index: 0 },
 ];
 const bench = { axes: [] as string[], controllers: ["open_loop"], diagnosers: {}, replay_of: null, signals };
+const FACTORS: Record<string, number>[] = [{}, { mass: 1.05 }, { stiffness: 1.05 }];
 const full = {
   ...bench,
   controllers: ["open_loop", "mrac"],
   diagnosers: {
-    kalman: { kind: "mmae", names: ["healthy", "m+5", "k+5"], factors: [{}, { mass: 1.05 }, { stiffness: 1.05 }] },
+    kalman: { kind: "mmae", names: ["healthy", "m+5", "k+5"], factors: FACTORS },
   },
 };
 const ids = (made: ReturnType<typeof hintsOf>) => made?.hints.map((hint) => hint.id);

@@ -1,4 +1,4 @@
-import type { Place, Plot } from "./axes";
+import type { Place, Plot, Range } from "./axes";
 import type { Field, Pen } from "./pen";
 
 export interface Stroke {
