@@ -23,7 +23,7 @@ LETTER = 5.9
 ROW = 15
 NOTHING = Axis("")
 LEAST_SHARE = 0.02
-"""Bars show how far runs differ: an axis of less than this share of the values would make giants of them."""
+"""Bars show how far runs differ: on an axis of less than this share of the values they would be giants."""
 UNLIMITED = (-math.inf, math.inf)
 
 
@@ -275,15 +275,12 @@ def _ends(one: Series, value: float, spread: float) -> tuple[float, float]:
 
 def _heights(series: Sequence[Series]) -> list[float]:
     """Return all heights that the y axis must show for lines; bars make it wide enough to be in proportion."""
-    found = [
-        end
-        for one in series
-        for y, s in zip(one.y, one.spread or [0.0] * len(one.y), strict=True)
-        for end in _ends(one, y, s)
-    ]
+    bars = [_ends(one, y, s) for one in series for y, s in zip(one.y, one.spread or [0.0] * len(one.y), strict=True)]
+    found = [end for bar in bars for end in bar]
     finite = [value for value in found if math.isfinite(value)]
     if finite and any(one.spread for one in series):
-        middle, half = (min(finite) + max(finite)) / 2.0, LEAST_SHARE / 2.0 * max(map(abs, finite))
+        longest = max(high - low for low, high in bars if math.isfinite(high - low))
+        middle, half = (min(finite) + max(finite)) / 2.0, max(LEAST_SHARE / 2.0 * max(map(abs, finite)), longest)
         least, most = min(one.limits[0] for one in series), max(one.limits[1] for one in series)
         found += [max(middle - half, least), min(middle + half, most)]
     return found

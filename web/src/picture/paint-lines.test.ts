@@ -25,6 +25,12 @@ it("draws bars in proportion to the values: a deviation of a tenth of a thousand
   for (const [low, high] of ends) expect(low - high).toBeLessThan(0.05 * height);
 });
 
+it("leaves a bar at most half of the height where the values do not differ", () => {
+  const { ends, height } = painted([736, 736, 736], [71, 71, 60]);
+  for (const [low, high] of ends) expect(low - high).toBeLessThan(0.51 * height);
+  expect(ends[0][0] - ends[0][1]).toBeGreaterThan(0.3 * height);
+});
+
 it("uses the height where runs do differ", () => {
   const { ends, height } = painted([1, 2, 3], [0.4, 0.5, 0.6]);
   for (const [low, high] of ends) expect(low - high).toBeGreaterThan(0.2 * height);

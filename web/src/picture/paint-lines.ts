@@ -24,7 +24,7 @@ export interface LinesShown {
   yLimits?: Range;
 }
 
-/** Bars show how far runs differ; a range of less than this share of the values would make giants of them. */
+/** Bars show how far runs differ; on a range of less than this share of the values they would be giants. */
 const LEAST_SHARE = 0.02;
 const UNLIMITED: Range = [Number.NEGATIVE_INFINITY, Number.POSITIVE_INFINITY];
 
@@ -59,12 +59,13 @@ export function paintLines(
 
 /** The range of lines with their bars, wide enough that bars are in proportion to the values. */
 function heightOf(lines: readonly ChartLine[], [least, most]: Range): Range {
-  const ends = lines.flatMap(({ y, spread }) =>
-    y.flatMap((v, i) => [Math.max(v - (spread?.[i] ?? 0), least), Math.min(v + (spread?.[i] ?? 0), most)]),
+  const bars = lines.flatMap(({ y, spread }) =>
+    y.map((v, i) => [Math.max(v - (spread?.[i] ?? 0), least), Math.min(v + (spread?.[i] ?? 0), most)]),
   );
-  const [low, high] = spanOf(ends);
+  const [low, high] = spanOf(bars.flat());
   if (!lines.some(({ spread }) => spread)) return [low, high];
-  const lacks = LEAST_SHARE * Math.max(Math.abs(low), Math.abs(high)) - (high - low);
+  const longest = bars.reduce((most, [from, to]) => Math.max(most, to - from), 0);
+  const lacks = Math.max(LEAST_SHARE * Math.max(Math.abs(low), Math.abs(high)), 2 * longest) - (high - low);
   const wide: Range = lacks > 0 ? [low - lacks / 2, high + lacks / 2] : [low, high];
   const air = 0.04 * (wide[1] - wide[0]);
   return [Math.max(wide[0], least - air), Math.min(wide[1], most + air)];

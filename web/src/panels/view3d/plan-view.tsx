@@ -38,7 +38,7 @@ export function PlanView({ because }: { because: string }) {
   useFeed(subscription, ({ latest: [x, y = 0] }) => {
     if (!width || !Number.isFinite(x) || !Number.isFinite(y)) return;
     const factor = magnifier.current.of(Math.hypot(x, y), width);
-    if (times.current) times.current.textContent = `motion ×${formatNumber(factor, 0)}`;
+    if (times.current) times.current.textContent = `, motion ×${formatNumber(factor, 0)}`;
     moving.current?.move(factor * x);
     frames.current?.move(factor * x, -factor * y);
   });
@@ -63,7 +63,7 @@ export function PlanView({ because }: { because: string }) {
       <figcaption>
         {said && <b>{said}. </b>}
         {because}
-        {isStandIn && " It has no drawing; that of LCR-350 stands for it."} <span ref={times} />
+        <span ref={times} />.{isStandIn && " LCR-350 stands for a device without a drawing."}
       </figcaption>
     </figure>
   );

@@ -49,7 +49,7 @@ it("draws the device from above, moving with the stream, where the browser has n
   board.frame({ "plant.displacement": () => -2 }, { head: 200 });
   await drawOnce();
   expect(moved(picture)).not.toEqual(first);
-  expect(screen.getByText(/^motion ×\d+$/)).toBeVisible();
+  expect(screen.getByText(/^, motion ×\d+$/)).toBeVisible();
   expect(picture.querySelector("[data-fault]")).toBeNull();
 });
 
@@ -64,7 +64,7 @@ it("marks the part that a fault acts on, and names the fault", async () => {
 it("draws another device for one without a drawing, and says so", async () => {
   connect(healthy);
   mount(<View3dPanel />);
-  expect(await screen.findByText(/that of LCR-350 stands for it/)).toBeVisible();
+  expect(await screen.findByText(/LCR-350 stands for a device without a drawing/)).toBeVisible();
   await vi.waitFor(async () => expect((await plan()).querySelectorAll("path").length).toBeGreaterThan(5));
 });
 

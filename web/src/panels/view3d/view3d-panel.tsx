@@ -18,8 +18,8 @@ export function View3dPanel() {
   if (path === undefined) return <EmptyState title="No bench yet">The device appears here in 3D.</EmptyState>;
   if (blind)
     return <EmptyState title="Not shown while a fault is hidden">The device would tell which fault acts.</EmptyState>;
-  if (path === null) return <PlanView because="This server draws no 3D: the device from above." />;
-  if (!drawn) return <PlanView because="This browser has no WebGL, which 3D needs: the device from above." />;
+  if (path === null) return <PlanView because="This server draws no 3D, so the device is drawn from above" />;
+  if (!drawn) return <PlanView because="This browser has no WebGL, so the device is drawn from above" />;
   return hosted ? <Place /> : <Standing key={path} path={`.${path}`} />;
 }
 
