@@ -127,7 +127,13 @@ function AnswerForm({ step, actions }: { step: SheetStep; actions: StepActions }
   return (
     <form className={styles.form} onSubmit={(event) => void take(event)}>
       {options.length > 0 ? (
-        <Radio.Group aria-label={step.question} value={text} onChange={setText} error={wrong || undefined}>
+        <Radio.Group
+          label={step.question}
+          labelProps={{ className: "visually-hidden" }}
+          value={text}
+          onChange={setText}
+          error={wrong || undefined}
+        >
           <div className={styles.options}>
             {options.map(([id, words]) => (
               <Radio key={id} value={id} label={words} />
