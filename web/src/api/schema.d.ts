@@ -3206,7 +3206,7 @@ export interface components {
             trip: components["schemas"]["Trip"] | null;
             /**
              * Scores
-             * @description Of each diagnoser, against the truth the bench knows
+             * @description Of each diagnoser that has judged a sample, against the truth
              */
             scores: {
                 [key: string]: components["schemas"]["Scores"];
@@ -3987,14 +3987,16 @@ export interface components {
         };
         /**
          * ConditionView
-         * @description A condition of a step: the quantity, its value now, and the value that the step asks for.
+         * @description A condition of a step: the quantity, the range that the step asks for, and whether it holds.
+         *
+         *     A measured value is not shown: the student reads it from the instruments, and later steps grade it.
          */
         ConditionView: {
             /** Label */
             label: string;
             /**
              * Now
-             * @description A dash before the first look
+             * @description The setting, fault or verdict now; empty for a measured signal
              */
             now: string;
             /**
@@ -7081,6 +7083,8 @@ export interface components {
         Scores: {
             /** Names */
             names: string[];
+            /** Samples */
+            samples: number;
             /** Winner */
             winner: number;
             /** Truth */
@@ -8974,7 +8978,7 @@ export interface components {
             trip: components["schemas"]["Trip"] | null;
             /**
              * Scores
-             * @description Of each diagnoser, against the truth the bench knows
+             * @description Of each diagnoser that has judged a sample, against the truth
              */
             scores: {
                 [key: string]: components["schemas"]["Scores"];
