@@ -14,6 +14,7 @@ from functools import cache
 from typing import NamedTuple
 
 MINUS, THIN, SPACE, NOTHING = "−", "\u202f", "\u00a0", "–"
+PLUS_MINUS = f"{SPACE}±{SPACE}"
 IMMENSE = 1e15
 """From this size on, fixed decimals would show a row of digits that mean nothing."""
 LEAST_PLAIN, MOST_PLAIN = 1e-3, 1e6
@@ -127,14 +128,16 @@ def format_figure(metric: str, value: float | None, digits: int = 4) -> str:
 
 
 def format_spread(metric: str, mean: float, std: float) -> str:
-    """Write a mean and its standard deviation, to the second digit of the deviation: "0.24700 ± 0.00028"."""
+    """Write a mean and its standard deviation, to the second digit of the deviation and on one power of ten.
+
+    "0.24700 ± 0.00028"; no line breaks inside it.
+    """
     if std == 0.0:
-        return f"{format_figure(metric, mean)} ± 0"
-    size = max(abs(mean), std)
-    if not _is_plain(size):
-        return f"{format_si(mean, '')} ± {format_si(std, '', 2)}"
-    decimals = min(_decimals_for(std, 2), _decimals_for(size, 6))
-    return f"{format_number(mean, decimals)} ± {_least(std, decimals)}"
+        return f"{format_figure(metric, mean)}{PLUS_MINUS}0"
+    scale = unit_scale("", max(abs(mean), std))
+    shown, spread = mean * scale.factor, std * scale.factor
+    decimals = min(_decimals_for(spread, 2), _decimals_for(max(abs(shown), spread), 6))
+    return f"{format_number(shown, decimals)}{scale.exponent}{PLUS_MINUS}{_least(spread, decimals)}{scale.exponent}"
 
 
 def format_beside(value: float, figure: float, digits: int) -> str:

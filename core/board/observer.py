@@ -155,6 +155,8 @@ class Observer:
                 samples = int(delay[i])
                 time = format_si(samples * self._dt_ms, "ms", 3)
                 text = f"{name} found {label} after {format_count(samples, 'sample')} ({time})"
+                if samples == 0:  # it found nothing: its verdict was there before the truth
+                    text = f"{name} said {label} already"
                 found.append({"kind": "recognised", "text": text, "tick": tick, "old": samples, "new": label})
         return found
 

@@ -229,6 +229,7 @@ class Scores(BaseModel):
     """What has been scored so far."""
 
     names: list[str]
+    samples: int
     winner: int
     truth: int
     correct_fraction: float
@@ -247,6 +248,7 @@ def read(s: Score.State, names: list[str], winner: int, unexplained: bool) -> Sc
     delays = s.delays[: min(int(s.steps), STEPS)].tolist()
     return Scores(
         names=names,
+        samples=int(s.total),
         winner=winner,
         truth=int(s.truth) if s.started else -1,
         correct_fraction=float(s.right / max(s.total, 1.0)),

@@ -183,6 +183,6 @@ def measure(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dic
         figures |= identify_metrics(board, name, trace.get(f"{name}.error_pct"), stretch)
     scores = board.scores()
     for name in board.spec.diagnosers:
-        if name in scores:
+        if name in scores and scores[name].samples:  # a score without samples says nothing, not even 0
             figures |= diagnosis_metrics(name, scores[name], step_lengths(trace[f"{name}.truth"]))
     return figures | verdict_metrics(board, trace)

@@ -14,14 +14,17 @@ from scenarios.narrator.samples import Samples
 from scenarios.narrator.sentence import Sentence
 from scenarios.narrator.words import figure, length, moment
 
-BAND = 0.05
-"""Share of the motion of the model under which an error counts as settled."""
+OVER, BACK = 0.05, 0.025
+"""Shares of the motion of the model: over the first an error has left, under the second it is back.
+
+They lie apart, so that an error that stays at the edge is never told as back, as in open loop while the fault acts.
+"""
 COUNT, ERROR, MOTION, WAS_OVER = range(4)
-"""Samples of the block under way, the sums of its squares, and whether one was over the band."""
+"""Samples of the block under way, the sums of its squares, and whether one was over the limit."""
 
 
 @kernel
-def _settle(model: FloatArray, measured: FloatArray, sums: FloatArray, span: int, band: float) -> int:
+def _settle(model: FloatArray, measured: FloatArray, sums: FloatArray, span: int, over: float, back: float) -> int:
     """Add samples up, block by block; return how many there are to the end of the block that settles, or 0."""
     for i in range(len(model)):
         if sums[COUNT] == span:
@@ -31,9 +34,9 @@ def _settle(model: FloatArray, measured: FloatArray, sums: FloatArray, span: int
         sums[ERROR] += error * error
         sums[MOTION] += model[i] * model[i]
         if sums[COUNT] == span:
-            if sums[ERROR] > band * band * sums[MOTION]:
+            if sums[ERROR] > over * over * sums[MOTION]:
                 sums[WAS_OVER] = 1.0
-            elif sums[WAS_OVER] != 0.0:
+            elif sums[WAS_OVER] != 0.0 and sums[ERROR] <= back * back * sums[MOTION]:
                 return i + 1
     return 0
 
@@ -42,8 +45,8 @@ class Settling:
     r"""Tells when the error is back after the last fault, healing or switch.
 
     From there on the root mean squares of the measured error :math:`y_m-y` and of the model :math:`y_m` are taken over
-    100 ticks after 100 ticks. Once the error has been over 5 % of the model, the first 100 ticks under it are told. A
-    trip ends it.
+    100 ticks after 100 ticks. Once the error has been over 5 % of the model, the first 100 ticks under 2.5 % of it are
+    told. A trip ends it.
 
     Parameters
     ----------
@@ -67,11 +70,11 @@ class Settling:
             return
         model, measured = (samples.values(name, self._at, until) for name in (MODEL, MEASURED))
         self._sums = self._sums.copy()  # a copy of this goes on alone
-        settled = _settle(model, measured, self._sums, SPAN, BAND)
+        settled = _settle(model, measured, self._sums, SPAN, OVER, BACK)
         self._at = self._at + settled if settled else until
         if settled:
             error, motion = (math.sqrt(self._sums[which] / SPAN) for which in (ERROR, MOTION))
-            yield self._sentence(error, BAND * motion)
+            yield self._sentence(error, BACK * motion)
             self._after = None
 
     def _sentence(self, error: float, limit: float) -> Sentence:
@@ -83,7 +86,7 @@ class Settling:
             tick=tick,
             kind="settled",
             text=(
-                f"At {moment(tick * self._dt_ms)} the error is back under {figure(limit, 'um')}, 5 % of the motion: "
+                f"At {moment(tick * self._dt_ms)} the error is back under {figure(limit, 'um')}, 2.5 % of the motion: "
                 f"{figure(error, 'um')} (RMS), {length(took)} after the {what}."
             ),
             signals=[MODEL, MEASURED],

@@ -146,5 +146,7 @@ class Verdicts:
             return "That is right."
         numbers["since_ms"] = self._since * self._dt_ms
         numbers["delay_samples"] = float(max(0, self._since - changed))
+        if self._since <= changed:
+            return "That is right: it said so before the change."
         after = f"{format_count(numbers['delay_samples'], 'sample')} ({length(numbers['delay_samples'] * self._dt_ms)})"
         return f"That is right, and has been since {moment(numbers['since_ms'])}, {after} after the change."

@@ -11,7 +11,7 @@ from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import DiagnosisTally, PointTally
 from scenarios.report.axis import Axis
 from scenarios.report.html import as_toml, page, say
-from scenarios.report.metric_name import MetricScale, metric_scale
+from scenarios.report.metric_name import MetricScale, metric_limits, metric_scale
 from scenarios.report.svg import Chart, Series
 
 USUAL = (".correct_fraction", ".mean_delay_samples", ".false_switches", "control.rms_error_um")
@@ -126,6 +126,7 @@ def _trends(points: Sequence[PointTally], axes: Sequence[str], shown: Sequence[s
                     [x.shown(float(point.labels[axis])) for point in group],
                     [y.shown(point.metrics[name].mean) for point in group],
                     [y.shown(point.metrics[name].std) for point in group],
+                    limits=metric_limits(name),
                 )
                 for rest, group in measured.items()
             ]
@@ -145,6 +146,7 @@ def _profiles(survey: Survey, across: dict[str, MetricScale], up: dict[str, Metr
                 [x.shown(value) for value in found.x],
                 [y.shown(value) for value in found.mean],
                 [y.shown(value) for value in found.std],
+                limits=metric_limits(name),
             )
             charts.append(Chart(y.title, Axis(x.title), Axis("mean ± std of the runs of a slice"), [line]))
     return charts

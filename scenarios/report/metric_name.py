@@ -6,6 +6,7 @@ The page has the same rules; ``web/src/ui/metric-cases.json`` holds both to the 
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -39,6 +40,13 @@ def metric_scale(metric: str, values: Iterable[Any] = ()) -> MetricScale:
     name, unit = _parts(metric)
     factor, text = plain_scale(unit, [value for value in values if isinstance(value, int | float)])
     return MetricScale(name, text, factor)
+
+
+def metric_limits(metric: str) -> tuple[float, float]:
+    """Return what a figure cannot pass: 0 for counts, times and sizes, 1 for shares too."""
+    if metric.endswith("_fraction"):
+        return 0.0, 1.0
+    return (0.0 if set(NAMES["counted"]) & set(re.split("[._]", metric)) else -math.inf), math.inf
 
 
 def metric_title(metric: str) -> str:

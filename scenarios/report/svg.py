@@ -22,6 +22,9 @@ LETTER = 5.9
 """Width of a letter, px; what decides where a legend goes on in the next row."""
 ROW = 15
 NOTHING = Axis("")
+LEAST_SHARE = 0.02
+"""Bars show how far runs differ: on an axis of less than this share of the values they would be giants."""
+UNLIMITED = (-math.inf, math.inf)
 
 
 @dataclass(frozen=True)
@@ -34,6 +37,8 @@ class Series:
     spread: Sequence[float] | None = None
     is_stepped: bool = False
     look: Look | None = None
+    limits: tuple[float, float] = UNLIMITED
+    """What its values cannot pass, such as 0 for a count: bars end there."""
 
 
 @dataclass(frozen=True)
@@ -145,7 +150,7 @@ def paint(chart: Chart, size: Size = REPORT) -> str:
 
 def _field(chart: Chart, size: Size, top: int) -> list[str]:
     """Paint axes, and lines or lanes between them."""
-    y = Scale(chart.y, [value for one in chart.series for value in _heights(one)])
+    y = Scale(chart.y, _heights(chart.series))
     ends = [edge for lane in chart.lanes for first, end, _, _ in lane.areas for edge in (first, end)]
     x = Scale(chart.x, ends or [value for one in chart.series for value in one.x])
     bottom, right = size.height - (38 if x.title else 20), size.width - 14
@@ -174,7 +179,7 @@ def _field(chart: Chart, size: Size, top: int) -> list[str]:
         look = one.look or line(number)
         spreads = one.spread or [0.0] * len(one.x)
         points = [
-            (across(at), down(value), down(value - s), down(value + s))
+            (across(at), down(value), *map(down, _ends(one, value, s)))
             for at, value, s in zip(one.x, one.y, spreads, strict=True)
             if math.isfinite(at) and math.isfinite(value)
         ]
@@ -263,7 +268,19 @@ def _legend(rows: Sequence[Sequence[tuple[float, str, Look]]], top: float) -> li
     return parts
 
 
-def _heights(one: Series) -> list[float]:
-    """Return all heights that the y axis must show for a line."""
-    spread = one.spread or [0.0] * len(one.y)
-    return [value for y, s in zip(one.y, spread, strict=True) for value in (y - s, y + s)]
+def _ends(one: Series, value: float, spread: float) -> tuple[float, float]:
+    """Return where the bar at a value begins and ends."""
+    return max(value - spread, one.limits[0]), min(value + spread, one.limits[1])
+
+
+def _heights(series: Sequence[Series]) -> list[float]:
+    """Return all heights that the y axis must show for lines; bars make it wide enough to be in proportion."""
+    bars = [_ends(one, y, s) for one in series for y, s in zip(one.y, one.spread or [0.0] * len(one.y), strict=True)]
+    found = [end for bar in bars for end in bar]
+    finite = [value for value in found if math.isfinite(value)]
+    if finite and any(one.spread for one in series):
+        longest = max(high - low for low, high in bars if math.isfinite(high - low))
+        middle, half = (min(finite) + max(finite)) / 2.0, max(LEAST_SHARE / 2.0 * max(map(abs, finite)), longest)
+        least, most = min(one.limits[0] for one in series), max(one.limits[1] for one in series)
+        found += [max(middle - half, least), min(middle + half, most)]
+    return found

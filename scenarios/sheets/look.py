@@ -91,7 +91,7 @@ def measure(condition: Limits, window: Window) -> Value:
     board = window.board
     if condition.verdict is not None:
         score = board.scores().get(condition.verdict)
-        if score is None or score.unexplained or not 0 <= score.winner < len(score.names):
+        if score is None or not score.samples or score.unexplained or not 0 <= score.winner < len(score.names):
             return None
         return str(score.names[score.winner])
     if condition.fault is not None:

@@ -104,7 +104,7 @@ def status_of(bench: ShownBench) -> BenchStatus:
         undo=bench.changes.last_done,
         redo=bench.changes.last_undone,
         trip=board.trip,
-        scores=board.scores(),
+        scores={name: found for name, found in board.scores().items() if found.samples},
         last_event=bench.events.last,
         recording=list(bench.recordings.under_way),
         armed=list(bench.recordings.armed),

@@ -112,7 +112,7 @@ class BenchStatus(BaseModel):
     undo: Undoable | None = Field(None, description="The change that undo takes back")
     redo: Undoable | None = Field(None, description="The change that redo makes again")
     trip: Trip | None
-    scores: dict[str, Scores] = Field(description="Of each diagnoser, against the truth the bench knows")
+    scores: dict[str, Scores] = Field(description="Of each diagnoser that has judged a sample, against the truth")
     last_event: int
     recording: list[str] = Field(description="Recordings under way")
     armed: list[str] = Field(description="Recordings that wait for their condition")

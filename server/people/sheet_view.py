@@ -26,10 +26,13 @@ class GivenView(BaseModel):
 
 
 class ConditionView(BaseModel):
-    """A condition of a step: the quantity, its value now, and the value that the step asks for."""
+    """A condition of a step: the quantity, the range that the step asks for, and whether it holds.
+
+    A measured value is not shown: the student reads it from the instruments, and later steps grade it.
+    """
 
     label: str
-    now: str = Field(description="A dash before the first look")
+    now: str = Field(description="The setting, fault or verdict now; empty for a measured signal")
     wanted: str = Field(description="Empty if the sheet does not tell")
     holds: bool
 
@@ -162,7 +165,7 @@ def _text(text: str, facts: dict[str, float]) -> str:
 
 
 def _show_hold(shown: StepView, step: Hold, progress: Progress, held: Held | None) -> None:
-    """Say the value of each condition now, and the value that the step asks for."""
+    """Show the range of each condition and whether it holds; of a setting, its value too."""
     state, ends = progress.of(step), known_limits(step, progress.facts)
     findings = held.findings if held else []
     for position, (condition, limits) in enumerate(zip(step.conditions, ends, strict=True)):
@@ -171,7 +174,7 @@ def _show_hold(shown: StepView, step: Hold, progress: Progress, held: Held | Non
         shown.conditions.append(
             ConditionView(
                 label=condition.label,
-                now=value_text(condition, value),
+                now="" if condition.signal else value_text(condition, value),
                 wanted=wanted_text(condition, limits),
                 holds=(state.done and not state.given_up) or bool(found and found.holds),
             )

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import itertools
 import math
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -11,13 +13,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.block import Context
+from core.board.observer import Observer
 from core.diagnose.hypothesis import Hypothesis
 from core.faults.fault import FaultParams
 from core.loop import score
 from core.plain import plain
 from scenarios.edit import with_values
 from scenarios.library import get
-from scenarios.run import run
+from scenarios.measure.metrics import measure
+from scenarios.measure.stretch import Stretch
+from scenarios.run import build, run
 from tests.lab import do, fault, make, play
 from tests.physics.bank import BENCH, NOMINAL, signals
 
@@ -176,3 +181,23 @@ def test_probabilities_that_are_no_numbers_are_not_right():
     assert w[12] == -1.0 and w[13] == 0.0
     found = score.read(s, ["healthy", "m+5"], -1, False)
     assert found.correct_fraction == 0.0 and found.confusion == [[0, 0], [0, 0]]
+
+
+def test_a_score_without_samples_gives_no_figure() -> None:
+    """Nothing judged is neither "healthy" nor 0 % right: it is left out of a status, a summary and a check."""
+    board = build(get("first-look"))
+    found = board.scores()["kalman"]
+    assert found.samples == 0
+    assert not any(name.startswith("diagnosis.") for name in measure(board, {}, Stretch()))
+    board.advance(10)
+    assert board.scores()["kalman"].samples == 10
+
+
+def test_a_verdict_that_was_there_before_the_truth_is_not_told_as_found() -> None:
+    observer = SimpleNamespace(_names={"kalman": ["healthy", "m+5"]}, _dt_ms=0.01)
+    truth, delay = np.zeros(2), np.array([0.0, 7.0])
+    told = Observer._recognised(cast(Observer, observer), "kalman", [], [0, 1], truth, delay, 100)
+    assert [(found["text"], found["old"]) for found in told] == [
+        ("kalman said healthy already", 0),
+        ("kalman found healthy after 7\u00a0samples (70.0\u00a0\u00b5s)", 7),
+    ]

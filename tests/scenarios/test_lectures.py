@@ -48,6 +48,16 @@ def test_all_that_the_notes_claim_holds_on_a_real_run(name: str) -> None:
         assert checked["ok"], (cue.title, [row for row in checked["expectations"] if not row["ok"]])
 
 
+def test_no_vote_is_answered_by_its_own_words() -> None:
+    """Neither the question nor what is shown and said before it names the right answer or its number."""
+    votes = [(cue, cue.vote) for name in lecture_ids() for cue in lecture(name).head.cues if cue.vote]
+    assert votes
+    for cue, vote in votes:
+        words = " ".join((vote.text, cue.title, cue.say, cue.ask, cue.see)).casefold()
+        answer = re.sub(r"^[a-z]+\+(\d+)$", r" \1 %", vote.right.casefold())
+        assert answer and answer not in words, f"{cue.title} tells {vote.right}"
+
+
 def test_there_is_a_lecture_for_each_of_five_chapters() -> None:
     assert [lecture(name).head.chapter for name in lecture_ids()] == [1, 2, 3, 4, 5]
 

@@ -25,7 +25,7 @@ class Window:
     dt_ms = DT_MS
 
     def __init__(self, **score: Any) -> None:
-        said = {"names": ["healthy", "m+5"], "winner": 1, "unexplained": False, **score}
+        said = {"names": ["healthy", "m+5"], "samples": 5, "winner": 1, "unexplained": False, **score}
         self.board = SimpleNamespace(
             spec=SimpleNamespace(tone_hz=TONE_HZ),
             scores=lambda: {"kalman": SimpleNamespace(**said)},
@@ -71,6 +71,7 @@ def test_a_verdict_is_what_is_believed_and_none_while_nothing_fits() -> None:
     verdict = limits(verdict="kalman", equals="m+5")
     assert measure(verdict, Window()) == "m+5"
     assert measure(verdict, Window(unexplained=True)) is None
+    assert measure(verdict, Window(samples=0)) is None
     assert measure(verdict, Window(winner=2)) is measure(verdict, Window(winner=-1)) is None
     assert measure(limits(fault="added_mass"), Window()) == 0.05
     assert measure(limits(fault="stiffness"), Window()) == 0.0

@@ -119,7 +119,7 @@ def test_the_report_tells_few_errors_from_none(campaign: tuple[Sweep, dict[str, 
     means = {"diagnosis.kalman.correct_fraction": 0.99997, "diagnosis.kalman.false_switches": 53.0}
     metrics = {name: Spread(count=3, mean=mean, std=0.0, min=mean, max=mean) for name, mean in means.items()}
     text = campaign_report(sweep, [replace(point, metrics=metrics) for point in tally(sweep, outcomes)])
-    assert text.count("<td>0.99997 ± 0</td>") == text.count("<td>53 ± 0</td>") == 2
+    assert text.count("<td>0.99997\u00a0±\u00a00</td>") == text.count("<td>53\u00a0±\u00a00</td>") == 2
 
 
 def test_partial_results_are_added_up(campaign: tuple[Sweep, dict[str, Outcome]]) -> None:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
+from collections import Counter, UserDict
 from functools import cache
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -13,8 +13,11 @@ import pytest
 from core.board.commands import parse_command
 from core.format import format_percent, format_short, format_si
 from scenarios.library import get
+from scenarios.narrator.doings import MEASURED, MODEL
 from scenarios.narrator.narrator import Narrator
+from scenarios.narrator.samples import Samples
 from scenarios.narrator.sentence import Sentence
+from scenarios.narrator.settling import Settling
 from scenarios.run import Result, build, run
 from tests.scenarios.narrator.random_bench import random_bench, told
 
@@ -61,11 +64,11 @@ def expected_settled(found: Result, doings: list[tuple[int, str]]) -> list[tuple
         end = doings[position + 1][0] if position + 1 < len(doings) else found.samples
         was_over = False
         for at in range(since, end - 99, 100):
-            error, limit = rms((model - measured)[at : at + 100]), 0.05 * rms(model[at : at + 100])
-            if error > limit:
+            error, motion = rms((model - measured)[at : at + 100]), rms(model[at : at + 100])
+            if error > 0.05 * motion:
                 was_over = True
-            elif was_over:
-                settled.append((at + 99, since, error, limit))
+            elif was_over and error <= 0.025 * motion:
+                settled.append((at + 99, since, error, 0.025 * motion))
                 break
     return settled
 
@@ -264,3 +267,25 @@ def test_a_gyroscope_misses_by_what_noise_does_not_explain() -> None:
     nis = single(found.signal(f"{name}.nis.{label}"))[first.tick - 19 : first.tick + 1]
     assert first.numbers["new_normalised"] == pytest.approx(math.sqrt(nis.mean()), rel=1e-9)
     assert f"{format_si(first.numbers['new_normalised'], '', 3)} times what noise explains" in first.text
+
+
+def test_an_error_that_stays_at_the_edge_while_the_fault_acts_is_not_back() -> None:
+    """Open loop, an error of 5 % of the motion that rises and falls by a hundredth of itself."""
+    ticks = np.arange(40_000)
+    model = np.sin(ticks / 50.0)
+    error = 0.05 * (1.0 + 0.01 * np.sin(ticks / 700.0)) * model
+
+    def told(error: Any) -> list[str]:
+        settling, samples = Settling(0.01), {MODEL: model, MEASURED: model - error}
+        settling.follow(Sentence(tick=0, kind="fault", text="", signals=[], span=(0, 0), numbers={}))
+        return [said.kind for said in settling.look(cast(Samples, Traces(samples)), len(ticks))]
+
+    assert told(error) == []
+    assert told(np.where(ticks < 20_000, error, 0.02 * model)) == ["settled"]
+
+
+class Traces(UserDict[str, Any]):
+    """Signals by name, as a narrator reads them."""
+
+    def values(self, name: str, since: int, until: int) -> Any:  # type: ignore[override]
+        return self.data[name][since:until]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from scenarios.sheets.progress import Progress
 from tests.server.conftest import Live
 from tests.server.people.group import Somebody, the_teacher
 
@@ -76,10 +77,16 @@ class AtSheet:
                 return step
         raise AssertionError(f"{name} is not done: {self.step(name)}")
 
-    def condition(self, name: str, label: str) -> float:
-        """Return what a step has measured, as it is shown."""
-        found = next(c for c in self.step(name)["conditions"] if c["label"].startswith(label))
-        return number(found["now"])
+    def measured(self, name: str, label: str) -> float:
+        """Return the value that the server has measured at a step; no door tells it."""
+        values = self.kept.steps[name].values
+        return float(next(value for key, value in values.items() if key.startswith(label)) or 0.0)
+
+    @property
+    def kept(self) -> Progress:
+        """The progress that the server keeps."""
+        works = self.live.service.sheets.works(self.person.id)
+        return next(work.progress for work in works if work.sheet_id == self.sheet)
 
     @property
     def device(self) -> dict[str, float]:
@@ -88,13 +95,6 @@ class AtSheet:
         body = {"device": document["device"], "environment": document.get("environment", {})}
         found: dict[str, float] = self.live.http.post(f"{API}/devices/evaluate", json=body).json()["metrics"]
         return {name.removeprefix("device."): value for name, value in found.items()}
-
-
-def number(text: str) -> float:
-    """Read a number that the server wrote for people, in um, V, ms, Hz or without a unit."""
-    plain = text.replace("−", "-").replace("\u202f", "").replace("\u00a0", " ")
-    value, _, unit = plain.partition(" ")
-    return float(value) * {"mm": 1e3, "nm": 1e-3, "pm": 1e-6, "mV": 1e-3, "µs": 1e-3, "kHz": 1e3}.get(unit, 1.0)
 
 
 def response(m: float, k: float, beta: float, hz: float) -> complex:

@@ -69,5 +69,9 @@ class Offline(AtSheet):
         return self.step(name)
 
     @property
+    def kept(self) -> Progress:
+        return self.progress
+
+    @property
     def device(self) -> dict[str, float]:
         return self.facts

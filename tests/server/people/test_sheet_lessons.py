@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
 
 import pytest
 
+from core.errors import InputError
 from scenarios import sheets
+from scenarios.sheets.judge import judge
+from scenarios.sheets.sheet import Prediction, Question
 from tests.server.conftest import Live
 from tests.server.people.at_sheet import AtSheet, response
 from tests.server.people.offline import Offline
@@ -40,7 +45,7 @@ def resonance(at: AtSheet) -> None:
     at.set(reference__frequency_hz=round(f0, 1))
     at.held("resonance", 60.0)
     # the amplitude that the server has measured is that of the closed form, static gain times Q
-    measured = at.condition("resonance", "Amplitude of the displacement")
+    measured = at.measured("resonance", "Amplitude of the displacement")
     assert measured == pytest.approx(4.0 * abs(d["static_gain_um_per_v"]) * q, rel=0.02)
     at.right("f0", f"{f0 / 1e3:.4f} kHz")
     at.right("q", f"{q:.3f}")
@@ -66,7 +71,7 @@ def pid_against_mrac(at: AtSheet) -> None:
     at.held("pid", 100.0)
     at.do(switch="mrac")
     at.held("mrac", 300.0)
-    assert at.condition("mrac", "Amplitude of the voltage") == pytest.approx(10.0 * effort, rel=0.01)
+    assert at.measured("mrac", "Amplitude of the voltage") == pytest.approx(10.0 * effort, rel=0.01)
     at.right("effort", f"{effort:.4f}")
     at.right("gains", "tone")
 
@@ -77,7 +82,7 @@ def variable_structure(at: AtSheet) -> None:
         at.set(reference__amplitude_um=amplitude)
         at.run(15.0)
     at.held("middle", 100.0)
-    ratio = at.condition("middle", "Amplitude over") / at.condition("near", "Amplitude over")
+    ratio = at.measured("middle", "Amplitude over") / at.measured("near", "Amplitude over")
     at.right("softer", f"{ratio:.4f}")
     text = " ".join(s["text"] for s in at.look()["sections"])
     far = float(text.split("shuttle is to go to ")[1].split("\u00a0")[0].split(" ")[0])
@@ -86,7 +91,7 @@ def variable_structure(at: AtSheet) -> None:
     at.run(10.0)
     at.set(reference__amplitude_um=far)
     at.held("beyond", 200.0)
-    at.right("effort", f"{at.condition('beyond', 'Voltage over'):.4f}")
+    at.right("effort", f"{at.measured('beyond', 'Voltage over'):.4f}")
     at.do(switch="pid")
     at.held("pid", 200.0)
     at.set(reference__amplitude_um=1.0)
@@ -105,11 +110,11 @@ def identification(at: AtSheet) -> None:
     at.do(fault="stiffness", severity=spring)
     at.do(fault="added_mass", severity=mass)
     at.held("one", 200.0)
-    assert at.condition("one", "Error of the worst") > 5.0
+    assert at.measured("one", "Error of the worst") > 5.0
     at.right("residual", "fits")
     at.set(reference__kind="multi_sine")
     at.held("two", 400.0)
-    assert at.condition("two", "Estimated mass") == pytest.approx(1 + mass, rel=0.01)
+    assert at.measured("two", "Estimated mass") == pytest.approx(1 + mass, rel=0.01)
     d = at.device
     f0 = math.sqrt(d["stiffness_n_m"] * (1 + spring) / (d["mass_kg"] * (1 + mass))) / (2 * math.pi)
     at.right("moved", f"{f0:.1f} Hz")
@@ -120,14 +125,14 @@ def kalman_and_noise(at: AtSheet) -> None:
     at.held("fair", 200.0)
     at.do(fault="added_mass", severity=0.05)
     at.held("found", 100.0)
-    at.right("delay", f"{at.condition('found', 'Delay') * 0.01:.3f} ms")
+    at.right("delay", f"{at.measured('found', 'Delay') * 0.01:.3f} ms")
     text = " ".join(s["text"] for s in at.look()["sections"])
     scale = float(text.split("assumed variance to ")[1].split(" ")[0])
-    at.right("guess", f"{at.condition('fair', 'NIS') / scale:.3f}")
+    at.right("guess", f"{at.measured('fair', 'NIS') / scale:.3f}")
     at.do(heal="all")
     at.set(diagnosers__kalman__assumed_noise_scale=scale)
     at.held("under", 400.0)
-    assert at.condition("under", "NIS") == pytest.approx(at.condition("fair", "NIS") / scale, rel=0.08)
+    assert at.measured("under", "NIS") == pytest.approx(at.measured("fair", "NIS") / scale, rel=0.08)
     at.right("law", f"{10 ** (3 * (1 - scale)):.2f}")
     at.right("over", "slow")
 
@@ -145,7 +150,7 @@ def forgetting(at: AtSheet) -> None:
     at.held("healed", 100.0)
     at.do(fault="added_mass", severity=0.05)
     at.held("long", 100.0)
-    ratio = at.condition("long", "Delay") / at.condition("short", "Delay")
+    ratio = at.measured("long", "Delay") / at.measured("short", "Delay")
     assert ratio > 1.5
     at.right("ratio", f"{ratio:.3f}")
     at.do(heal="all")
@@ -153,7 +158,7 @@ def forgetting(at: AtSheet) -> None:
     at.held("noisy", 300.0)
     at.set(diagnosers__least_squares__forgetting=0.98)
     at.held("calm", 300.0)
-    assert at.condition("calm", "Share") < at.condition("noisy", "Share")
+    assert at.measured("calm", "Share") < at.measured("noisy", "Share")
     at.right("which", "long")
 
 
@@ -169,6 +174,38 @@ def blind_diagnosis(at: AtSheet) -> None:
         assert at.live.http.post(f"{path}/answer", json={"said": truth, "confidence": 1.0}).json()["points"] == 100.0
         assert at.step(name)["earned"] == at.step(name)["points"]
     at.right("helps", "tone")
+
+
+class Attentive(Offline):
+    """A student who remembers all that conditions have shown, and compares it with each question."""
+
+    shown: frozenset[str] = frozenset()
+
+    def look(self) -> dict[str, Any]:
+        view = super().look()
+        steps = [section["step"] for section in view["sections"] if section["step"]]
+        conditions = [condition for step in steps for condition in step["conditions"]]
+        texts = [condition[field].removeprefix("at most ") for condition in conditions for field in ("now", "wanted")]
+        self.shown = self.shown | {part for text in texts for part in (text, *text.split(" to "))}
+        return view
+
+    def right(self, name: str, text: str) -> None:
+        self.look()
+        step = self.lesson.step(name)
+        assert isinstance(step, Question | Prediction)
+        told = [shown for shown in self.shown if self.earns(step, shown)]
+        assert told == [], f"conditions have shown the answer to {name}"
+        super().right(name, text)
+
+    def earns(self, step: Question | Prediction, text: str) -> bool:
+        """Whether a text earns points as the right number or a known mistake, in the unit asked for if it has none."""
+        asked = step.number and step.number.model_copy(update={"partly": None, "wrong_unit": 0.0, "right_sign": 0.0})
+        strict = step.model_copy(update={"number": asked})
+        for given in (text, f"{text} {asked.unit}" if asked else text):
+            with suppress(InputError):
+                if judge(strict, given, self.progress.facts).share > 0.0:
+                    return True
+        return False
 
 
 LESSONS: dict[str, Callable[[AtSheet], None]] = {
@@ -205,10 +242,11 @@ def test_a_sheet_from_start_to_end_earns_all_points(live: Live, name: str) -> No
 
 @pytest.mark.parametrize("words", ["Ben", pytest.param("Ada Cleo Dora", marks=pytest.mark.long)])
 @pytest.mark.parametrize("name", sorted(set(LESSONS) - {"blind-diagnosis"}))
-def test_a_sheet_can_be_done_whatever_is_drawn(name: str, words: str) -> None:
+def test_a_sheet_can_be_done_whatever_is_drawn_and_no_condition_shows_an_answer(name: str, words: str) -> None:
     for word in words.split():
-        at = Offline(name, word)
+        at = Attentive(name, word)
         LESSONS[name](at)
+        assert at.shown
         assert at.look()["earned"] == at.view["points"], word
 
 

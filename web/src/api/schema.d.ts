@@ -3226,7 +3226,7 @@ export interface components {
             trip: components["schemas"]["Trip"] | null;
             /**
              * Scores
-             * @description Of each diagnoser, against the truth the bench knows
+             * @description Of each diagnoser that has judged a sample, against the truth
              */
             scores: {
                 [key: string]: components["schemas"]["Scores"];
@@ -4005,14 +4005,16 @@ export interface components {
         };
         /**
          * ConditionView
-         * @description A condition of a step: the quantity, its value now, and the value that the step asks for.
+         * @description A condition of a step: the quantity, the range that the step asks for, and whether it holds.
+         *
+         *     A measured value is not shown: the student reads it from the instruments, and later steps grade it.
          */
         ConditionView: {
             /** Label */
             label: string;
             /**
              * Now
-             * @description A dash before the first look
+             * @description The setting, fault or verdict now; empty for a measured signal
              */
             now: string;
             /**
@@ -7099,6 +7101,8 @@ export interface components {
         Scores: {
             /** Names */
             names: string[];
+            /** Samples */
+            samples: number;
             /** Winner */
             winner: number;
             /** Truth */
@@ -9007,7 +9011,7 @@ export interface components {
             trip: components["schemas"]["Trip"] | null;
             /**
              * Scores
-             * @description Of each diagnoser, against the truth the bench knows
+             * @description Of each diagnoser that has judged a sample, against the truth
              */
             scores: {
                 [key: string]: components["schemas"]["Scores"];

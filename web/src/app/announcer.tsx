@@ -4,6 +4,7 @@ import { alarm, announce, useAnnouncements } from "../bench/announce";
 import { eventTone } from "../bench/flag-words";
 import { useNarrator } from "../bench/narrator";
 import { useBench } from "../stream/bench-store";
+import { useBoardState, useStaleSince } from "../stream/freshness";
 import { moreText, useCaption } from "./use-caption";
 
 /** Events that the narrator says. */
@@ -17,8 +18,8 @@ export function Announcer() {
   const event = useBench((s) => s.events.at(-1));
   const blind = useBench((s) => s.blind);
   const notice = useBench((s) => s.notice);
-  const phase = useBench((s) => s.connection.phase);
-  const quiet = useBench((s) => s.connection.reason?.quiet ?? false);
+  const known = useBoardState() !== undefined;
+  const stale = useStaleSince() !== undefined;
 
   useEffect(() => {
     if (!blind) return;
@@ -40,11 +41,9 @@ export function Announcer() {
   }, [caption, narrates]);
 
   useEffect(() => {
-    if (quiet) return;
-    if (phase === "waiting") alarm("Connection lost, trying again.");
-    if (phase === "closed") alarm("Not connected. The notice at the top says why.");
-    if (phase === "open") announce("Connected.");
-  }, [phase, quiet]);
+    if (stale) alarm("The page is not connected: its values are old. The notice at the top says why.");
+    else if (known) announce("Connected.");
+  }, [known, stale]);
 
   useEffect(() => {
     if (!notice || notice.code === "slow_client") return; // the header says that one, without covering anything

@@ -9,6 +9,7 @@ import { pageInAddress, useView } from "../bench/view-store";
 import { View3dHost } from "../panels/view3d/view3d-host";
 import { useBench } from "../stream/bench-store";
 import { closeReason } from "../stream/close-reason";
+import { useStaleSince } from "../stream/freshness";
 import { EmptyState } from "../ui/empty-state";
 import { Announcer } from "./announcer";
 import { Banner } from "./banner";
@@ -34,7 +35,6 @@ import { ShareSheet } from "./share-sheet";
 import { StepBar } from "./step-bar";
 import { TimeBar } from "./time-bar";
 import { useKeys } from "./use-keys";
-import { useLasting } from "./use-lasting";
 import { useReadingSize } from "./use-reading-size";
 import { VoteCard } from "./vote-card";
 
@@ -51,8 +51,7 @@ export function App() {
   const asked = useView((s) => s.page);
   const page = isOffered(asked, role) ? asked : "bench";
   const noted = useBench((s) => Boolean(s.bench?.opened?.note));
-  const silent = useBench((s) => s.connection.staleSince !== undefined);
-  const stale = useLasting(silent, 700);
+  const stale = useStaleSince() !== undefined;
   const Page = PAGES[page].component;
   const [failure, setFailure] = useState<Failure | undefined>(undefined);
   const present = useView((s) => s.present);

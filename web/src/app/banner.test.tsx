@@ -34,8 +34,9 @@ it("counts down to the next attempt once a lost connection is more than a blink,
   expect(notice()).not.toBeInTheDocument();
   await pass(500); // the first attempt
   await board.drop();
-  await pass(600);
+  await pass(800);
   expect(notice()).toHaveTextContent("Connection lost");
+  expect(notice()).toHaveTextContent(/Stale since \d/);
   expect(notice()).toHaveTextContent("again in 1 s");
   await pass(500);
   board.hello(bench);
@@ -63,7 +64,7 @@ it("says since when nothing was heard", async () => {
   const board = connect(bench);
   mount(<Banner hints={false} />);
   await pass(3000);
-  expect(notice()).toHaveTextContent(/^Nothing heard since \d/);
+  expect(notice()).toHaveTextContent(/^Nothing heard, stale since \d/);
   board.status({});
   await pass(250);
   expect(notice()).not.toBeInTheDocument();
@@ -96,7 +97,7 @@ it("says that the board has tripped, and resets the trip", async () => {
   const board = connect(bench);
   const { user } = mount(<Banner hints={false} />);
   board.status({ state: "tripped", trip: { reason: "tripped: displacement beyond 8 um", tick: 2000 } as never });
-  expect(notice()).toHaveTextContent("Tripped: displacement beyond 8 um");
+  expect(notice()).toHaveTextContent("Tripped: displacement beyond 8 µm");
   await user.click(screen.getByRole("button", { name: "Reset the trip" }));
   expect(board.commands).toEqual([{ reset_trip: true }]);
 });

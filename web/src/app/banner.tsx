@@ -2,10 +2,12 @@ import { Button, CloseButton } from "@mantine/core";
 import { IconPlayerPlayFilled, IconSquare, IconSquareCheckFilled } from "@tabler/icons-react";
 import { type ReactNode, useEffect, useState } from "react";
 import { useMay } from "../api/me";
+import { micro } from "../api/micro";
 import { actions } from "../bench/actions";
 import { showPanel } from "../bench/dock";
 import { showError } from "../bench/send";
 import { useBench } from "../stream/bench-store";
+import { staleWords, useStaleSince } from "../stream/freshness";
 import { stream } from "../stream/stream";
 import { formatClock, formatTick } from "../ui/format";
 import styles from "./banner.module.css";
@@ -13,10 +15,6 @@ import { openOwnBench, startAgain, startBeside } from "./first-bench";
 import { tourSeen } from "./tours/run-tour";
 import { OfferTour } from "./tours/tour-list";
 import { useHints } from "./use-hints";
-import { useLasting } from "./use-lasting";
-
-/** A connection that is back this soon was not worth a word. */
-const BLINK_MS = 1000;
 
 /** One line under the header when something needs to be known: a trip, a lost connection, silence; else what to try. */
 export function Banner({ hints = true }: { hints?: boolean }) {
@@ -28,9 +26,7 @@ export function Banner({ hints = true }: { hints?: boolean }) {
   const tips = useHints();
   const drives = useMay("drive");
   const teaches = useMay("teach");
-  const lost = useLasting(connection.phase === "waiting" && !connection.reason?.quiet, BLINK_MS);
-  // a page that is busy itself hears late, and a line that comes and goes moves all panels
-  const silent = useLasting(connection.staleSince !== undefined, BLINK_MS);
+  const stale = useStaleSince();
 
   if (connection.phase === "closed" && connection.reason)
     return (
@@ -43,28 +39,32 @@ export function Banner({ hints = true }: { hints?: boolean }) {
         )}
       </Line>
     );
-  if (lost && connection.reason)
+  if (stale && connection.phase === "waiting" && connection.reason && !connection.reason.quiet)
     return (
-      <Line tone="alarm" title={connection.reason.title} text={connection.reason.advice}>
+      <Line
+        tone="alarm"
+        title={connection.reason.title}
+        text={`${capital(staleWords(stale))}. ${connection.reason.advice}`}
+      >
         <Countdown until={connection.retryAt} />
         <Button size="compact-sm" variant="default" onClick={stream.retry}>
           Try now
         </Button>
       </Line>
     );
-  if (silent && connection.staleSince && connection.phase === "open")
+  if (stale)
     return (
       <Line
         tone="warn"
-        title={`Nothing heard since ${connection.staleSince.toLocaleTimeString()}`}
-        text="The panels show what came before. The page reconnects by itself."
+        title={`Nothing heard, ${staleWords(stale)}`}
+        text="The page shows the last values before, and reconnects by itself."
       />
     );
   if (trip)
     return (
       <Line
         tone="alarm"
-        title={`Tripped: ${trip.reason.replace(/^tripped: /, "")}`}
+        title={`Tripped: ${micro(trip.reason.replace(/^tripped: /, ""))}`}
         text={`at ${formatClock(trip.tick * dtMs)} s, ${formatTick(trip.tick)}. The voltage is off; the panels show the last values before.`}
       >
         {drives && (
@@ -158,6 +158,8 @@ function Guided({ scenario, label }: { scenario: string; label: string }) {
     </Button>
   );
 }
+
+const capital = (words: string): string => words.charAt(0).toUpperCase() + words.slice(1);
 
 function Line({
   tone,

@@ -8,6 +8,7 @@ import { send } from "../bench/send";
 
 /** What can begin at the moment shown: the same again, or with one thing changed. The bench itself is left as it is. */
 export function BranchMenu({ bench }: { bench: Bench }) {
+  useCatalog(); // the titles come with it
   const others = slotMates(bench.controller, bench.controllers).filter((name) => name !== bench.controller);
   return (
     <Menu position="top-end" shadow="md">
@@ -72,4 +73,5 @@ function DiagnoserItems({ bench }: { bench: Bench }) {
   );
 }
 
-const titleOf = (family: "faults" | "control", name: string) => cardOf(family, name)?.title ?? name;
+const titleOf = (family: "faults" | "control", name: string) =>
+  cardOf(family, name)?.title ?? name.replaceAll("_", " ");

@@ -1,5 +1,6 @@
 import { hasAxes } from "../api/fits";
 import type { Bench, LogEntry } from "../api/types";
+import { cardOf } from "../api/use-catalog";
 
 /** Something to try, and the event that says that it was done. */
 export interface Hint {
@@ -24,12 +25,18 @@ const found = ({ kind, new: label }: LogEntry) => kind === "recognised" && label
 const sets = ({ command }: LogEntry, table: string) =>
   Boolean(command && "set" in command && Object.keys(command.set).some((path) => path.startsWith(`${table}.`)));
 
-const FIND: Hint = { id: "find", text: "watch Diagnosis find it", isDone: found };
-const SWITCH: Hint = {
-  id: "switch",
-  text: "change the controller",
-  isDone: (event) => event.kind === "switch" && byHand(event),
-};
+const switched = (event: LogEntry) => event.kind === "switch" && byHand(event);
+const SWITCH: Hint = { id: "switch", text: "change the controller", isDone: switched };
+
+const isMass = ({ command }: LogEntry) =>
+  Boolean(command && "fault" in command && command.fault === "added_mass" && command.severity > 0);
+
+/** Whether a name is that of a hypothesis of more mass and nothing else. */
+const namesMass = (diagnosers: Shown["diagnosers"], label: unknown) =>
+  Object.values(diagnosers).some(({ names, factors }) => {
+    const { mass = 1, ...others } = factors[names.indexOf(String(label))] ?? {};
+    return mass > 1 && Object.values(others).every((factor) => factor === 1);
+  });
 
 /** What to say of a bench; nothing where nothing can be tried. */
 export function hintsOf(bench: Shown, hasSteps: boolean): Hints | undefined {
@@ -56,7 +63,7 @@ export function hintsOf(bench: Shown, hasSteps: boolean): Hints | undefined {
 
 function ofSteps(diagnosed: boolean): Hint[] {
   return [
-    ...(diagnosed ? [{ ...FIND, text: "watch Diagnosis find each fault" }] : []),
+    ...(diagnosed ? [{ id: "find", text: "watch Diagnosis find each fault", isDone: found }] : []),
     {
       id: "skip",
       text: "skip to the next step",
@@ -65,6 +72,13 @@ function ofSteps(diagnosed: boolean): Hint[] {
   ];
 }
 
+const switchesSense = (event: LogEntry) => {
+  const { command } = event;
+  return (
+    switched(event) && Boolean(command && "switch" in command && cardOf("control", command.switch)?.slot === "sense")
+  );
+};
+
 function ofAxes({ controllers }: Shown): Hint[] {
   return [
     {
@@ -72,18 +86,21 @@ function ofAxes({ controllers }: Shown): Hint[] {
       text: "change the angular rate under Controllers, and watch the estimate follow",
       isDone: (event) => sets(event, "rate") && byHand(event),
     },
-    ...(controllers.length > 1 ? [{ ...SWITCH, text: "let another sense controller read it" }] : []),
+    ...(controllers.length > 1
+      ? [{ ...SWITCH, text: "let another sense controller read it", isDone: switchesSense }]
+      : []),
   ];
 }
 
-function ofResonator({ controllers }: Shown, diagnosed: boolean): Hint[] {
+function ofResonator({ controllers, diagnosers }: Shown, diagnosed: boolean): Hint[] {
+  const findsIt = (event: LogEntry) => found(event) && namesMass(diagnosers, event.new);
   return [
     {
       id: "mass",
       text: "inject Added mass +5\u00a0% under Faults",
-      isDone: (event) => event.kind === "inject" && byHand(event),
+      isDone: (event) => event.kind === "inject" && isMass(event) && byHand(event),
     },
-    ...(diagnosed ? [FIND] : []),
+    ...(diagnosed ? [{ id: "find", text: "watch Diagnosis find it", isDone: findsIt }] : []),
     ...(controllers.length > 1 ? [SWITCH] : []),
   ];
 }

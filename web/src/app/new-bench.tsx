@@ -3,6 +3,7 @@ import { IconClipboardList, IconFolderOpen, IconRulerMeasure } from "@tabler/ico
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
 import { useMay } from "../api/me";
+import { micro } from "../api/micro";
 import type { Device, ScenarioSummary } from "../api/types";
 import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
@@ -10,7 +11,6 @@ import { setPage, useView } from "../bench/view-store";
 import { byChapter } from "../gallery/chapters";
 import { showSheet } from "../panels/sheet/begin";
 import { EmptyState } from "../ui/empty-state";
-import { micro } from "../ui/metric-name";
 import styles from "./dialogs.module.css";
 import { SideSheet } from "./side-sheet";
 

@@ -9,6 +9,7 @@ import { actions } from "../bench/actions";
 import { useView } from "../bench/view-store";
 import { ScopePanel } from "../panels/scope/scope-panel";
 import { useBench } from "../stream/bench-store";
+import { useBoardState } from "../stream/freshness";
 import { type ScopeConfig, scopeConfig } from "../stream/scope-config";
 import { ErrorFence } from "../ui/error-fence";
 import { usePageVisible } from "../ui/on-screen";
@@ -27,8 +28,8 @@ const RATE = scopeConfig(["rate.rate", "@active.rate"], { windowMs: 200 });
 
 /** A bench in the hand: status, one scope, the lanes, 3D, and the button that stops it. */
 export function Phone() {
-  const running = useBench((s) => s.bench?.state === "running");
-  const tripped = useBench((s) => s.bench?.state === "tripped");
+  const state = useBoardState();
+  const running = state === "running";
   const title = useBench((s) => s.bench?.title);
   const isFlat = useBench((s) => !hasAxes(s.bench));
   const blind = useBench((s) => s.blind);
@@ -85,7 +86,7 @@ export function Phone() {
             <Button
               fullWidth
               size="lg"
-              disabled={tripped}
+              disabled={state === "tripped" || state === undefined}
               color={running ? "alarm" : "accent"}
               leftSection={running ? <IconPlayerPauseFilled size={20} /> : <IconPlayerPlayFilled size={20} />}
               onClick={actions.toggle}

@@ -10,6 +10,7 @@ import { conditionWords } from "../panels/condition/condition";
 import { type TruthSwitch, truthSwitches } from "../panels/lanes/delays";
 import { useBench } from "../stream/bench-store";
 import { currentEvents } from "../stream/event-log";
+import { staleWords, useBoardState, useStaleSince } from "../stream/freshness";
 import { formatIn, formatSi } from "../ui/format";
 import styles from "./step-bar.module.css";
 
@@ -26,7 +27,12 @@ export function StepWords({ bench, steps }: { bench: Bench; steps: BenchStep[] }
   const shown = next < 0 ? steps.length - 1 : next;
   const { words, tick, when } = steps[shown];
   const left = next >= 0 ? tick : (bench.samples ?? undefined);
-  const wait = when ? `when ${conditionWords(when, bench.signals)}` : waitWords(bench, left, next < 0);
+  const stale = useStaleSince();
+  const wait = stale
+    ? staleWords(stale)
+    : when
+      ? `when ${conditionWords(when, bench.signals)}`
+      : waitWords(bench, left, next < 0);
   return (
     <p className={styles.words}>
       <strong>
@@ -41,12 +47,14 @@ function Bar({ bench, steps }: { bench: Bench; steps: BenchStep[] }) {
   const next = steps.findIndex((step) => !step.done);
   const now = steps[(next < 0 ? steps.length : next) - 1];
   const ended = hasEnded(bench, steps);
+  const scored = useScored(bench);
   const [asked, setAsked] = useState<boolean | undefined>(undefined);
-  const open = asked ?? ended;
-  const drives = useMay("drive");
+  const open = asked ?? (ended && scored.length > 0);
+  const mayDrive = useMay("drive");
+  const drives = useBoardState() !== undefined && mayDrive;
   const repeats = drives && steps.every((step) => step.ofScenario);
   return (
-    <section className={styles.bar} aria-label="Steps of the scenario">
+    <section className={styles.bar} data-of-bench="" aria-label="Steps of the scenario">
       <StepWords bench={bench} steps={steps} />
       <div className={styles.actions}>
         <Button
@@ -56,7 +64,7 @@ function Bar({ bench, steps }: { bench: Bench; steps: BenchStep[] }) {
           aria-expanded={open}
           onClick={() => setAsked(!open)}
         >
-          What was found
+          {scored.length > 0 ? "What was found" : "All steps"}
         </Button>
         {repeats && (
           <Button
@@ -81,30 +89,48 @@ function Bar({ bench, steps }: { bench: Bench; steps: BenchStep[] }) {
           </Button>
         )}
       </div>
-      {open && <Findings bench={bench} steps={steps} repeats={repeats} />}
+      {open && <Findings bench={bench} steps={steps} repeats={repeats} scored={scored} />}
     </section>
   );
 }
 
-/** What each diagnoser found at each step; a click begins a step again. */
-function Findings({ bench, steps, repeats }: { bench: Bench; steps: BenchStep[]; repeats: boolean }) {
+interface Scored {
+  id: string;
+  switches: TruthSwitch[];
+}
+
+/** The diagnosers that are compared with the truth, and its changes as each met them. */
+function useScored({ diagnosers }: Bench): Scored[] {
   const events = useBench((s) => s.events);
-  const switches = useMemo(() => {
+  return useMemo(() => {
     const current = currentEvents(events);
-    return Object.keys(bench.diagnosers).map((id) => ({ id, switches: truthSwitches(current, id) }));
-  }, [events, bench.diagnosers]);
-  const several = switches.filter((d) => d.switches.length > 0).length > 1;
+    const all = Object.keys(diagnosers).map((id) => ({ id, switches: truthSwitches(current, id) }));
+    return all.filter(({ switches }) => switches.length > 0);
+  }, [events, diagnosers]);
+}
+
+interface FindingsProps {
+  bench: Bench;
+  steps: BenchStep[];
+  repeats: boolean;
+  scored: Scored[];
+}
+
+/** The findings of each diagnoser at each step; of no diagnoser, the steps alone. A click begins a step again. */
+function Findings({ bench, steps, repeats, scored }: FindingsProps) {
+  const several = scored.length > 1;
+  const nothing = scored.length > 0 ? "nothing to find" : "done";
   return (
-    <ol className={styles.findings} aria-label="What was found at each step">
+    <ol className={styles.findings} aria-label={scored.length > 0 ? "What was found at each step" : "All steps"}>
       {steps.map((step, i) => {
         const end = steps[i + 1]?.done ? (steps[i + 1].tick ?? Infinity) : Infinity;
-        const found = switches.flatMap(({ id, switches: all }) => {
+        const found = scored.flatMap(({ id, switches: all }) => {
           const change = step.done
             ? all.findLast(({ tick }) => tick >= (step.tick ?? Infinity) && tick < end)
             : undefined;
           return change ? [`${several ? `${id.replaceAll("_", " ")} ` : ""}${foundWords(change, bench.dt_ms)}`] : [];
         });
-        const words = step.done ? found.join("; ") || "nothing to find" : "to come";
+        const words = step.done ? found.join("; ") || nothing : "to come";
         return (
           <li key={`${step.tick} ${step.when}`}>
             {repeats && step.done ? (
@@ -127,7 +153,8 @@ function Findings({ bench, steps, repeats }: { bench: Bench; steps: BenchStep[];
 function foundWords({ label, delay, findable }: TruthSwitch, dtMs: number): string {
   if (!findable) return "not among the hypotheses";
   if (delay === undefined) return `${hypothesisWords(label)} not found`;
-  return `found ${hypothesisWords(label)} ${delay === 0 ? "at once" : `after ${formatSi(delay * dtMs, "ms", 3)}`}`;
+  if (delay === 0) return `said ${hypothesisWords(label)} before`;
+  return `found ${hypothesisWords(label)} after ${formatSi(delay * dtMs, "ms", 3)}`;
 }
 
 /** When a tick comes, in wall time at the pace that is set. */

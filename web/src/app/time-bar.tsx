@@ -7,6 +7,7 @@ import { eventTone } from "../bench/flag-words";
 import { backToNow, lookBack } from "../bench/past";
 import { useBench } from "../stream/bench-store";
 import { currentEvents } from "../stream/event-log";
+import { staleWords, useStaleSince } from "../stream/freshness";
 import { formatMoment, formatPercent } from "../ui/format";
 import { Slider } from "../ui/slider";
 import { BranchMenu } from "./branch-menu";
@@ -27,6 +28,7 @@ export function TimeBar() {
 function Bar({ bench, first }: { bench: Bench; first: number }) {
   const events = useBench((s) => s.events);
   const isPast = Boolean(bench.origin?.is_past);
+  const stale = useStaleSince();
   const [newest, setNewest] = useState({ of: bench.id, tick: bench.tick });
   const [held, setHeld] = useState<number | undefined>(undefined);
   // the bench that is looked back at goes on; where it was when it was left is the end of the bar
@@ -46,9 +48,15 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
     else if (tick < end) lookBack(tick);
   };
   return (
-    <section className={styles.bar} data-past={isPast} aria-label="Timeline">
+    <section className={styles.bar} data-of-bench="" data-past={isPast} aria-label="Timeline">
       <p className={styles.words}>
-        {isPast ? <strong>As it was at {formatMoment(shown * bench.dt_ms)}</strong> : <strong>Timeline</strong>}
+        {stale ? (
+          <strong>Timeline, {staleWords(stale)}</strong>
+        ) : isPast ? (
+          <strong>As it was at {formatMoment(shown * bench.dt_ms)}</strong>
+        ) : (
+          <strong>Timeline</strong>
+        )}
         {bench.travel && (
           <span role="status"> computed again: {formatPercent(0.1 * Math.floor(10 * bench.travel.share), 0)}</span>
         )}
@@ -56,6 +64,7 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
       <div className={styles.track}>
         <Slider
           size="sm"
+          disabled={stale !== undefined}
           min={first}
           max={end}
           label={(tick) => formatMoment(tick * bench.dt_ms)}

@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import type { LogEntry } from "../api/types";
+import type { ActiveFault, LogEntry } from "../api/types";
 import { logEntry } from "../stream/log-entry.fixture";
 import { faultSpans } from "./marks";
 
@@ -34,4 +34,15 @@ it("ends a fault that is injected again, and all of them on heal all", () => {
 
 it("does not take a scheduled fault for one that acts", () => {
   expect(faultSpans([entry(5, "scheduled", { fault: "added_mass", severity: 0.05 })])).toEqual([]);
+});
+
+it("ends at a severity of 0, and where the board says that it acts no more although no healing was heard", () => {
+  expect(faultSpans([inject(10, "added_mass"), inject(30, "added_mass", 0)])).toMatchObject([{ start: 10, end: 30 }]);
+  const missed = [inject(10, "added_mass"), inject(20, "damping")];
+  const damping = { name: "damping", severity: 0.05, since_tick: 20 } as ActiveFault;
+  expect(faultSpans(missed, [damping], 400)).toMatchObject([
+    { name: "added_mass", start: 10, end: 400 },
+    { name: "damping", start: 20, end: undefined },
+  ]);
+  expect(faultSpans([inject(10, "added_mass")], [], 5)).toMatchObject([{ end: undefined }]);
 });

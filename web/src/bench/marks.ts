@@ -15,7 +15,7 @@ export function marksNow(): Marks {
   const faults = bench?.faults;
   if (known?.events !== events || known.faults !== faults) {
     const current = currentEvents(events);
-    known = { events, faults, marks: { events: current, faults: faultSpans(current, faults) } };
+    known = { events, faults, marks: { events: current, faults: faultSpans(current, faults, bench?.tick) } };
   }
   return known.marks;
 }
@@ -28,8 +28,17 @@ export interface FaultSpan {
   end: number | undefined;
 }
 
-/** When each fault acted, from the log of commands; what acts now may have begun before the log (on a fork). */
-export function faultSpans(events: readonly LogEntry[], acting: readonly ActiveFault[] = []): FaultSpan[] {
+/**
+ * When each fault acted, from the log of commands.
+ *
+ * The faults acting at `now` have the last word: one may have begun before the log, as on a fork, and one may have ended
+ * unheard, as while the connection was lost.
+ */
+export function faultSpans(
+  events: readonly LogEntry[],
+  acting: readonly ActiveFault[] = [],
+  now = Number.NEGATIVE_INFINITY,
+): FaultSpan[] {
   const spans: FaultSpan[] = [];
   const open = new Map<string, FaultSpan>();
   const close = (name: string, tick: number) => {
@@ -41,6 +50,7 @@ export function faultSpans(events: readonly LogEntry[], acting: readonly ActiveF
     if (kind === "inject" && command && "fault" in command) {
       const { fault: name, severity } = command;
       close(name, tick);
+      if (severity === 0) continue;
       const span = { name, severity, start: tick, end: undefined };
       open.set(name, span);
       spans.push(span);
@@ -50,6 +60,8 @@ export function faultSpans(events: readonly LogEntry[], acting: readonly ActiveF
       for (const name of healed) close(name, tick);
     }
   }
+  const acts = new Set(acting.flatMap(({ name, severity }) => (severity === 0 ? [] : name)));
+  for (const { name, start } of open.values()) if (!acts.has(name) && start < now) close(name, now);
   for (const { name, severity, since_tick } of acting)
     if (severity !== 0 && !open.has(name)) spans.push({ name, severity, start: since_tick, end: undefined });
   return spans;

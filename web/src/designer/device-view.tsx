@@ -1,10 +1,11 @@
 import { Button } from "@mantine/core";
 import { useMemo } from "react";
+import { deviceDrawing } from "../picture/device-drawing";
+import { DevicePlan } from "../picture/device-plan";
 import { EmptyState } from "../ui/empty-state";
 import { formatShort, formatSi } from "../ui/format";
 import { CombDetail } from "./comb-detail";
 import styles from "./designer.module.css";
-import { deviceDrawing, rectPath } from "./device-drawing";
 
 const MARGIN = 14;
 const SCALE_BARS = [20, 50, 100, 200, 500];
@@ -45,11 +46,7 @@ export function DeviceView({ geometry, title, onChooseDrawn }: DeviceViewProps) 
         role="img"
         aria-label={`${title} from above, to scale: ${formatSi(drawing.width, "um")} by ${formatSi(drawing.height, "um")}`}
       >
-        <path d={rectPath(drawing.stators)} className={styles.stator} />
-        <path d={rectPath([...drawing.plate, ...drawing.arms])} className={styles.shuttle} />
-        <path d={rectPath(drawing.rotor)} className={styles.shuttle} />
-        <path d={rectPath(drawing.anchors)} className={styles.anchor} />
-        <path d={rectPath([...drawing.beams, ...drawing.trusses])} className={styles.beam} />
+        <DevicePlan drawing={drawing} />
         <g transform={`translate(${-width / 2 + MARGIN} ${drawing.height / 2 + 22})`}>
           <path d={`M0 -5 V5 M0 0 H${bar} M${bar} -5 V5`} className={styles.scale} />
           <text x={bar + 8} dominantBaseline="middle" className={styles.scaleText} style={letters}>

@@ -1,7 +1,8 @@
 import { useState } from "react";
+import { micro } from "../api/micro";
 import type { GalleryCard } from "../api/types";
 import { formatFigure } from "../ui/format";
-import { metricTitle, micro } from "../ui/metric-name";
+import { metricTitle } from "../ui/metric-name";
 import { Verdict } from "../ui/verdict";
 import styles from "./gallery.module.css";
 

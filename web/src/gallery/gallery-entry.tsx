@@ -3,11 +3,11 @@ import { IconFileText, IconPlayerPlay, IconPlayerTrackNext } from "@tabler/icons
 import { useEffect, useRef, useState } from "react";
 import { api } from "../api/api";
 import { useMay } from "../api/me";
+import { micro } from "../api/micro";
 import type { GalleryCard } from "../api/types";
 import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
 import { setPage } from "../bench/view-store";
-import { micro } from "../ui/metric-name";
 import { useOnScreen } from "../ui/on-screen";
 import { Verdict } from "../ui/verdict";
 import { ExpectationTable } from "./expectation-table";

@@ -13,12 +13,13 @@ interface LineChartProps extends LinesShown {
 }
 
 /** Lines over two titled axes, with a legend; the pointer reads the nearest point. */
-export function LineChart({ title, xLabel, yLabel, lines, xRange, yRange }: LineChartProps) {
+export function LineChart({ title, xLabel, yLabel, lines, xRange, yRange, yLimits }: LineChartProps) {
   const scheme = useScheme();
   const [read, setRead] = useState<string | undefined>(undefined);
   const paint = useMemo(
-    () => (pen: Pen, box: Box, look: Look) => paintLines(pen, box, { xLabel, yLabel, lines, xRange, yRange }, look),
-    [xLabel, yLabel, lines, xRange, yRange],
+    () => (pen: Pen, box: Box, look: Look) =>
+      paintLines(pen, box, { xLabel, yLabel, lines, xRange, yRange, yLimits }, look),
+    [xLabel, yLabel, lines, xRange, yRange, yLimits],
   );
   const take = () => ({ title, stem: fileStem(title), height: 400, legend: lineEntries(lines, "light"), paint });
   return (

@@ -1,12 +1,13 @@
 import { MultiSelect } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../api/api";
+import { micro } from "../api/micro";
 import type { PointTally, SweepRun } from "../api/types";
 import { LineChart } from "../picture/line-chart";
 import { Downloads } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
 import { formatCount, formatNumber } from "../ui/format";
-import { metricScale, metricTitle, micro } from "../ui/metric-name";
+import { metricLimits, metricScale, metricTitle } from "../ui/metric-name";
 import { Stale } from "../ui/stale";
 import { DiagnosisCharts } from "./diagnosis-charts";
 import { DistributionChart } from "./distribution-chart";
@@ -101,7 +102,7 @@ function Said({ points }: { points: PointTally[] }) {
   return (
     <ul className={styles.refusal}>
       {[...errors, ...warnings.map((text) => `Warning: ${text}`)].map((text) => (
-        <li key={text}>{text}</li>
+        <li key={text}>{micro(text)}</li>
       ))}
     </ul>
   );
@@ -128,6 +129,7 @@ function Trends({ points, metrics }: { points: PointTally[]; metrics: string[] }
             key={axis + metric}
             title={`${up.name} over ${metricScale(axis, []).name}`}
             xLabel={across.title}
+            yLimits={metricLimits(metric)}
             yLabel={["mean ± std", up.unit].filter(Boolean).join(", ")}
             lines={lines.map((line) => ({
               ...line,

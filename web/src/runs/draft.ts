@@ -26,10 +26,12 @@ export interface Draft {
   /** Keep the signals of blocks that only look on too. */
   all: boolean;
   firstSeed: number;
+  /** 0 while the field is empty: one. */
   seeds: number;
   vary: "nothing" | "grid" | "hypercube";
   grid: Row[];
   ranges: RangeRow[];
+  /** 0 while the field is empty: one. */
   points: number;
   hypercubeSeed: number;
   /** Devices drawn from the process spread; 0: the scenario's own. */
@@ -88,7 +90,7 @@ export function pointCount(draft: Draft): number {
     draft.vary === "grid"
       ? filled(draft.grid).reduce((product, row) => product * Math.max(1, parseValues(row.text).length), 1)
       : draft.vary === "hypercube" && filled(draft.ranges).length > 0
-        ? draft.points
+        ? Math.max(1, draft.points)
         : 1;
   return varied * Math.max(1, draft.devices);
 }
@@ -97,7 +99,7 @@ const setOf = (rows: readonly Row[]) =>
   Object.fromEntries(filled(rows).map((row) => [row.path.trim(), parseValue(row.text)]));
 
 /** Seeds as they are counted everywhere: both ends included. */
-const spanOf = (first: number, count: number) => `${first}:${first + count - 1}`;
+const spanOf = (first: number, count: number) => `${first}:${first + Math.max(1, count) - 1}`;
 
 /** What a run is asked for with. */
 export function runOf(draft: Draft) {
@@ -121,7 +123,7 @@ export function campaignOf(draft: Draft): Document {
     ...(vary === "hypercube" &&
       ranges.length > 0 && {
         latin_hypercube: {
-          points,
+          points: Math.max(1, points),
           seed: hypercubeSeed,
           ranges: Object.fromEntries(
             ranges.map(({ path, min, max, log }) => [

@@ -1,6 +1,6 @@
+import { micro } from "../api/micro";
 import type { Run, SweepRun } from "../api/types";
 import { formatCount, formatNumber } from "../ui/format";
-import { micro } from "../ui/metric-name";
 
 interface Common {
   id: string;

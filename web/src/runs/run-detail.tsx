@@ -1,6 +1,7 @@
 import { Button } from "@mantine/core";
 import { IconPlayerPlay } from "@tabler/icons-react";
 import { api } from "../api/api";
+import { micro } from "../api/micro";
 import type { GalleryCard, Run } from "../api/types";
 import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
@@ -9,7 +10,7 @@ import { ExpectationTable } from "../gallery/expectation-table";
 import { Downloads, TRACE_FORMATS } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
 import { formatBeside, formatCount, formatFigure, formatPercent, formatShort, formatSi } from "../ui/format";
-import { metricScale, micro } from "../ui/metric-name";
+import { metricScale } from "../ui/metric-name";
 import { ReportButton, ScriptButton } from "./file-buttons";
 import { runName } from "./jobs";
 import { NameField } from "./name-field";
@@ -68,10 +69,10 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
           title={micro(run.title) || run.scenario_id}
           save={(label) => api.renameRun(run.id, label).then(onChanged)}
         />
-        {summary.trip && <p className={styles.refusal}>Tripped: {summary.trip.reason}</p>}
+        {summary.trip && <p className={styles.refusal}>Tripped: {micro(summary.trip.reason)}</p>}
         {summary.warnings.map((text) => (
           <p key={text} className={styles.refusal}>
-            Warning: {text}
+            Warning: {micro(text)}
           </p>
         ))}
       </header>

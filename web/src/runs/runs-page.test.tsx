@@ -61,7 +61,7 @@ it("says what a run warns of, and that it tripped", async () => {
   server.on("GET", "/runs", { runs: [{ ...run, summary }] });
   const { jobs, result } = await mountPage("&run=run-1");
   expect(await result.findByText("Warning: stvsc: thin")).toBeVisible();
-  expect(result.getByText("Tripped: beyond 8 um")).toBeVisible();
+  expect(result.getByText("Tripped: beyond 8 µm")).toBeVisible();
   expect(jobs.getByText("tripped")).toBeVisible();
 });
 

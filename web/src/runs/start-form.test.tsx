@@ -47,6 +47,17 @@ it("starts one run of a scenario with its name, another value, seeds and all sig
   expect(onStarted).toHaveBeenCalledWith({ kind: "run", id: "run-1" });
 });
 
+it("leaves a field of a number empty while it is, and takes one for it", async () => {
+  const { user, form } = mountForm();
+  const seeds = form.getByRole("textbox", { name: "Seeds" });
+  await user.clear(seeds);
+  expect(seeds).toHaveValue("");
+  await user.click(form.getByRole("button", { name: "Run" }));
+  expect(server.asked("POST", "/runs")[0].body).toEqual(RUN);
+  await user.type(seeds, "4");
+  expect(seeds).toHaveValue("4");
+});
+
 it("names the field that the server refuses, and takes the words away at the next start", async () => {
   server.on("POST", "/runs", new Refusal(422, "must be at least 0", { field: "sensor.noise_um", hint: "Give more." }));
   const { user, form, onStarted } = mountForm();

@@ -3,10 +3,10 @@ import { IconPlayerTrackNext } from "@tabler/icons-react";
 import { useEffect, useMemo, useState } from "react";
 import { api } from "../api/api";
 import { ApiError } from "../api/client";
+import { micro } from "../api/micro";
 import type { ApiErrorBody, ScenarioSummary } from "../api/types";
 import { showError } from "../bench/send";
 import { formatCount } from "../ui/format";
-import { micro } from "../ui/metric-name";
 import { campaignOf, type Draft, EMPTY_RANGE, newDraft, pathsOf, pointCount, runOf } from "./draft";
 import styles from "./runs.module.css";
 import type { Chosen } from "./use-chosen";
@@ -32,7 +32,8 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
   const paths = useMemo(() => pathsOf(document), [document]);
   const isRun = draft.kind === "run";
   const points = isRun ? 1 : pointCount(draft);
-  const total = points * draft.seeds;
+  const seeds = Math.max(1, draft.seeds);
+  const total = points * seeds;
 
   const start = async () => {
     setBusy(true);
@@ -146,8 +147,8 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
           label="Seeds"
           min={1}
           max={isRun ? 200 : 100_000}
-          value={draft.seeds}
-          onChange={(n) => set({ seeds: Math.max(1, Number(n) || 1) })}
+          value={draft.seeds || ""}
+          onChange={(n) => set({ seeds: Number(n) })}
         />
       </div>
       {isRun && (
@@ -171,7 +172,7 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
           : `Start ${formatCount(total, "run")}`}
       </Button>
       <p className={styles.note}>
-        {!isRun && `${formatCount(points, "point")} with ${formatCount(draft.seeds, "seed")} each. `}
+        {!isRun && `${formatCount(points, "point")} with ${formatCount(seeds, "seed")} each. `}
         Runs work in the background, after the live benches. Runs whose results are stored are not repeated.
       </p>
     </form>
@@ -221,8 +222,8 @@ function Hypercube({ draft, paths, set }: { draft: Draft; paths: string[]; set(p
           label="Points"
           min={1}
           max={100_000}
-          value={draft.points}
-          onChange={(n) => set({ points: Math.max(1, Number(n) || 1) })}
+          value={draft.points || ""}
+          onChange={(n) => set({ points: Number(n) })}
         />
         <NumberInput
           size="xs"

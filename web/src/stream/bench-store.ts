@@ -10,7 +10,7 @@ export interface Connection {
   reason: CloseReason | undefined;
   /** Next attempt, on `performance.now()`'s clock. */
   retryAt: number | undefined;
-  /** Wall time since when the page has heard nothing, while it hears nothing. */
+  /** Wall time since when nothing has arrived; undefined while the page is current. Read it by `freshness`. */
   staleSince: Date | undefined;
 }
 

@@ -25,6 +25,24 @@ it("shows what a status changes and keeps what it leaves out", () => {
   expect(now().bench?.faults).toEqual([]);
 });
 
+it("draws the pictures again when an event or a change of the acting faults comes, on a board that stands still too", async () => {
+  const board = connect(bench);
+  const draw = vi.fn();
+  stream.client.feeds.open({ mode: "roll", signals: ["a"], window_ms: 1, width: 2 }, draw);
+  board.frame({ a: () => 1 }, { head: 10 });
+  stream.client.feeds.draw();
+  expect(draw).toHaveBeenCalledTimes(1);
+  await board.events(events.slice(0, 1));
+  stream.client.feeds.draw();
+  expect(draw).toHaveBeenCalledTimes(2);
+  board.status({ faults: [{ name: "added_mass", severity: 0.05, since_tick: 3 }] as never });
+  stream.client.feeds.draw();
+  expect(draw).toHaveBeenCalledTimes(3);
+  board.status({ tick: 11 });
+  stream.client.feeds.draw();
+  expect(draw).toHaveBeenCalledTimes(3);
+});
+
 it("asks for the events it has missed", async () => {
   const board = connect(bench);
   await board.events(events.slice(0, 4));

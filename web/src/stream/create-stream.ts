@@ -1,4 +1,5 @@
 import { api, benchExists } from "../api/api";
+import { micro } from "../api/micro";
 import type { Bench, LogEntry, Score } from "../api/types";
 import { setUnits } from "../api/use-catalog";
 import { type Connection, mergeStatus, useBench } from "./bench-store";
@@ -31,12 +32,17 @@ export function createStream(transport: Transport) {
   const client = new StreamClient(
     {
       onMessage: receive,
-      onOpen: () => patch({ phase: "open", reason: undefined, retryAt: undefined, staleSince: undefined }),
+      onOpen: () => patch({ phase: "open", reason: undefined, retryAt: undefined }),
       // A hidden page gets no animation frames and slow timers; the server must not take it for a dead one.
       isDrawing: () => !document.hidden && performance.now() - loop.lastFrame <= STALE_MS,
       onClose: (reason, _code, retryAt) => {
-        const since = useBench.getState().connection.staleSince ?? new Date();
-        patch({ phase: retryAt === undefined ? "closed" : "waiting", reason, retryAt, staleSince: since });
+        if (retryAt !== undefined) return patch({ phase: "waiting", reason, retryAt });
+        patch({
+          phase: "closed",
+          reason,
+          retryAt,
+          staleSince: useBench.getState().connection.staleSince ?? new Date(),
+        });
       },
       explain: () => benchExists(benchId),
     },
@@ -72,6 +78,7 @@ export function createStream(transport: Transport) {
           pendingEvents = [];
           useBench.setState({ events: [] });
         }
+        patch({ staleSince: undefined });
         // back after a break, in which the page may have missed that it was called
         if (known.bench) useBench.setState((s) => ({ called: s.called + 1 }));
         known = { bench: message.bench, scores: turned ? {} : known.scores };
@@ -96,7 +103,7 @@ export function createStream(transport: Transport) {
       }
       case "events":
         if (pendingEvents.length === 0) flush = setTimeout(flushEvents, 30);
-        pendingEvents.push(...message.events);
+        pendingEvents.push(...message.events.map((event) => ({ ...event, text: micro(event.text) })));
         return;
       case "narration":
         useBench.setState((s) => ({ narration: narrate(s.narration, message) }));
@@ -137,19 +144,25 @@ export function createStream(transport: Transport) {
     const events = pendingEvents.reduce(appendEvent, useBench.getState().events);
     pendingEvents = [];
     useBench.setState({ events });
+    client.feeds.redraw();
   }
 
   /** Write the known state into the store. */
   function tell(): void {
+    if (known.bench?.faults !== useBench.getState().bench?.faults) client.feeds.redraw();
     useBench.setState({ ...known, blind: Boolean(known.bench?.blind) });
   }
 
+  let looked = performance.now();
   const watch = setInterval(() => {
-    const { connection } = useBench.getState();
-    if (connection.phase !== "open") return;
-    const silent = performance.now() - client.lastHeard;
-    if (silent > STALE_MS && !connection.staleSince) patch({ staleSince: new Date(Date.now() - silent) });
-    if (silent <= STALE_MS && connection.staleSince) patch({ staleSince: undefined });
+    const { phase, staleSince } = useBench.getState().connection;
+    const now = performance.now();
+    const wasBusy = now - looked > 2 * WATCH_MS;
+    looked = now;
+    if (phase === "idle" || phase === "closed" || wasBusy) return; // a busy page has not listened
+    const silent = now - client.lastHeard;
+    if (silent > STALE_MS && !staleSince) patch({ staleSince: new Date(Date.now() - silent) });
+    if (silent <= STALE_MS && staleSince) patch({ staleSince: undefined });
   }, WATCH_MS);
 
   /** End the stream: nothing is sent, heard or drawn any more. */

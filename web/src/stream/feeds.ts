@@ -96,6 +96,11 @@ export class Feeds {
     return drawn;
   }
 
+  /** Draw every picture again: the marks in it have changed, and a bench that stands still sends no other. */
+  redraw(): void {
+    for (const feed of this.feeds.values()) feed.redraw();
+  }
+
   /** Say what has arrived without drawing it: nobody looks, and the newest is kept for when somebody does. */
   acknowledge(): void {
     if (this.received <= this.acknowledged) return;

@@ -122,6 +122,38 @@ describe("StreamClient", () => {
     );
   });
 
+  it("opens another channel at once when asked, also while it waits for a reason or for a channel to open", async () => {
+    handlers.explain.mockReturnValue(new Promise(() => undefined));
+    await last().drop(1006);
+    client.retryNow();
+    expect(FakeChannel.made).toHaveLength(2);
+    client.retryNow();
+    expect(FakeChannel.made).toHaveLength(3);
+    last().accept();
+    client.retryNow();
+    expect(FakeChannel.made).toHaveLength(3);
+    await vi.advanceTimersByTimeAsync(60_000);
+    expect(handlers.onClose).not.toHaveBeenCalled();
+    expect(last().isOpen).toBe(true);
+  });
+
+  it("waits neither for a reason nor for a channel to open without a limit", async () => {
+    handlers.explain.mockReturnValue(new Promise(() => undefined));
+    await last().drop(1006);
+    await vi.advanceTimersByTimeAsync(3000);
+    expect(handlers.onClose).toHaveBeenCalledTimes(1);
+    await vi.advanceTimersByTimeAsync(500);
+    expect(FakeChannel.made).toHaveLength(2);
+    await vi.advanceTimersByTimeAsync(10_000);
+    expect(handlers.onClose).toHaveBeenCalledTimes(2);
+  });
+
+  it("asks on when the question for the reason fails", async () => {
+    handlers.explain.mockRejectedValue(new Error("broken"));
+    await last().drop(1006);
+    expect(handlers.onClose).toHaveBeenCalledTimes(1);
+  });
+
   it("resolves a command with its tick, rejects a refusal in the server's words", async () => {
     last().accept();
     const done = client.command({ kind: "pause" });

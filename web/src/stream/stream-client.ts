@@ -8,6 +8,11 @@ import type { Channel, Transport } from "./transport";
 import type { ClientMessage, ServerMessage } from "./wire";
 
 const REPLY_TIMEOUT_MS = 5000;
+/** A channel that does not open within this time counts as lost: a network may swallow the attempt without a word. */
+const OPEN_TIMEOUT_MS = 10_000;
+/** The reason of a lost connection is not waited for longer than this. */
+const EXPLAIN_TIMEOUT_MS = 3000;
+const LOST = 1006;
 
 export interface StreamHandlers {
   onMessage(message: ServerMessage): void;
@@ -36,7 +41,7 @@ interface Pending {
 export class StreamClient {
   readonly feeds = new Feeds((message) => this.send(message));
   head: Head = { tick: 0, dtMs: 0, running: false };
-  /** When anything last arrived, on `performance.now()`'s clock. */
+  /** When anything last arrived from the bench shown, on `performance.now()`'s clock. */
   lastHeard = performance.now();
   private readonly handlers: StreamHandlers;
   private readonly replies = new Map<string, Pending>();
@@ -60,20 +65,20 @@ export class StreamClient {
     this.disconnect();
     this.bench = bench;
     this.attempt = 0;
+    this.lastHeard = performance.now();
     this.open();
   }
 
   disconnect(): void {
-    clearTimeout(this.timer);
-    const old = this.channel;
-    this.channel = undefined;
-    old?.close();
+    this.abandon();
     this.failReplies("The page left this bench.");
   }
 
+  /** Open another channel at once, whatever the present one waits for; one that is open stays. */
   retryNow(): void {
-    clearTimeout(this.timer);
-    if (!this.channel && this.bench) this.open();
+    if (this.isOpen || !this.bench) return;
+    this.abandon();
+    this.open();
   }
 
   send(message: ClientMessage): void {
@@ -94,26 +99,44 @@ export class StreamClient {
     });
   }
 
+  private abandon(): void {
+    clearTimeout(this.timer);
+    const old = this.channel;
+    this.channel = undefined;
+    old?.close();
+  }
+
   private open(): void {
     let opened = false;
     const channel = this.transport(this.bench, {
       onOpen: () => {
+        clearTimeout(this.timer);
         opened = true;
-        this.lastHeard = performance.now();
         this.handlers.onOpen();
         this.feeds.reconnected();
       },
       onMessage: (data) => this.receive(data),
       onClose: async (code) => {
         if (this.channel !== channel) return;
+        clearTimeout(this.timer);
         this.failReplies("The connection was lost before the answer came.");
-        const known = opened ? code : ((await this.handlers.explain()) ?? code);
+        const known = opened ? code : ((await this.explained()) ?? code);
         if (this.channel !== channel) return;
         this.channel = undefined;
         this.closed(known);
       },
     });
     this.channel = channel;
+    this.timer = setTimeout(() => {
+      this.abandon();
+      this.closed(LOST);
+    }, OPEN_TIMEOUT_MS);
+  }
+
+  /** Why a channel never opened, if the server says so in time. */
+  private explained(): Promise<number | undefined> {
+    const late = new Promise<undefined>((resolve) => setTimeout(resolve, EXPLAIN_TIMEOUT_MS));
+    return Promise.race([this.handlers.explain().catch(() => undefined), late]);
   }
 
   private closed(code: number): void {

@@ -7,6 +7,7 @@ const MINUS = "−";
 const THIN = "\u202f";
 const SPACE = "\u00a0";
 const NOTHING = "–";
+const PLUS_MINUS = `${SPACE}±${SPACE}`;
 /** From here on a number with fixed decimals would be a row of digits that mean nothing. */
 const IMMENSE = 1e15;
 
@@ -63,13 +64,16 @@ export function formatFigure(metric: string, value: number | null | undefined, d
   return Number.isInteger(value) ? formatNumber(value, 0) : formatSi(value, "", digits);
 }
 
-/** A mean and its standard deviation, to the second digit of the deviation: "0.24700 ± 0.00028". */
+/**
+ * A mean and its standard deviation, to the second digit of the deviation and on one power of ten: "0.24700 ± 0.00028".
+ * No line breaks inside it.
+ */
 export function formatSpread(metric: string, mean: number, std: number): string {
-  if (std === 0) return `${formatFigure(metric, mean)} ± 0`;
-  const size = Math.max(Math.abs(mean), std);
-  if (!isPlain(size)) return `${formatSi(mean, "")} ± ${formatSi(std, "", 2)}`;
-  const decimals = Math.min(decimalsFor(std, 2), decimalsFor(size, 6));
-  return `${formatNumber(mean, decimals)} ± ${formatLeast(std, decimals)}`;
+  if (std === 0) return `${formatFigure(metric, mean)}${PLUS_MINUS}0`;
+  const { factor, exponent } = unitScale("", Math.max(Math.abs(mean), std));
+  const [shown, spread] = [mean * factor, std * factor];
+  const decimals = Math.min(decimalsFor(spread, 2), decimalsFor(Math.max(Math.abs(shown), spread), 6));
+  return `${formatNumber(shown, decimals)}${exponent}${PLUS_MINUS}${formatLeast(spread, decimals)}${exponent}`;
 }
 
 /** A difference from a figure, or its deviation, with the decimals that the figure has. */

@@ -1,6 +1,7 @@
 import { expect, it } from "vitest";
+import { micro } from "../api/micro";
 import cases from "./metric-cases.json";
-import { metricName, metricScale, metricTitle, micro } from "./metric-name";
+import { metricLimits, metricName, metricScale, metricTitle } from "./metric-name";
 
 it("says a metric in words and keeps whose it is", () => {
   expect(metricName("diagnosis.kalman.correct_fraction")).toBe("kalman correct fraction");
@@ -22,4 +23,18 @@ it("shows figures in a unit that needs no power of ten, and leaves those that re
 
 it("prints the units of a text", () => {
   expect(micro("Beams 0.2 um narrower, h = 20us, a drum")).toBe("Beams 0.2\u00a0µm narrower, h = 20\u00a0µs, a drum");
+});
+
+it("writes micro in texts of the server with its sign, and leaves names alone", () => {
+  expect(micro("displacement beyond 8 um, in um, 3 um/V, uN um")).toBe(
+    "displacement beyond 8\u00a0µm, in µm, 3\u00a0µm/V, µN µm",
+  );
+  expect(micro("set reference.amplitude_um = 1, tell us, drum")).toBe("set reference.amplitude_um = 1, tell us, drum");
+});
+
+it("knows what a figure cannot pass: 0 for counts and sizes, 1 for shares", () => {
+  expect(metricLimits("diagnosis.kalman.false_switches")).toEqual([0, Number.POSITIVE_INFINITY]);
+  expect(metricLimits("control.rms_error_um")?.[0]).toBe(0);
+  expect(metricLimits("diagnosis.kalman.correct_fraction")).toEqual([0, 1]);
+  expect(metricLimits("rate.scale_error_pct")).toBeUndefined();
 });

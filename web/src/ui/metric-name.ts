@@ -40,6 +40,16 @@ export function metricScale(metric: string, values: readonly (number | null | un
   return { name, unit, title: unit ? `${name}, ${unit}` : name, shown };
 }
 
+const COUNTED = new Set(names.counted);
+const FROM_ZERO: [number, number] = [0, Number.POSITIVE_INFINITY];
+const SHARE: [number, number] = [0, 1];
+
+/** What a figure cannot pass: 0 for counts, times and sizes, 1 for shares too; undefined where it may be anything. */
+export function metricLimits(metric: string): [number, number] | undefined {
+  if (metric.endsWith("_fraction")) return SHARE;
+  return metric.split(/[._]/).some((word) => COUNTED.has(word)) ? FROM_ZERO : undefined;
+}
+
 /** A metric in words with the unit its name ends in: "control.rms_error_um" reads "rms error, µm". */
 export const metricTitle = (metric: string): string => metricScale(metric, []).title;
 
@@ -64,9 +74,6 @@ function partsOf(metric: string): { name: string; unit: string } {
   }
   return { name: said.join(": "), unit };
 }
-
-/** A text of the library with its units as they are printed: "20 us" reads "20 µs". */
-export const micro = (text: string): string => text.replace(/(\d)\s?u([msNVg])\b/g, "$1\u00a0µ$2");
 
 /** The words of a piece, and the unit its longest ending names: V/µm before µm. */
 function withoutUnit(piece: string): { words: string; unit: string } {

@@ -11,6 +11,7 @@ import { startLecture } from "../../bench/lecture";
 import { openBench, ownBench } from "../../bench/open-bench";
 import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
+import { staleWords, useStaleSince } from "../../stream/freshness";
 import { formatShort } from "../../ui/format";
 import styles from "./header.module.css";
 
@@ -20,12 +21,12 @@ export function BenchMenu() {
   const title = useBench((s) => s.bench?.title);
   const rate = useBench((s) => s.bench?.sample_rate_khz);
   const watchers = useBench((s) => s.bench?.watchers ?? 0);
-  const closed = useBench((s) => s.connection.phase === "closed");
-  const slow = useSlowPage() && !closed;
+  const stale = useStaleSince();
+  const slow = useSlowPage() && !stale;
   const drives = useMay("drive");
   const teaches = useMay("teach");
   const [benches, setBenches] = useState<Bench[]>([]);
-  const now = closed ? "not connected" : slow ? "this page is slow" : `${watchers} watching`;
+  const now = stale ? staleWords(stale) : slow ? "this page is slow" : `${watchers} watching`;
   const load = () => api.benches().then(setBenches, showError);
 
   return (
@@ -34,7 +35,7 @@ export function BenchMenu() {
         <UnstyledButton className={styles.bench} title={`${title ?? "No bench"}: change bench`}>
           <span>{title ?? "No bench"} </span>
           <small data-slow={slow}>
-            {rate ? `${formatShort(rate, "kHz")} board · ${now}` : closed ? "not connected" : "connecting"}
+            {rate ? `${formatShort(rate, "kHz")} board · ${now}` : stale ? "not connected" : "connecting"}
             <IconChevronDown size={12} style={{ verticalAlign: -2 }} />
           </small>
         </UnstyledButton>

@@ -10,6 +10,7 @@ import { actions } from "../../bench/actions";
 import styles from "../../panels/controllers/controllers.module.css";
 import { slotTitle } from "../../panels/controllers/slots";
 import { useBench } from "../../stream/bench-store";
+import { useBoardState } from "../../stream/freshness";
 import { Prose } from "../../ui/prose";
 
 /**
@@ -28,7 +29,7 @@ export function ControllerSelect() {
 function SlotSelect({ slot, active }: { slot: string; active: string | undefined }) {
   const controllers = useBench((s) => s.bench?.controllers);
   const replay = useBench((s) => Boolean(s.bench?.replay_of));
-  const closed = useBench((s) => s.connection.phase === "closed");
+  const unknown = useBoardState() === undefined;
   const drives = useMay("drive");
   const input = useRef<HTMLInputElement>(null);
   const { blocks } = useCatalog();
@@ -43,7 +44,7 @@ function SlotSelect({ slot, active }: { slot: string; active: string | undefined
       title={slotTitle(slot)}
       allowDeselect={false}
       value={active ?? null}
-      disabled={!controllers || replay || closed || !drives}
+      disabled={!controllers || replay || unknown || !drives}
       data={laws.map(({ name, title }) => ({ value: name, label: title }))}
       renderOption={({ option }) => <ControllerWords law={laws.find((b) => b.name === option.value)} />}
       onChange={(name) => name && name !== active && actions.controller(name)}

@@ -9,13 +9,15 @@ import {
 import type { ReactNode } from "react";
 import { actions } from "../../bench/actions";
 import { useBench } from "../../stream/bench-store";
+import { useBoardState } from "../../stream/freshness";
 import styles from "./header.module.css";
 
 /** Run, pause, step a tick, step a period, reset. */
 export function RunControls() {
-  const closed = useBench((s) => s.connection.phase === "closed");
-  const running = useBench((s) => s.bench?.state === "running") && !closed;
-  const stuck = useBench((s) => s.bench?.state === "tripped") || closed;
+  const state = useBoardState();
+  const unknown = state === undefined;
+  const running = state === "running";
+  const stuck = state === "tripped" || unknown;
   const period = useBench((s) => s.bench?.drive_period_ticks ?? null);
   return (
     <div className={styles.run}>
@@ -43,7 +45,7 @@ export function RunControls() {
       >
         <IconPlayerTrackNext size={18} />
       </Small>
-      <Small label="Reset to the start (shift R)" name="Reset" onClick={actions.reset} disabled={closed}>
+      <Small label="Reset to the start (shift R)" name="Reset" onClick={actions.reset} disabled={unknown}>
         <IconRotate size={18} />
       </Small>
     </div>

@@ -1,14 +1,14 @@
 import { useBench } from "../../stream/bench-store";
+import { useBoardState, useStaleSince } from "../../stream/freshness";
 import styles from "./header.module.css";
 
 const WORDS = { running: "running", paused: "paused", tripped: "tripped" } as const;
 
 /** What the board does right now, or that we do not know. */
 export function StateBadge() {
-  const state = useBench((s) => s.bench?.state);
+  const shown = useBoardState();
   const phase = useBench((s) => s.connection.phase);
-  const stale = useBench((s) => s.connection.staleSince !== undefined);
-  const shown = phase === "open" && !stale ? state : undefined;
+  const stale = useStaleSince() !== undefined;
   const word = shown
     ? WORDS[shown]
     : phase === "waiting"

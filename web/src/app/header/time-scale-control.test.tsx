@@ -53,14 +53,14 @@ it.each([
   expect(words()).not.toContain("fast");
 });
 
-it("says the state of the bench, and that it is not known while the connection is lost", async () => {
+it("says the state of the bench, and that it is not known once the connection is closed", async () => {
   const board = connect(running);
   mount(<StateBadge />);
   const badge = screen.getByTestId("bench-state");
   expect(badge).toHaveTextContent("running");
   board.status({ state: "tripped" });
   expect(badge).toHaveTextContent("tripped");
-  await board.drop();
-  expect(badge).toHaveTextContent("reconnecting");
+  await board.drop(4403);
+  expect(badge).toHaveTextContent("not connected");
   expect(badge).toHaveAttribute("data-state", "unknown");
 });

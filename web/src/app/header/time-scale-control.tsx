@@ -12,6 +12,7 @@ import {
   timeScaleToSlider,
 } from "../../bench/time-scale";
 import { useBench } from "../../stream/bench-store";
+import { useBoardState } from "../../stream/freshness";
 import { Slider } from "../../ui/slider";
 import styles from "./header.module.css";
 
@@ -23,16 +24,17 @@ const FAST = { quiet_lead: "quiet lead, fast", skip: "skips, fast" };
 export function TimeScaleControl() {
   const target = useBench((s) => s.bench?.time_scale ?? null);
   const achieved = useBench((s) => s.bench?.achieved_scale ?? 0);
-  const closed = useBench((s) => s.connection.phase === "closed");
-  const capped = useBench((s) => s.bench?.capped ?? false) && !closed;
-  const running = useBench((s) => s.bench?.state === "running") && !closed;
+  const state = useBoardState();
+  const unknown = state === undefined;
+  const capped = useBench((s) => s.bench?.capped ?? false) && !unknown;
+  const running = state === "running";
   const fast = useBench((s) => s.bench?.fast_forward);
   const [draft, setDraft] = useState<number | undefined>(undefined);
   const wanted = draft === undefined ? target : sliderToTimeScale(draft);
   const shown = draft ?? timeScaleToSlider(target);
 
   return (
-    <fieldset className={styles.scale} aria-label="Time scale" disabled={closed}>
+    <fieldset className={styles.scale} aria-label="Time scale" disabled={unknown}>
       <Tooltip label="Half as fast ( [ )">
         <ActionIcon
           variant="subtle"
@@ -49,7 +51,7 @@ export function TimeScaleControl() {
             <span>{target === null ? "max" : formatTimeScale(target)}</span>
             <small data-capped={capped} data-idle={!running}>
               {capped && <b>CAPPED </b>}
-              {closed
+              {unknown
                 ? "not connected"
                 : running && fast
                   ? FAST[fast]

@@ -1,10 +1,10 @@
 import { Button } from "@mantine/core";
 import { IconCheck, IconClock, IconX } from "@tabler/icons-react";
 import { useMay } from "../../api/me";
+import { micro } from "../../api/micro";
 import type { Claim, ClaimList } from "../../api/types";
 import { addScope } from "../../bench/dock";
 import { placeIn } from "../../bench/printed";
-import { micro } from "../../ui/metric-name";
 import { Verdict } from "../../ui/verdict";
 import { partnersOf } from "./claim-signals";
 import { claimWords, stateWords } from "./claim-words";

@@ -1,11 +1,11 @@
 import { Checkbox } from "@mantine/core";
 import { useState } from "react";
+import { micro } from "../../api/micro";
 import type { ClaimList } from "../../api/types";
 import { showPrinted, usePrinted } from "../../bench/printed";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatSi } from "../../ui/format";
-import { micro } from "../../ui/metric-name";
 import { Verdict } from "../../ui/verdict";
 import { ClaimCard } from "./claim-card";
 import styles from "./claims.module.css";

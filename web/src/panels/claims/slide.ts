@@ -1,3 +1,4 @@
+import { micro } from "../../api/micro";
 import type { Claim, ClaimList } from "../../api/types";
 import { placeIn } from "../../bench/printed";
 import { paintLegend } from "../../picture/legend";
@@ -5,7 +6,6 @@ import type { Pen } from "../../picture/pen";
 import { SvgPen } from "../../picture/svg-pen";
 import { paintRule } from "../../picture/traces";
 import { formatNumber } from "../../ui/format";
-import { micro } from "../../ui/metric-name";
 import { CANVAS, fontFor } from "../../ui/palette";
 import { type ScopeShown, scopePicture } from "../scope/paint-scope";
 import { claimWords, stateWords } from "./claim-words";

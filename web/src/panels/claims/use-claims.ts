@@ -3,6 +3,7 @@ import { type Answer, useAnswer, useLast } from "../../api/queries";
 import type { ClaimList } from "../../api/types";
 import { useRun } from "../../bench/printed";
 import { useBench } from "../../stream/bench-store";
+import { useBoardState } from "../../stream/freshness";
 
 const EVERY_MS = 1000;
 
@@ -10,7 +11,7 @@ const EVERY_MS = 1000;
 export function useClaims(): Answer<ClaimList> {
   const run = useRun();
   const id = useBench((s) => s.bench?.id) ?? "";
-  const isRunning = useBench((s) => s.bench?.state === "running");
+  const isRunning = useBoardState() === "running";
   const tick = useBench((s) => (s.bench?.state === "running" ? undefined : s.bench?.tick));
   const answer = useAnswer(
     run && ["claims", ...run, tick],

@@ -32,6 +32,7 @@ it("lists the controllers of the bench, and sends the one that is chosen", async
       .map(({ value }) => value)
       .sort(),
   ).toEqual([...bench.controllers].sort());
+  expect(screen.getByRole("radiogroup", { name: "Controller" })).toBeVisible();
   expect(radio("open_loop")).toBeChecked();
   await user.click(radio("mrac"));
   expect(board.commands).toEqual([{ switch: "mrac", cold: false }]);

@@ -62,7 +62,8 @@ export function ControllersPanel() {
               Parameters
             </Button>
             <Radio.Group
-              aria-label={slotTitle(slot)}
+              label={slotTitle(slot)}
+              labelProps={{ className: "visually-hidden" }}
               value={active}
               onChange={(name) => name !== active && actions.controller(name)}
             >

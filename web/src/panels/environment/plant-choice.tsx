@@ -37,7 +37,8 @@ export function PlantChoice() {
   return (
     <>
       <Radio.Group
-        aria-label="Plant"
+        label="Plant"
+        labelProps={{ className: "visually-hidden" }}
         value={model}
         onChange={(name) =>
           void send({ set: { "plant.model": name } }, `Plant: ${block("plant", name)?.title ?? name}`)

@@ -6,6 +6,7 @@ import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { Knob } from "../../ui/knob";
+import { foundDelays, meanDelay } from "../lanes/delays";
 import { type Lab, type LabKnob, labsOf, memorySamples } from "./lab-knobs";
 import styles from "./labs.module.css";
 
@@ -106,8 +107,7 @@ function Outcome({ id }: { id: string }) {
   const score = useBench((s) => s.scores[id]);
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   if (!score) return null;
-  const found = score.delays.filter((d) => d !== null);
-  const mean = found.reduce((sum, d) => sum + d, 0) / found.length;
+  const mean = meanDelay(foundDelays(score.delays));
   return (
     <dl className={styles.outcome}>
       <div>
@@ -116,7 +116,7 @@ function Outcome({ id }: { id: string }) {
       </div>
       <div>
         <dt>mean delay</dt>
-        <dd>{found.length ? formatSi(mean * dtMs, "ms", 3) : "–"}</dd>
+        <dd>{mean === undefined ? "–" : formatSi(mean * dtMs, "ms", 3)}</dd>
       </div>
       <div>
         <dt>false switches</dt>

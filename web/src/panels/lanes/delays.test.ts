@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import { logEntry } from "../../stream/log-entry.fixture";
-import { racePlaces, truthSwitches } from "./delays";
+import { foundDelays, meanDelay, racePlaces, truthSwitches } from "./delays";
 
 const entry = (tick: number, kind: string, text: string, old: unknown, fresh: unknown) =>
   logEntry({ seq: tick, tick, kind, text, old, new: fresh, actor: "board" });
@@ -55,6 +55,16 @@ it("ranks by the delay of the latest change; who has not found it has no place",
       other: [change(500, 30)],
     }),
   ).toEqual({ imm: 1, kalman: 2, other: 2 });
+});
+
+it("gives no place to a diagnoser that said so before: one that never leaves healthy is not the first", () => {
+  const healthy = (delay: number) => ({ ...change(700, delay), label: "healthy" });
+  expect(racePlaces({ printed: [healthy(0)], mended: [healthy(13)], slow: [healthy(20)] })).toEqual({
+    mended: 1,
+    slow: 2,
+  });
+  expect(foundDelays([25, null, 0, 13])).toEqual([25, 13]);
+  expect(meanDelay(foundDelays([0, null]))).toBeUndefined();
 });
 
 it("gives no places before anything has changed", () => expect(racePlaces({ kalman: [] })).toEqual({}));

@@ -4,11 +4,18 @@ import type { LogEntry } from "../../api/types";
 export interface TruthSwitch {
   tick: number;
   label: string;
-  /** Samples, or undefined while (or if never) found. */
+  /** Samples, or undefined while (or if never) found; 0 where the diagnoser said so already and found nothing. */
   delay: number | undefined;
   /** Whether the truth is among the hypotheses at all; if not, there is nothing to find. */
   findable: boolean;
 }
+
+/** The delays of the changes that a diagnoser has found, in samples; without those that it named before they came. */
+export const foundDelays = (delays: readonly (number | null)[]): number[] => delays.flatMap((delay) => delay || []);
+
+/** The mean of some delays in samples; undefined without any. */
+export const meanDelay = (found: readonly number[]): number | undefined =>
+  found.length > 0 ? found.reduce((sum, d) => sum + d, 0) / found.length : undefined;
 
 const NONE = "none of the hypotheses";
 
@@ -34,12 +41,15 @@ export function truthSwitches(events: readonly LogEntry[], diagnoser: string): T
   return found;
 }
 
-/** Who found the latest change of the truth first: places by delay, equal delays share one; the rest have none. */
+/**
+ * Places by the delay of the latest change of the truth; equal delays share one. A diagnoser that has not found it has
+ * none, and neither has one that said so before: a bank that never leaves "healthy" is not quick.
+ */
 export function racePlaces(switches: Record<string, TruthSwitch[]>): Record<string, number> {
   const latest = Math.max(...Object.values(switches).map((list) => list.at(-1)?.tick ?? -1));
   const found = Object.entries(switches).flatMap(([id, list]) => {
     const last = list.at(-1);
-    return last && last.tick === latest && last.delay !== undefined ? [{ id, delay: last.delay }] : [];
+    return last && last.tick === latest && last.delay ? [{ id, delay: last.delay }] : [];
   });
   return Object.fromEntries(found.map(({ id, delay }) => [id, 1 + found.filter((f) => f.delay < delay).length]));
 }

@@ -1,4 +1,5 @@
 import { Tooltip } from "@mantine/core";
+import type { Score } from "../../api/types";
 import { hypothesisWords } from "../../bench/hypothesis-words";
 import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
@@ -13,7 +14,7 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
   const last = switches.at(-1);
   const winner = typeof score?.winner === "number" ? names[score.winner] : score?.winner;
   const stopped = useBench((s) => s.bench?.state === "tripped");
-  const right = score !== undefined && score.winner === score.truth && !score.unexplained;
+  const right = score !== undefined && isRight(score);
   return (
     <dl className={styles.headline}>
       <div>
@@ -49,10 +50,15 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
   );
 }
 
+/** Whether a verdict is that of the truth; where no hypothesis is true, none is right. */
+export const isRight = ({ winner, truth, unexplained }: Score): boolean =>
+  truth >= 0 && winner === truth && !unexplained;
+
 function delayText(last: TruthSwitch | undefined, dtMs: number): string {
   if (!last) return "–";
   if (!last.findable) return "not among the hypotheses";
   if (last.delay === undefined) return "not found yet";
+  if (last.delay === 0) return "said before";
   return `${formatCount(last.delay, "sample")} · ${formatSi(last.delay * dtMs, "ms", 3)}`;
 }
 

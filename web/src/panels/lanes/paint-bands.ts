@@ -137,6 +137,7 @@ export function paintDelays(ctx: Pen, picture: LanesGround, x: (tick: number) =>
 function delayWords({ delay, findable }: TruthSwitch, dtMs: number): string[] {
   if (!findable) return ["not among the hypotheses", "not among them", "none"];
   if (delay === undefined) return ["not found yet", "not yet"];
+  if (delay === 0) return ["said before", "before"];
   const time = formatSi(delay * dtMs, "ms", 3);
   return [
     `${formatCount(delay, "sample")} · ${time}`,

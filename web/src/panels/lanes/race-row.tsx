@@ -7,9 +7,9 @@ import type { Box, Look, Pen } from "../../picture/pen";
 import { useBench } from "../../stream/bench-store";
 import { formatNumber, formatPercent, formatSi } from "../../ui/format";
 import type { Contestant } from "./contestants";
-import type { TruthSwitch } from "./delays";
+import { foundDelays, meanDelay, type TruthSwitch } from "./delays";
 import { LaneCanvas, type LaneShown } from "./lane-canvas";
-import { FitsNone } from "./lanes-headline";
+import { FitsNone, isRight } from "./lanes-headline";
 import { paintRow, type RaceShown } from "./paint-race";
 import styles from "./race.module.css";
 import type { LaneTime } from "./use-lane-time";
@@ -76,15 +76,17 @@ function Verdict({ contestant: { id, names } }: { contestant: Contestant }) {
   const score = useBench((s) => s.scores[id]);
   if (!score) return null;
   return (
-    <strong
-      className={styles.verdict}
-      title={names[score.winner]}
-      data-right={score.winner === score.truth && !score.unexplained}
-    >
+    <strong className={styles.verdict} title={names[score.winner]} data-right={isRight(score)}>
       {names[score.winner] === undefined ? "–" : hypothesisWords(names[score.winner])}
       {score.unexplained && <FitsNone least={score.least_nis} />}
     </strong>
   );
+}
+
+function lastDelay(last: TruthSwitch | undefined, dtMs: number): string {
+  if (!last?.findable) return "–";
+  if (last.delay === undefined) return "not yet";
+  return last.delay === 0 ? "said before" : formatSi(last.delay * dtMs, "ms", 3);
 }
 
 /** The row's part of the scoreboard. */
@@ -93,8 +95,7 @@ function Figures({ id, switches, place }: { id: string; switches: TruthSwitch[];
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   if (!score) return <dl className={styles.figures} />;
   const last = switches.at(-1);
-  const found = score.delays.filter((d) => d !== null);
-  const mean = found.reduce((sum, d) => sum + d, 0) / found.length;
+  const mean = meanDelay(foundDelays(score.delays));
   return (
     <dl className={styles.figures}>
       <div>
@@ -104,13 +105,13 @@ function Figures({ id, switches, place }: { id: string; switches: TruthSwitch[];
       <div>
         <dt>last delay</dt>
         <dd data-place={place}>
-          {last?.delay === undefined ? (last?.findable ? "not yet" : "–") : formatSi(last.delay * dtMs, "ms", 3)}
+          {lastDelay(last, dtMs)}
           {place !== undefined && <b>{ORDINAL[place] ?? `${place}th`}</b>}
         </dd>
       </div>
       <div>
         <dt>mean delay</dt>
-        <dd>{found.length ? formatSi(mean * dtMs, "ms", 3) : "–"}</dd>
+        <dd>{mean === undefined ? "–" : formatSi(mean * dtMs, "ms", 3)}</dd>
       </div>
       <div>
         <dt>false switches</dt>

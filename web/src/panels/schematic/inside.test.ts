@@ -84,3 +84,7 @@ describe("the inside of a block", () => {
     expect(y("residual")).toBeLessThan(y("probability"));
   });
 });
+
+it("has no size where a block does not say what it is made of", () => {
+  expect(insideOf({ ...BANK, structure: [] }, quantity)).toMatchObject({ width: 0, height: 0, stages: [], lines: [] });
+});

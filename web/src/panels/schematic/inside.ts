@@ -93,9 +93,10 @@ export function insideOf(block: BlockCard, quantity: (name: string) => Quantity)
     return { x: x - width / 2, y: y - height / 2, width, height };
   };
   const { width = 0, height = 0 } = graph.graph() as Partial<Place>;
+  const isEmpty = block.structure.length === 0; // a graph of nothing has no finite size
   return {
-    width,
-    height,
+    width: isEmpty ? 0 : width,
+    height: isEmpty ? 0 : height,
     stages: block.structure.map(({ title }, stage) => ({ title, stage, ...place(`stage ${stage}`) })),
     quantities: [...quantities].map(([name, found]) => ({ ...found, ...place(`of ${name}`) })),
     lines: graph.edges().map(({ v, w }) => ({

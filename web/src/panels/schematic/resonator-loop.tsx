@@ -1,6 +1,7 @@
 import { useMemo } from "react";
 import type { Bench } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
+import { hypothesisWords } from "../../bench/hypothesis-words";
 import { useBench } from "../../stream/bench-store";
 import { useInstances } from "../card/instances";
 import { boxOf, FAULT_ARROWS, type LoopBox } from "./loop";
@@ -61,7 +62,7 @@ export function ResonatorLoop({ controller, diagnosers, structure }: ResonatorLo
           kind: kind(box),
           card: cards[box.id],
           faulty: faulted.has(box.id),
-          says: box.id === "diagnosis" ? verdict : undefined,
+          says: box.id === "diagnosis" ? hypothesisWords(verdict) : undefined,
         })),
         ...structure.extra.map((box) => ({ ...box, card: box.card ?? cards.controller, faulty: false })),
       ]}

@@ -79,8 +79,21 @@ it("shows the newest values with their units, and the verdict in words", async (
   await drawOnce();
   const texts = [...loop().querySelectorAll("text")].map((one) => one.textContent);
   expect(texts).toEqual(
-    expect.arrayContaining([expect.stringMatching(/^7\.25\sV$/), expect.stringMatching(/^−1\.50\sµm$/), "m+5"]),
+    expect.arrayContaining([
+      expect.stringMatching(/^7\.25\sV$/),
+      expect.stringMatching(/^−1\.50\sµm$/),
+      expect.stringMatching(/^mass \+5\s%$/),
+    ]),
   );
+});
+
+it("says nothing of a value before the first sample: that is not a value that is not finite", async () => {
+  const { board } = await mountPanel();
+  board.frame({ "reference.voltage": () => 7.25 }, { head: 0 });
+  await drawOnce();
+  const texts = [...loop().querySelectorAll("text")].map((one) => one.textContent);
+  expect(texts).toContain("–");
+  expect(texts).not.toContain("not finite");
 });
 
 it("marks the box a fault is seen on, and names the fault", async () => {

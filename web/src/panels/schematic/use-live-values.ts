@@ -42,6 +42,10 @@ export function useLiveValues(shown: Record<string, string>, say?: (key: string,
         const high = Math.max(Math.abs(frame.data[i * 2 * frame.columns]) || 0, Math.abs(value) || 0);
         const element = elements.current.get(key);
         if (!element) return;
+        if (frame.endTick <= 0) {
+          element.textContent = "–"; // no sample has come: that says nothing of the value
+          return;
+        }
         if (!Number.isFinite(value) || high > IMMENSE) {
           element.textContent = "not finite";
           return;

@@ -1,7 +1,7 @@
 import { Checkbox } from "@mantine/core";
+import { micro } from "../../api/micro";
 import type { PrintedMark } from "../../api/types";
 import { placeIn, showPrinted, usePrinted } from "../../bench/printed";
-import { micro } from "../../ui/metric-name";
 import styles from "./scope.module.css";
 
 /** What is printed of the signals of a scope, in words, and the switch that takes it out of the picture. */

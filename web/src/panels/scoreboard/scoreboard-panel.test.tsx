@@ -33,7 +33,7 @@ it("shows the new score when it comes", () => {
 it("says that there is no score yet", () => {
   connect(bench);
   mount(<ScoreboardPanel />);
-  expect(screen.getByText("No score yet")).toBeVisible();
+  expect(screen.getByText("No score")).toBeVisible();
 });
 
 it("is a region that keys reach, for it scrolls", async () => {

@@ -2,6 +2,7 @@ import { useBench } from "../../stream/bench-store";
 import { Confusion } from "../../ui/confusion";
 import { EmptyState } from "../../ui/empty-state";
 import { formatNumber, formatPercent, formatSi } from "../../ui/format";
+import { foundDelays, meanDelay } from "../lanes/delays";
 import styles from "./scoreboard.module.css";
 
 /** Each diagnoser against the truth the bench knows. */
@@ -12,7 +13,11 @@ export function ScoreboardPanel() {
   const entries = Object.entries(scores);
   if (entries.length === 0)
     return (
-      <EmptyState title="No score yet">A diagnoser is scored from its first sample on; this bench has none.</EmptyState>
+      <EmptyState title="No score">
+        {Object.keys(diagnosers ?? {}).length > 0
+          ? "Each diagnoser is scored from its first sample on; none has judged a sample yet."
+          : "This bench has no diagnoser. The panel Diagnosis adds one."}
+      </EmptyState>
     );
   return (
     // biome-ignore lint/a11y/noNoninteractiveTabindex: a region that scrolls is reached by the keyboard
@@ -29,18 +34,18 @@ export function ScoreboardPanel() {
         </thead>
         <tbody>
           {entries.map(([id, score]) => {
-            const found = score.delays.filter((d) => d !== null);
-            const mean = found.reduce((sum, d) => sum + d, 0) / found.length;
+            const missed = score.delays.filter((d) => d === null).length;
+            const mean = meanDelay(foundDelays(score.delays));
             return (
               <tr key={id}>
                 <th scope="row">{id.replaceAll("_", " ")}</th>
                 <td>{formatPercent(score.correct_fraction, 2)}</td>
                 <td>
-                  {found.length ? formatNumber(mean, 1) : "–"}
-                  {found.length > 0 && <small>samples, {formatSi(mean * dtMs, "ms", 3)}</small>}
+                  {mean === undefined ? "–" : formatNumber(mean, 1)}
+                  {mean !== undefined && <small>samples, {formatSi(mean * dtMs, "ms", 3)}</small>}
                 </td>
                 <td>
-                  {score.delays.length - found.length} of {score.delays.length}
+                  {missed} of {score.delays.length}
                 </td>
                 <td>{formatNumber(score.false_switches, 0)}</td>
               </tr>

@@ -49,7 +49,8 @@ export function SetDifference({ first, others, onClose }: SetDifferenceProps) {
         ) : (
           <table>
             <caption>
-              {formatCount(answer.rows.length, "value")} differ, {answer.same} are the same
+              {formatCount(answer.rows.length, "value")} {answer.rows.length === 1 ? "differs" : "differ"},{" "}
+              {answer.same} {answer.same === 1 ? "is" : "are"} the same
             </caption>
             <thead>
               <tr>

@@ -65,7 +65,7 @@ it("says at its field why an answer cannot be read", async () => {
   const { user } = await mountPage();
   await user.type(screen.getByRole("textbox", { name: "How large?" }), "3");
   await user.click(screen.getByRole("button", { name: "Answer" }));
-  expect(await screen.findByText("The answer has no unit; Write 3 um.")).toBeVisible();
+  expect(await screen.findByText("The answer has no unit; Write 3 µm.")).toBeVisible();
   expect(screen.getByRole("textbox", { name: "How large?" })).toBeInvalid();
 });
 

@@ -82,7 +82,7 @@ export function StepView({ step, isOpen, actions }: StepProps) {
   );
 }
 
-/** What is measured and what it is to be; how long it holds of how long it is to. */
+/** The quantities, the range of each, a tick where it holds; how long they hold of how long they have to. */
 function Conditions({ step, isOpen }: { step: SheetStep; isOpen: boolean }) {
   return (
     <>
@@ -91,7 +91,12 @@ function Conditions({ step, isOpen }: { step: SheetStep; isOpen: boolean }) {
           <li key={label} data-holds={holds}>
             <span aria-hidden="true">{holds ? "✓" : "○"}</span>
             <span>
-              {label}: <b>{hypothesisWords(now)}</b>
+              {label}
+              {now && (
+                <>
+                  : <b>{hypothesisWords(now)}</b>
+                </>
+              )}
               {wanted && ` (wanted: ${hypothesisWords(wanted)})`}
               <span className={styles.unseen}>{holds ? ", holds" : ", does not hold yet"}</span>
             </span>
@@ -130,7 +135,13 @@ function AnswerForm({ step, actions }: { step: SheetStep; actions: StepActions }
   return (
     <form className={styles.form} onSubmit={(event) => void take(event)}>
       {options.length > 0 ? (
-        <Radio.Group aria-label={step.question} value={text} onChange={setText} error={wrong || undefined}>
+        <Radio.Group
+          label={step.question}
+          labelProps={{ className: "visually-hidden" }}
+          value={text}
+          onChange={setText}
+          error={wrong || undefined}
+        >
           <div className={styles.options}>
             {options.map(([id, words]) => (
               <Radio key={id} value={id} label={words} />

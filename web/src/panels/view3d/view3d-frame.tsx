@@ -2,11 +2,12 @@ import { useEffect, useRef, useState } from "react";
 import { ticketed } from "../../api/launch";
 import { isInFrame, sessionHeaders } from "../../api/session";
 import { useView } from "../../bench/view-store";
-import { useBench } from "../../stream/bench-store";
+import { staleWords, useStaleSince } from "../../stream/freshness";
 import { hover } from "../../ui/hover";
 import { usePageVisible } from "../../ui/on-screen";
 import { useScheme } from "../../ui/use-canvas";
 import styles from "./view3d.module.css";
+import { softwareGl, useSceneFailed } from "./webgl";
 
 const POLL_MS = 1000;
 /** The traces come first: loading the 3D page holds the main thread for a while. */
@@ -30,8 +31,7 @@ interface Look {
  * lose it.
  */
 export function View3dFrame({ path, visible: inSight }: { path: string; visible: boolean }) {
-  const waiting = useBench((s) => s.connection.phase === "waiting");
-  const gone = useBench((s) => s.connection.phase === "closed");
+  const stale = useStaleSince();
   const scheme = useScheme();
   const fontPx = useView((s) => s.fontPx);
   const frame = useRef<HTMLIFrameElement>(null);
@@ -63,6 +63,7 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
       if (event.source !== frame.current?.contentWindow || event.origin !== window.location.origin) return;
       const { viser: state, look: moved } = (event.data ?? {}) as { viser?: string; look?: Look };
       if (moved) look.current = moved;
+      if (state === "failed") useSceneFailed.setState({ failed: true });
       if (state === "closed") setClosed(true);
       if (state === "connected") {
         setClosed(false);
@@ -74,7 +75,7 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
   }, []);
 
   useEffect(() => {
-    if (!closed || !visible || gone) return;
+    if (!closed || !visible || stale) return;
     const timer = setInterval(async () => {
       const answer = await fetch(path, { headers: sessionHeaders() }).catch(() => undefined);
       if (!answer?.ok) return;
@@ -82,7 +83,7 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
       setLoads((n) => n + 1);
     }, POLL_MS);
     return () => clearInterval(timer);
-  }, [closed, path, visible, gone]);
+  }, [closed, path, visible, stale]);
 
   const tell = (message: { scheme?: string; fontPx?: number; camera?: Camera; look?: Look; tick?: number | null }) =>
     frame.current?.contentWindow?.postMessage(message, window.location.origin);
@@ -118,9 +119,9 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
           </button>
         ))}
       </fieldset>
-      {closed || waiting || gone ? (
+      {closed || stale ? (
         <div className={styles.veil} role="status">
-          {gone ? "The 3D view is not connected" : "The 3D view waits for the server"}
+          {stale ? `The 3D view is ${staleWords(stale)}` : "The 3D view waits for the server"}
         </div>
       ) : (
         connected === 0 && (
@@ -187,19 +188,6 @@ function query(scheme: string): URLSearchParams {
   const wanted = new URLSearchParams({ hideViserLogo: "1", fixedDpr: String(ratio) });
   if (scheme === "dark") wanted.set("darkMode", "1");
   return wanted;
-}
-
-let known: boolean | undefined;
-
-/** Whether WebGL is drawn by the processor here, which makes every pixel dear. */
-export function softwareGl(): boolean {
-  if (known !== undefined) return known;
-  const gl = document.createElement("canvas").getContext("webgl");
-  const info = gl?.getExtension("WEBGL_debug_renderer_info");
-  const renderer = gl && info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
-  gl?.getExtension("WEBGL_lose_context")?.loseContext();
-  known = /swiftshader|llvmpipe|software/i.test(renderer);
-  return known;
 }
 
 /** Where to look at the device from; the 3D page knows each by its name. */

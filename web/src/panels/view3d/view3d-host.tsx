@@ -5,6 +5,7 @@ import { stream } from "../../stream/stream";
 import { useChanged } from "../../ui/use-changed";
 import styles from "./view3d.module.css";
 import { View3dFrame } from "./view3d-frame";
+import { useWebgl } from "./webgl";
 
 /**
  * The 3D view, kept outside the dock and laid over the panel that is in sight.
@@ -14,6 +15,7 @@ import { View3dFrame } from "./view3d-frame";
 export function View3dHost() {
   // the scene tells which fault acts, so nothing is kept of it while the fault is to be found
   const path = useBench((s) => (s.blind ? undefined : s.bench?.view3d));
+  const drawn = useWebgl();
   const host = useRef<HTMLElement>(null);
   const [visible, setVisible] = useChanged(false);
   useEffect(() => {
@@ -21,8 +23,11 @@ export function View3dHost() {
     let laid: HTMLElement | undefined;
     let place = "";
     const stop = stream.loop.add(() => {
-      const places = usePlaces.getState().places.map((place) => place.getBoundingClientRect());
-      const rect = places.findLast(({ width, height }) => width > 0 && height > 0);
+      const { places, shown } = usePlaces.getState();
+      const rects = places.map((place) => place.getBoundingClientRect());
+      const at = rects.findLastIndex(({ width, height }) => width > 0 && height > 0);
+      const rect = rects[at];
+      if (places[at] !== shown) usePlaces.setState({ shown: places[at] });
       setVisible(rect !== undefined);
       if (!rect || !host.current) return;
       const wanted = `${rect.left}px ${rect.top}px ${rect.width}px ${rect.height}px`;
@@ -34,10 +39,10 @@ export function View3dHost() {
     });
     return () => {
       stop();
-      usePlaces.setState({ hosted: false });
+      usePlaces.setState({ hosted: false, shown: undefined });
     };
   }, [setVisible]);
-  if (!path) return null;
+  if (!path || !drawn) return null;
   return (
     <section ref={host} className={styles.host} aria-label="3D view" hidden={!visible}>
       <View3dFrame key={path} path={`.${path}`} visible={visible} />
@@ -50,10 +55,12 @@ interface Places {
   hosted: boolean;
   /** Panels that offer their place, the latest last. */
   places: HTMLElement[];
+  /** The place that has the 3D view. */
+  shown: HTMLElement | undefined;
 }
 
 /** Where the 3D view may be shown. */
-export const usePlaces = create<Places>(() => ({ hosted: false, places: [] }));
+export const usePlaces = create<Places>(() => ({ hosted: false, places: [], shown: undefined }));
 
 /** Offer the place of a panel; returns what takes the offer back. */
 export function offerPlace(place: HTMLElement): () => void {
