@@ -20,6 +20,7 @@ from core.nesting import read_toml
 from core.own.admission import check_admitted
 from core.own.apart import compile_by
 from core.table import Table
+from scenarios.comparator import NONE, Comparator
 from scenarios.expectation import Expectation, Verdict, overall
 from scenarios.measure.stretch import Stretch
 from scenarios.own import compile_apart
@@ -45,9 +46,16 @@ class Head(Table):
     duration_ms: float | None = Field(None, gt=0, le=LONGEST_MS)
     events: list[dict[str, Any]] = Field([], max_length=100_000)
     expect: list[Expectation] = Field([], max_length=1000)
+    comparator: Comparator | None = None
     printed: list[Printed] = Field([], max_length=200)
     metrics: Stretch = Stretch()
     study: dict[str, Any] | None = None
+
+    def compared_with(self, entry: Expectation) -> str:
+        """Name the PID that an expectation is compared with; nothing where it is compared with none."""
+        if entry.compare != "pid":
+            return ""
+        return self.comparator.name if self.comparator is not None else NONE
 
 
 HEAD = tuple("schema" if name == "schema_" else name for name in Head.model_fields)
