@@ -53,11 +53,6 @@ ANY = {
 }
 """Fields of rows that need no such number to agree with the text: they do at each of these values too."""
 PRINTED = {
-    (
-        "ch5-adaptive-forgetting",
-        "diagnosis.fixed.delay_samples.2",
-        "adaptation",
-    ): "fixed",  # 5.4.2: a fixed factor of 0.8
     ("ch5-two-devices", "diagnosis.no_floor.delay_samples.2", "probability_floor"): 0.0,  # 5.2.3.2.6 has none
 }
 """Fields whose value is the one of the text."""
@@ -91,8 +86,9 @@ def blocks(scenario: Scenario, row: Expectation) -> Iterator[tuple[str, Section]
     family = FAMILIES.get(head, "")
     if head == "control":
         yield from ((f"{before}controller", spec.controllers[name]) for name in spec.driving.values())
-    elif head == "compare" and scenario.head.study is not None:
-        yield from ((f"diagnosers.{name}", spec.diagnosers[name]) for name in scenario.head.study["compare"])
+    elif head == "compare":
+        names = scenario.head.study["compare"] if scenario.head.study is not None else [rest.partition(".")[0]]
+        yield from ((f"diagnosers.{name}", spec.diagnosers[name]) for name in names)
     elif family and (name := rest.partition(".")[0]) in (parts := getattr(spec, family)):
         yield f"{family if head == 'joined' else before + family}.{name}", parts[name]
 
