@@ -21,7 +21,8 @@ def counterpart(scenario: Scenario, kind: str = "open_loop") -> Scenario | None:
     Returns
     -------
     Scenario or None
-        None where there is nothing to take away: studies, scenarios in the open loop, and a PID for a plant with axes.
+        None where there is nothing to take away: studies, scenarios in the open loop. A PID is the comparator of the
+        scenario; None where it has none.
     """
     values = replaced(scenario, kind)
     return Scenario.load(written(scenario.document, values)) if values else None
@@ -33,14 +34,15 @@ def replaced(scenario: Scenario, kind: str) -> Document:
     drive = {scenario.spec.active, *(twin.active for twin in scenario.twins.values()), *switches}
     if scenario.study is not None or drive <= {*OPEN, kind}:
         return {}
+    other = scenario.head.comparator if kind == "pid" else None
+    if kind == "pid" and (other is None or scenario.spec.axes):
+        return {}
     if scenario.spec.axes:
-        if kind != "open_loop":
-            return {}
         kind = OPEN[1]
-    values: Document = {"controller.kind": kind}
+    values: Document = {"controller.kind": kind} if other is None else {"controller": other.controller}
     for name, own in scenario.document.get("twins", {}).items():
         if "controller" in own:
-            values[f"twins.{name}.controller"] = {"kind": kind}
+            values[f"twins.{name}.controller"] = {"kind": kind} if other is None else other.controller
     values["events"] = [event for event in (_without(entry, kind) for entry in scenario.head.events) if event]
     return values
 

@@ -7,7 +7,13 @@ from typing import Any
 from core.board.document import Document, has, written_over
 from core.errors import InputError
 from core.nesting import read_toml
-from scenarios.schema import Scenario
+from scenarios.schema import HEAD, Scenario
+
+OF_NO_BENCH = {"controller", "controllers", "diagnosers", "identifiers", "seed", "twins", *HEAD} - {
+    "samples",
+    "duration_ms",
+}
+"""Parts of a scenario that its comparator does not depend on, which was chosen without faults."""
 
 
 def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
@@ -24,24 +30,30 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
 def written(document: Document, values: dict[str, Any]) -> Document:
     """Return a scenario with values written over; a fitted field that goes with that is no longer named.
 
-    Printed marks belong to the events they count from, so other events have none. It shares the tables that stay as
-    they are.
+    Printed marks belong to the events they count from, so other events have none; a comparator belongs to the bench it
+    was chosen on, so another bench has none. It shares the tables that stay as they are.
     """
     changed = written_over(document, values)
     if "events" in values and "printed" not in values:
         changed.pop("printed", None)
+    if "comparator" not in values and any(path.partition(".")[0] not in OF_NO_BENCH for path in values):
+        changed.pop("comparator", None)
     rows = changed.get("expect")
-    if isinstance(rows, list) and any(isinstance(row, dict) and isinstance(row.get("fitted"), list) for row in rows):
-        changed["expect"] = [_fitted(row, document, changed) for row in rows]
+    if isinstance(rows, list) and any(isinstance(row, dict) and row.keys() & {"fitted", "pid_too"} for row in rows):
+        changed["expect"] = [_still(row, document, changed) for row in rows]
     return changed
 
 
-def _fitted(row: Any, before: Document, changed: Document) -> Any:
-    """Return an expectation that names of its fitted fields those that are still there."""
-    if not isinstance(row, dict) or not isinstance(row.get("fitted"), list):
+def _still(row: Any, before: Document, changed: Document) -> Any:
+    """Return an expectation that names what of its fitted fields and its PID is still there."""
+    if not isinstance(row, dict):
         return row
-    left = [path for path in row["fitted"] if not has(before, str(path)) or has(changed, str(path))]
-    return {**row, "fitted": left}
+    row = {**row}
+    if isinstance(row.get("fitted"), list):
+        row["fitted"] = [path for path in row["fitted"] if not has(before, str(path)) or has(changed, str(path))]
+    if "comparator" in before and "comparator" not in changed:
+        row.pop("pid_too", None)
+    return row
 
 
 def parse_assignment(text: str) -> tuple[str, Any]:

@@ -11,10 +11,20 @@ from pydantic import Field, model_validator
 from core.format import format_short
 from core.table import Table
 
-Verdict = Literal["reproduced", "reproduced by tuning", "partly", "not reproduced", "ours"]
+Verdict = Literal[
+    "reproduced",
+    "reproduced by tuning",
+    "reproduced, by a PID too",
+    "reproduced by tuning, by a PID too",
+    "partly",
+    "not reproduced",
+    "ours",
+]
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 AGREES = 0.05
 """Share of a published number within which a figure agrees with it, where no range is given."""
+LESS = ("error_um", "error_nm", "settling_ms")
+"""Ends of the metrics of which less is better, however little."""
 End = Annotated[float, Field(allow_inf_nan=True)]
 
 
@@ -24,8 +34,9 @@ class Expectation(Table):
     ``published`` are the words of the text, ``published_value`` its number. A figure agrees with the text when it lies
     in ``published_range``, ends included; where none is given, within 5 % of ``published_value``. ``fitted`` are the
     fields of the scenario that were chosen so that it does. ``compare`` says what must miss the expectation by
-    `margin` for it to praise a controller: the open loop, that and a PID, or nothing, for a ``reason``. ``verdict`` is
-    not read: earlier files have one.
+    `margin` for it to praise a controller: the open loop, or nothing, for a ``reason``. With ``"pid"`` the comparator
+    of the scenario is beside it too, and ``pid_too`` says that this PID `does_as_well`. ``verdict`` is not read:
+    earlier files have one.
     """
 
     metric: str
@@ -38,6 +49,7 @@ class Expectation(Table):
     published_range: tuple[End, End] | None = None
     fitted: list[str] = Field([])
     compare: Literal["open_loop", "pid", "none"] | None = None
+    pid_too: bool = False
     reason: str = ""
     verdict: str | None = None
     note: str = ""
@@ -65,6 +77,8 @@ class Expectation(Table):
             raise ValueError("fitted goes with published_value or published_range")
         if (self.compare == "none") != bool(self.reason):
             raise ValueError('compare = "none" and reason go together')
+        if self.pid_too and self.compare != "pid":
+            raise ValueError('pid_too goes with compare = "pid"')
         return self
 
     def holds(self, measured: float | None) -> bool:
@@ -112,6 +126,18 @@ class Expectation(Table):
         above = high is not None and measured > high and measured - high >= self.margin * (1 - 1e-9)
         return below or above
 
+    def does_as_well(self, pid: float | None) -> bool:
+        """Return whether the figure of a PID agrees with the text, or does not miss the expectation by `margin`.
+
+        An error or a time that is less than expected is no miss.
+        """
+        if pid is None:
+            return False
+        low, high = self.agreeing or (math.inf, -math.inf)
+        _, most = self.bounds()
+        is_less = self.metric.endswith(LESS) and most is not None and pid <= most
+        return is_less or low <= pid <= high or not self.missed_twice(pid)
+
     @property
     def agreeing(self) -> tuple[float, float] | None:
         """The range in which a figure agrees with the text, or None where the text has nothing to compare with."""
@@ -120,12 +146,20 @@ class Expectation(Table):
         width = AGREES * abs(self.published_value)
         return self.published_value - width, self.published_value + width
 
-    def word(self, measured: float | None) -> Verdict | None:
-        """Return the word for a measured figure, None where words were published that nothing compares it with."""
+    def word(self, measured: float | None, pid: float | None = None) -> Verdict | None:
+        """Return the word for a measured figure, None where words were published that nothing compares it with.
+
+        Parameters
+        ----------
+        measured : float, optional
+            The figure.
+        pid : float, optional
+            That of the comparator; without one ``pid_too`` holds.
+        """
         if self.agreeing is None:
             return None if self.published else "ours"
         low, high = self.agreeing
-        return self._agreed(measured is not None and low <= measured <= high)
+        return self._agreed(measured is not None and low <= measured <= high, self._pid_too(pid))
 
     def promised(self) -> Verdict | None:
         """Return the word if the expectation holds, which is all there is before a run."""
@@ -134,24 +168,31 @@ class Expectation(Table):
         low, high = self.bounds()
         below = high is not None and high < self.agreeing[0]
         above = low is not None and low > self.agreeing[1]
-        return self._agreed(not below and not above)
+        return self._agreed(not below and not above, self.pid_too)
 
-    def _agreed(self, agrees: bool) -> Verdict:
-        if not agrees:
-            return "not reproduced"
-        return "reproduced by tuning" if self.fitted else "reproduced"
+    def _pid_too(self, pid: float | None) -> bool:
+        return self.pid_too if pid is None or self.compare != "pid" else self.does_as_well(pid)
+
+    def _agreed(self, agrees: bool, pid_too: bool) -> Verdict:
+        return _agreement(bool(self.fitted), pid_too) if agrees else "not reproduced"
 
 
 def overall(words: Iterable[Verdict | None]) -> Verdict | None:
     """Return the word for a scenario from those of its rows; None where none has one.
 
     What the dissertation does not claim does not count beside what it does. If all the rest agrees, the scenario is
-    reproduced, by tuning where one row is; if nothing agrees it is not; else partly.
+    reproduced, by tuning where one row is, by a PID too where one row is; if nothing agrees it is not; else partly.
     """
     found = {word for word in words if word is not None}
     claimed = found - {"ours"}
     if not claimed:
         return "ours" if found else None
     if "not reproduced" not in claimed and "partly" not in claimed:
-        return "reproduced by tuning" if "reproduced by tuning" in claimed else "reproduced"
+        return _agreement(any("tuning" in word for word in claimed), any("PID" in word for word in claimed))
     return "not reproduced" if claimed == {"not reproduced"} else "partly"
+
+
+def _agreement(by_tuning: bool, pid_too: bool) -> Verdict:
+    if pid_too:
+        return "reproduced by tuning, by a PID too" if by_tuning else "reproduced, by a PID too"
+    return "reproduced by tuning" if by_tuning else "reproduced"

@@ -15,11 +15,12 @@ from core.board.ensemble import twin_specs
 from core.board.packages import carried
 from core.board.parse import parse
 from core.board.spec import Spec, fields
-from core.errors import InputError, from_validation, short, unknown_field
+from core.errors import InputError, from_validation, short, unknown, unknown_field
 from core.nesting import read_toml
 from core.own.admission import check_admitted
 from core.own.apart import compile_by
 from core.table import Table
+from scenarios.comparator import NONE, Comparator
 from scenarios.expectation import Expectation, Verdict, overall
 from scenarios.measure.stretch import Stretch
 from scenarios.own import compile_apart
@@ -45,9 +46,16 @@ class Head(Table):
     duration_ms: float | None = Field(None, gt=0, le=LONGEST_MS)
     events: list[dict[str, Any]] = Field([], max_length=100_000)
     expect: list[Expectation] = Field([], max_length=1000)
+    comparator: Comparator | None = None
     printed: list[Printed] = Field([], max_length=200)
     metrics: Stretch = Stretch()
     study: dict[str, Any] | None = None
+
+    def compared_with(self, entry: Expectation) -> str:
+        """Name the PID that an expectation is compared with; nothing where it is compared with none."""
+        if entry.compare != "pid":
+            return ""
+        return self.comparator.name if self.comparator is not None else NONE
 
 
 HEAD = tuple("schema" if name == "schema_" else name for name in Head.model_fields)
@@ -90,12 +98,14 @@ class Scenario:
         if self.head.samples is not None and self.head.duration_ms is not None:
             raise InputError("give samples or duration_ms, not both", "duration_ms")
         allowed = fields()
-        unknown = [key for key in self.bench if key not in allowed]
-        if unknown:
-            raise unknown_field(unknown[0], (*HEAD, *allowed), unknown[0])
+        foreign = [key for key in self.bench if key not in allowed]
+        if foreign:
+            raise unknown_field(foreign[0], (*HEAD, *allowed), foreign[0])
         self.spec: Spec = parse(self.bench, like.spec if like is not None else None)
         if (self.samples or 0) > MAX_SAMPLES:
             raise InputError(f"is {self.samples} samples, at most {MAX_SAMPLES}", "duration_ms")
+        if (beside := self.head.metrics.beside) and beside not in self.spec.diagnosers:
+            raise unknown("diagnoser", beside, self.spec.diagnosers, "metrics.beside")
         self.twins = twin_specs(self.bench)
         self.study = parse_study(self.head.study) if self.head.study is not None else None
         self.events: list[list[Command]] = like.events if like is not None and is_alike else []

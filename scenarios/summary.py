@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 from core.board.commands import Trip
 from scenarios.expectation import overall
 from scenarios.schema import Scenario
 
+NOTHING: Mapping[str, float] = MappingProxyType({})
 
-def judge(scenario: Scenario, metrics: dict[str, float]) -> list[dict[str, Any]]:
-    """Return each expectation of a scenario with the measured figure."""
+
+def judge(scenario: Scenario, metrics: dict[str, float], pid: Mapping[str, float] = NOTHING) -> list[dict[str, Any]]:
+    """Return each expectation of a scenario with the measured figure; ``pid`` has the figures of its comparator."""
     return [
         {
             "metric": entry.metric,
@@ -19,7 +23,7 @@ def judge(scenario: Scenario, metrics: dict[str, float]) -> list[dict[str, Any]]
             "measured": metrics.get(entry.metric),
             "ok": entry.holds(metrics.get(entry.metric)),
             "published_value": entry.published_value,
-            "verdict": entry.word(metrics.get(entry.metric)),
+            "verdict": entry.word(metrics.get(entry.metric), pid.get(entry.metric)),
             "note": entry.note if entry.metric in metrics else "no such metric in this run",
         }
         for entry in scenario.head.expect
@@ -35,9 +39,10 @@ def summarise(
     digest: str,
     trip: Trip | None,
     warnings: list[str],
+    pid: Mapping[str, float] = NOTHING,
 ) -> dict[str, Any]:
-    """Return the summary of a run, JSON-ready."""
-    expectations = judge(scenario, metrics)
+    """Return the summary of a run, JSON-ready; ``pid`` has the figures of its comparator."""
+    expectations = judge(scenario, metrics, pid)
     return {
         "scenario": scenario.id,
         "title": scenario.head.title,

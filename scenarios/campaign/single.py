@@ -95,7 +95,11 @@ def summary(
     elapsed = sum(run.elapsed_s for run in runs)
     spread = _spread(runs)
     means = first.metrics if len(runs) == 1 else {name: mean for name, (mean, _) in spread.items()}
-    found = summarise(scenario, first.seed, first.ticks, elapsed, means, digest, first.stopped, told)
+    beside_it = {
+        kind: {name: mean for name, (mean, _) in _spread(other).items()} for kind, other in (others or {}).items()
+    }
+    pid = beside_it.get("pid", {})
+    found = summarise(scenario, first.seed, first.ticks, elapsed, means, digest, first.stopped, told, pid)
     if len(runs) > 1:
         found |= {
             "seeds": [first.seed, runs[-1].seed],
@@ -104,10 +108,11 @@ def summary(
             "metrics_std": {name: std for name, (_, std) in spread.items()},
         }
     if others is not None:
-        figures = {kind: _spread(beside_it) for kind, beside_it in others.items()}
         for row, entry in zip(found["expectations"], scenario.head.expect, strict=True):
-            row["open_loop"] = figures.get("open_loop", {}).get(entry.metric, (None,))[0]
-            row["pid"] = figures.get("pid", {}).get(entry.metric, (None,))[0] if entry.compare == "pid" else None
+            row["open_loop"] = beside_it.get("open_loop", {}).get(entry.metric)
+            row["pid"] = pid.get(entry.metric) if entry.compare == "pid" else None
+            row["comparator"] = scenario.head.compared_with(entry)
+            row["pid_too"] = entry.does_as_well(row["pid"])
     return found
 
 

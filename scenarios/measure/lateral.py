@@ -13,7 +13,17 @@ from core.device.geometry import Geometry
 from core.device.lateral import lateral
 from core.device.pull_in import rotation_pull_in_v
 from core.plant.body import worst
-from core.plant.equilibrium import Fold, bias_pull_in, fold, planar_force, slaved_force, stators_of, voltage_at
+from core.plant.equilibrium import (
+    Fold,
+    bias_pull_in,
+    fold,
+    is_stable,
+    planar_force,
+    slaved_force,
+    squared,
+    stators_of,
+    voltage_at,
+)
 from core.plant.plane import Plane
 from core.plant.suspension import Suspension
 
@@ -26,7 +36,8 @@ def lateral_metrics(board: Board) -> dict[str, float]:
 
     ``lateral.fold_um``, ``fold_v`` and ``fold_lateral_um`` are travel, drive and sideways displacement of the worst
     corner where the equilibrium under a slowly rising drive stops being stable; ``lateral.contact_ms`` is the moment
-    of the first contact; ``lateral.far_ratio`` is the travel of the farthest finger over that of the centre.
+    of the first contact; ``lateral.far_ratio`` is the travel of the farthest finger over that of the centre, where the
+    shuttle rests at 1 um of travel in a stable equilibrium.
     ``device.pull_in_v`` is the bias beyond which the shuttle turns into the stators without any drive.
     """
     if board.tick == 0:
@@ -80,7 +91,7 @@ def _planar(p: Plane.Packed, state: Plane.State, far_um: float) -> dict[str, flo
     if pull_in is not None:
         figures["device.pull_in_v"] = pull_in
     held = voltage_at(force, SMALL_UM, np.zeros(4), stators)
-    if held is not None:
+    if held is not None and is_stable(force, held[0], *squared(stators, held[1])):
         figures["lateral.far_ratio"] = 1.0 + abs(float(held[0][2])) * far_um / SMALL_UM
     return figures
 

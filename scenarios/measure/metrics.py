@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 
 import numpy as np
@@ -185,4 +186,18 @@ def measure(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dic
     for name in board.spec.diagnosers:
         if name in scores and scores[name].samples:  # a score without samples says nothing, not even 0
             figures |= diagnosis_metrics(name, scores[name], step_lengths(trace[f"{name}.truth"]))
+    if stretch.beside:
+        figures |= delay_ratios(figures, list(scores), stretch.beside)
     return figures | verdict_metrics(board, trace)
+
+
+def delay_ratios(figures: Mapping[str, float], names: Iterable[str], beside: str) -> dict[str, float]:
+    """Return the delay of each diagnoser in each step over the delay of one of them."""
+    delays = {name: figures[name] for name in figures if name.startswith(f"diagnosis.{beside}.delay_samples.")}
+    found = {}
+    for name in names:
+        for own, delay in delays.items():
+            other = own.replace(f".{beside}.", f".{name}.", 1)
+            if name != beside and delay > 0.0 and other in figures:
+                found[other.replace("diagnosis.", "compare.", 1)] = figures[other] / delay
+    return found

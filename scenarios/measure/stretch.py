@@ -1,4 +1,4 @@
-"""The part of a run from which its figures are taken."""
+"""What figures of a run are taken from: a part of it, and a diagnoser that others are held against."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ class Stretch(Table):
 
     since_ms: float = Field(0.0, ge=0, le=LONGEST_MS, description="moment that errors and settling count from")
     tail_share: float = Field(TAIL, gt=0, le=1, description="share of the run that counts as its tail")
+    beside: str = Field("", max_length=200, description="diagnoser over whose delays the delays of others are taken")
 
     def start(self, samples: int, dt_ms: float) -> int:
         """Return the first of a number of samples that counts; the last sample if the run ends before it."""

@@ -88,8 +88,14 @@ def _expectation(entry: dict[str, Any]) -> list[str]:
         "holds" if entry["ok"] else "does not hold",
         *(format_figure(entry["metric"], entry[name], 6) if entry.get(name) is not None else "–" for name in OTHERS),
         entry["verdict"] or "",
-        micro(entry["note"]),
+        micro("; ".join(filter(None, (entry["note"], _comparator(entry))))),
     ]
+
+
+def _comparator(entry: dict[str, Any]) -> str:
+    """Name the PID of a row, and say whether it meets the claim."""
+    name: str = entry.get("comparator", "")
+    return f"{name} meets the claim too" if entry.get("pid_too") else name
 
 
 def _charts(result: Result) -> list[Chart]:

@@ -60,7 +60,9 @@ def _row(entry: dict[str, Any]) -> str:
 def _figures(entry: dict[str, Any]) -> str:
     """Return what was expected, what was measured, what other controllers give, and what was published."""
     figures = {name: entry[name] for name in BESIDE if entry.get(name) is not None}
-    said = [f"{name.replace('_', ' ')} {format_figure(entry['metric'], value, 6)}" for name, value in figures.items()]
+    names = {"measured": "measured", "open_loop": "open loop", "pid": f"{entry.get('comparator')} gives"}
+    said = [f"{names[name]} {format_figure(entry['metric'], value, 6)}" for name, value in figures.items()]
     said += [] if "measured" in figures else ["not measured"]
+    said += ["which meets the claim too"] if entry.get("pid_too") else []
     said += [f"published: {entry['published']}"] if entry["published"] else []
     return f"{entry['expected']}: {', '.join(said)}"

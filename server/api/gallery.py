@@ -44,7 +44,9 @@ class Expected(BaseModel):
     note: str
     measured: float | None = None
     open_loop: float | None = Field(None, description="With the open loop in place of the controller")
-    pid: float | None = Field(None, description="With a PID in its place, where the claim is against one")
+    pid: float | None = Field(None, description="With the comparator in its place, where the claim is against a PID")
+    comparator: str = Field("", description="Name of that PID: the best of its family on the healthy device")
+    pid_too: bool = Field(False, description="Whether that PID meets the claim too; until a run, as declared")
     ok: bool | None = Field(None, description="Null until it has been run")
 
 
@@ -172,6 +174,8 @@ def _card(scenario: Scenario, run: Run | None, figures: Figures) -> GalleryCard:
             measured=measurement.get("measured"),
             open_loop=measurement.get("open_loop"),
             pid=measurement.get("pid"),
+            comparator=head.compared_with(entry),
+            pid_too=measurement.get("pid_too", entry.pid_too),
             ok=measurement.get("ok"),
         )
         for entry, measurement in zip(head.expect, measured, strict=True)

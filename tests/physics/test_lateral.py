@@ -70,6 +70,14 @@ def test_pull_in_by_the_bias_alone():
     assert pull_in(stiff) == pytest.approx(sideways, rel=1e-3)
 
 
+def test_the_far_finger_is_told_where_the_shuttle_can_rest():
+    """The trusses let it turn into the stators from 28.08 V of bias on: nothing rests at 1 um then."""
+    for bias, rests in ((10.0, True), (27.9, True), (28.3, False), (40.0, False)):
+        board = bench(bias, {"reference": {"kind": "constant", "amplitude_v": 0.0}})
+        play(board, 10)
+        assert ("lateral.far_ratio" in lateral_metrics(board)) == rests, bias
+
+
 def test_fingers_further_apart_than_drawn_pull_in_later():
     """n eps0 t stays and the gap of the closed form is the one given: as of a device etched with that gap."""
     closed = math.sqrt(4.51e-7 * 3e-6**3 / (4 * N * EPS * T * 1e-6 * (XR**3 - XS**3) * 1e-18 / 3))

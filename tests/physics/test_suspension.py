@@ -91,6 +91,19 @@ def test_the_text_s_adhesion_and_broken_truss():
 
 
 @pytest.mark.parametrize(
+    ("share", "said"),
+    [(0.75, "2.2 at three quarters"), (0.5, "5.0 at the middle"), (0.3, "19 at 0.3"), (0.1, "461 at 0.1")],
+)
+def test_the_card_of_an_adhesion_says_how_stiff_an_outer_beam_makes_it(share, said):
+    """Near its root a held outer beam is a stub: with rigid trusses springs in series give 19.4 at 0.3, 501 at 0.1."""
+    found = stiffness_ratio(LCR, Damage(adhesion=("outer", share)))
+    number = said.partition(" ")[0]
+    assert said in " ".join((PointAdhesion.__doc__ or "").split())
+    assert f"{found:.{1 if '.' in number else 0}f}" == number
+    assert found == pytest.approx(adhesion_on_rigid_trusses("outer", share), rel=0.1)
+
+
+@pytest.mark.parametrize(
     ("damage", "turn"),
     [(Damage(adhesion=("inner", 0.75)), 31.4), (Damage(lost_ends=(2,)), -12.5), (Damage(lost_ends=(0, 1, 2)), -44.6)],
 )

@@ -80,6 +80,18 @@ def test_words_are_derived():
     assert wrong == []
 
 
+def test_what_is_published_without_a_number_is_no_window_around_our_figure():
+    """Such a range reaches 0, 1 or infinity, or its ends differ by a quarter at least."""
+    wrong = []
+    for scenario in library():
+        for entry in scenario.head.expect:
+            if entry.published_value is None and entry.agreeing is not None and not re.search(r"\d", entry.published):
+                low, high = entry.agreeing
+                is_wide = low <= 0.0 <= high or low <= 1.0 <= high or high >= 1.25 * low
+                wrong += [] if is_wide else [f"{scenario.id}: {entry.metric} {entry.published_range}"]
+    assert wrong == []
+
+
 def test_a_claim_beyond_the_text_is_ours():
     beyond = [one for one in library() if one.head.source.startswith("beyond the text") or one.id.startswith("gyro-")]
     assert beyond and [one.id for one in beyond if one.verdict != "ours"] == []

@@ -284,7 +284,7 @@ def test_set_reaches_head_events_and_expectations():
     assert base.samples == 9000 and base.head.events[0]["severity"] == 0.05, "the original is untouched"
     for name in Head.model_fields:
         assert name in ("schema_", "id", "title", "source", "summary", "claim", "verdict", "samples", "duration_ms",
-                        "events", "expect", "metrics", "study", "printed")  # fmt: skip
+                        "events", "expect", "comparator", "metrics", "study", "printed")  # fmt: skip
 
 
 @pytest.mark.parametrize(

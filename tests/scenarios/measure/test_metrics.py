@@ -12,7 +12,9 @@ from hypothesis import strategies as st
 
 from core.errors import InputError
 from scenarios.campaign.single import run_seeds
-from scenarios.measure.metrics import first_peak, fundamental, step_lengths
+from scenarios.edit import with_values
+from scenarios.library import get
+from scenarios.measure.metrics import delay_ratios, first_peak, fundamental, step_lengths
 from scenarios.run import run
 from scenarios.schema import Scenario
 from scenarios.seeds import parse_seeds
@@ -28,6 +30,20 @@ def metrics(values: dict[str, Any], ms: float = 60.0, **head: Any) -> dict[str, 
 def response(f: float, mass=1.0, stiffness=1.0, damping=1.0) -> complex:
     w = 2 * math.pi * f
     return 1 / (K * stiffness - M * mass * w**2 + 1j * BETA * damping * w)
+
+
+def test_delays_are_taken_over_those_of_one_diagnoser():
+    figures = {
+        **{f"diagnosis.fixed.delay_samples.{step}": delay for step, delay in ((1, 0.0), (2, 12.0), (3, 10.0))},
+        **{f"diagnosis.fast.delay_samples.{step}": delay for step, delay in ((1, 4.0), (2, 6.0))},
+    }
+    assert delay_ratios(figures, ["fixed", "fast", "verdicts"], "fixed") == {"compare.fast.delay_samples.2": 0.5}
+    found = run(get("ch5-adaptive-forgetting")).metrics
+    ratio = found["diagnosis.adaptive.delay_samples.2"] / found["diagnosis.fixed.delay_samples.2"]
+    assert found["compare.adaptive.delay_samples.2"] == ratio and "compare.fixed.delay_samples.2" not in found
+    with pytest.raises(InputError, match="diagnoser") as refused:
+        with_values(get("ch5-adaptive-forgetting"), {"metrics.beside": "fixt"})
+    assert refused.value.field == "metrics.beside"
 
 
 @given(

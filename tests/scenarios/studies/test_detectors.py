@@ -125,6 +125,15 @@ def test_operations_grow_with_the_models_and_stay_far_below_the_printed(kind, mo
     assert 10 <= per_model <= most and per_model < 4335 / 20
 
 
+def test_the_totals_of_the_printed_table_do_not_depend_on_its_models():
+    """Table 5.5.1: the difference of two totals over the iterations between them, by hand."""
+    found = run(get("ch5-flops")).metrics
+    by_hand = {1: (11141412 - 2471485) / 1999, 2: (15478414 - 11145755) / 999, 3: (19815418 - 15482749) / 999}
+    assert {n: found[f"flops.table.iteration_{n}"] for n in (1, 2, 3)} == by_hand
+    assert max(by_hand.values()) / min(by_hand.values()) < 1.0001
+    assert 2471485 + 4313 == 2475798 and 11145755 - 11141412 == 4343, "increments are of iterations, of a model's too"
+
+
 @pytest.mark.parametrize("every", [2, 5])
 def test_a_bank_that_runs_now_and_then_is_counted_from_one_turn_to_the_next(every):
     """Between two turns x <- A x + B u of every model: three products and two sums for each of two states."""

@@ -17,6 +17,8 @@ const entry = (metric: string, measured: number | null, rest: Partial<Entry> = {
   fitted: [],
   reason: "",
   note: "",
+  comparator: "",
+  pid_too: false,
   ...rest,
 });
 
@@ -49,6 +51,19 @@ it("has what the open loop gives beside each figure, and a PID only where one is
   ]);
   const [head, , row] = table(plain, entry("control.settling_ms", 9.7, { open_loop: 100, pid: 20 }));
   expect([head.at(-1), row.at(-1)]).toEqual(["PID", "20"]);
+});
+
+it("names the PID of a row, and says where it meets the claim too", () => {
+  const comparator = "best PID of 12: pole 2, feed-forward 1";
+  const rest = { pid: 0.037, comparator, verdict: "reproduced, by a PID too" as const };
+  const [, met, missed] = table(
+    entry("control.tail_rms_error_um", 0.001, { ...rest, pid_too: true }),
+    entry("control.tail_rms_error_um", 0.001, { ...rest, verdict: "reproduced" }),
+  );
+  expect(met[0]).toContain(`${comparator}, meets the claim too`);
+  expect(met[0]).toContain("reproduced, by a PID too");
+  expect(missed[0]).toContain(comparator);
+  expect(missed[0]).not.toContain("meets");
 });
 
 it("shows words of the text and a verdict of its own under the figure", () => {

@@ -10,7 +10,7 @@ const SHOWN = 3;
 
 type Expected = GalleryCard["expectations"][number];
 /** A row; runs kept from earlier lack what has been added since. */
-type Entry = Omit<Expected, "fitted" | "reason"> & Partial<Expected>;
+type Entry = Omit<Expected, "fitted" | "reason" | "comparator" | "pid_too"> & Partial<Expected>;
 
 interface ExpectationTableProps {
   entries: Entry[];
@@ -50,7 +50,7 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
               open loop
             </th>
             {hasPid && (
-              <th scope="col" title="The same scenario with a plain PID in place of its controller">
+              <th scope="col" title="The same scenario with a tuned PID in place of its controller">
                 PID
               </th>
             )}
@@ -64,6 +64,12 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
                 {entry.published && (
                   <small className={styles.published}>
                     published: {micro(entry.published).replaceAll(" %", "\u00a0%")}
+                  </small>
+                )}
+                {entry.comparator && (
+                  <small className={styles.published}>
+                    {entry.comparator}
+                    {entry.pid_too && ", meets the claim too"}
                   </small>
                 )}
                 {entry.verdict !== verdict && (

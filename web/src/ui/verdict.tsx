@@ -1,9 +1,11 @@
-import { IconAdjustments, IconCheck, IconCircleHalf2, IconFlask, IconX } from "@tabler/icons-react";
+import { IconAdjustments, IconCheck, IconChecks, IconCircleHalf2, IconFlask, IconX } from "@tabler/icons-react";
 import styles from "./verdict.module.css";
 
 const MARKS = {
   reproduced: { tone: "good", icon: <IconCheck size={13} stroke={2.6} /> },
   "reproduced by tuning": { tone: "good", icon: <IconAdjustments size={13} stroke={2.2} /> },
+  "reproduced, by a PID too": { tone: "good", icon: <IconChecks size={13} stroke={2.2} /> },
+  "reproduced by tuning, by a PID too": { tone: "good", icon: <IconAdjustments size={13} stroke={2.2} /> },
   partly: { tone: "fair", icon: <IconCircleHalf2 size={13} stroke={2.2} /> },
   "not reproduced": { tone: "poor", icon: <IconX size={13} stroke={2.6} /> },
   ours: { tone: "own", icon: <IconFlask size={13} stroke={2.2} /> },
