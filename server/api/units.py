@@ -24,7 +24,7 @@ router = APIRouter(prefix="/units", tags=["units"], route_class=StrictRoute)
 USUAL = "first-look"
 Origin = Literal["library", "folder", "command line"]
 Name = Annotated[str, Field(pattern=IDENTIFIER.pattern, description="Small letters, digits and _, a letter first")]
-NamePath = Annotated[str, Path(pattern=IDENTIFIER.pattern)]
+NamePath = Annotated[str, Path(pattern=IDENTIFIER.pattern, description="Name of a unit")]
 
 
 class UnitEntry(BaseModel):
