@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -63,6 +64,15 @@ def test_its_description_names_the_units(tmp_path: Path) -> None:
     }  # fmt: skip
     assert described.defaultExperiment.stepSize == "1e-05"
     assert [*tmp_path.iterdir()] == [path]
+
+
+def test_each_variable_has_a_structured_name_of_fmi_3(tmp_path: Path) -> None:
+    path = tmp_path / "device.fmu"
+    export(quiet(title='Ω+5, "m" & <b>'), path)
+    names = [variable.name for variable in fmpy.read_model_description(str(path)).modelVariables]
+    identifier = r"(?:[A-Za-z_][A-Za-z0-9_]*|'(?:[^'\\]|\\.)+')(?:\[\d+(?:,\d+)*\])?"  # FMI 3.0, 2.4.7.5.1
+    assert names and len(set(names)) == len(names)
+    assert [name for name in names if not re.fullmatch(rf"{identifier}(?:\.{identifier})*", name)] == []
 
 
 def test_a_longer_step_holds_the_voltage_and_one_between_samples_is_refused(tmp_path: Path) -> None:

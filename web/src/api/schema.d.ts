@@ -10908,8 +10908,8 @@ export interface operations {
             query?: {
                 /** @description Format of the answer */
                 format?: "csv" | "parquet" | "npz" | "mat";
-                /** @description Names, separated by commas; all when empty */
-                signals?: string;
+                /** @description Names, one each time, or several between commas; all unless given */
+                signals?: string[];
                 /** @description The first tick; the oldest unless given */
                 start_tick?: number | null;
                 /** @description The one behind the last */
@@ -10951,8 +10951,8 @@ export interface operations {
     get_trace: {
         parameters: {
             query?: {
-                /** @description Names, separated by commas; all when empty */
-                signals?: string;
+                /** @description Names, one each time, or several between commas; all unless given */
+                signals?: string[];
                 /** @description The first tick; the oldest unless given */
                 start_tick?: number | null;
                 /** @description The tick behind the last; to the newest unless given */
@@ -11278,8 +11278,8 @@ export interface operations {
             query?: {
                 /** @description Format of the answer */
                 format?: "csv" | "parquet" | "npz" | "mat";
-                /** @description Names, separated by commas; all when empty */
-                signals?: string;
+                /** @description Names, one each time, or several between commas; all unless given */
+                signals?: string[];
                 /** @description The first tick; the oldest unless given */
                 start_tick?: number | null;
                 /** @description The one behind the last */
