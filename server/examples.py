@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-UNIT = '''from core.control.controller import ControllerPorts
-from core.block import Block, BlockParams, parameter
+UNIT = '''from core.block import Block, BlockParams, parameter
+from core.control.controller import ControllerPorts
+from core.record import Record
 
 
 class Gain(Block):
@@ -16,7 +17,13 @@ class Gain(Block):
     class Params(BlockParams):
         gain_v_um: float = parameter(-2.0, "gain", "V/um", ge=-1e3, le=1e3)
 
-    Ports = ControllerPorts
+    class Packed(Record):
+        """The number that the step reads."""
+
+        gain_v_um: float
+
+    class Ports(ControllerPorts):
+        """The ports of every controller."""
 
     @staticmethod
     def step(p, s, x):

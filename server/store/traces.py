@@ -57,7 +57,7 @@ def table_of(schema: pa.Schema, first_tick: int, dt_ms: float, samples: NDArray[
 
 @dataclass(frozen=True)
 class Cut:
-    """A part of a trace: signals as they are asked for (all when empty), ticks from start to before end, every so many."""
+    """A part of a trace: signals as asked for (all when empty), ticks from start to before end, every so many."""
 
     signals: tuple[str, ...] = ()
     start: int | None = None
