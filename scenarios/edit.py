@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from core.board.document import Document, has, written_over
 from core.errors import InputError
 from core.nesting import read_toml
 from scenarios.schema import Scenario
+
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 
 
 def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
@@ -24,10 +27,13 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
 def written(document: Document, values: dict[str, Any]) -> Document:
     """Return a scenario with values written over; a fitted field that goes with that is no longer named.
 
-    Printed marks belong to the events they count from, so other events have none. It shares the tables that stay as
-    they are.
+    Printed marks belong to the events they count from, so other events have none; a length in samples takes the place
+    of one in milliseconds, and the other way round. It shares the tables that stay as they are.
     """
     changed = written_over(document, values)
+    for length, other in (("samples", "duration_ms"), ("duration_ms", "samples")):
+        if values.get(length) is not None and other not in values:
+            changed.pop(other, None)
     if "events" in values and "printed" not in values:
         changed.pop("printed", None)
     rows = changed.get("expect")
@@ -45,7 +51,7 @@ def _fitted(row: Any, before: Document, changed: Document) -> Any:
 
 
 def parse_assignment(text: str) -> tuple[str, Any]:
-    """Read ``path=value``; the value is TOML, or plain text if it is not valid TOML.
+    """Read ``path=value``; the value is TOML, a number as people write it, such as ``.5``, or else plain text.
 
     Raises
     ------
@@ -60,4 +66,5 @@ def parse_assignment(text: str) -> tuple[str, Any]:
     except InputError as error:
         if error.code != "malformed":
             raise
-        return path.strip(), value.strip()
+        plain = value.strip()
+        return path.strip(), float(plain) if NUMBER.fullmatch(plain) else plain

@@ -102,7 +102,8 @@ def get_unit(name: NamePath, service: ServiceDep) -> UnitText:
     for one in copies():
         if one.name == name:
             return _text(one, "library")
-    raise not_found("unit", name, "list them at /api/v1/units")
+    known = (one.name for one in (*service.units.all(), *copies()))
+    raise not_found("unit", name, "list them at /api/v1/units", known=known)
 
 
 @router.post("", dependencies=[RateLimited])

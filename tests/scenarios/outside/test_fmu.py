@@ -106,4 +106,7 @@ def test_without_the_package_one_line_says_so(monkeypatch: pytest.MonkeyPatch, t
     monkeypatch.setitem(sys.modules, "pythonfmu3", None)
     done = CliRunner().invoke(app, ["fmu", "first-look", "--out", str(tmp_path / "device.fmu")])
     assert done.exit_code == 2 and not [*tmp_path.iterdir()]
-    assert done.stderr.startswith("combbench: fmu: needs the package pythonfmu3") and "combbench[fmi]" in done.stderr
+    assert (
+        done.stderr.startswith("combbench: fmu: needs the package pythonfmu3")
+        and "'.[fmi]' in a checkout" in done.stderr
+    )
