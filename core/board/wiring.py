@@ -202,7 +202,7 @@ def unread(spec: Spec, order: list[Instance]) -> list[bool]:
 
 
 def signals_of(spec: Spec) -> SignalTable:
-    """Return the signals of a bench, without one that is laid out for it."""
+    """Return the signals of a bench, without its arrays."""
     return _laid_out(spec, instances(spec))[0]
 
 

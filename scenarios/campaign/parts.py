@@ -185,7 +185,7 @@ class Parts:
 
 
 def write_runs(parts: Parts, file: BinaryIO, *, kind: Literal["csv", "parquet"]) -> int:
-    """Write a row for each run that is there, without what the diagnosers said sample by sample; return how many."""
+    """Write a row for each run, without the verdicts of single samples; return the number of rows."""
     rows = 0
     schema = parts.schema() or pa.schema([])
     names = [name for name in schema.names if about(schema.field(name)) != "diagnosis" and name != "key"]

@@ -26,7 +26,7 @@ def variables(names: Sequence[str], taken: Sequence[str] = ()) -> dict[str, str]
     names : sequence of str
         Names of signals, each once.
     taken : sequence of str
-        Variables that are there already.
+        Further variables of the file.
     """
     found: dict[str, str] = {}
     used = set(taken)

@@ -25,7 +25,7 @@ from server.store.traces import MEDIA_TYPES
 MOST_POINTS = 20_000
 """Points of an answer."""
 SO_FAR = "-so-far"
-"""What the name of a file says that has the runs of a campaign under way."""
+"""End of the name of a file with the runs of a campaign under way."""
 RUNS = {
     "X-Runs": {"description": "Runs that the file has", "schema": {"type": "integer"}},
     "X-State": {
@@ -154,7 +154,7 @@ async def get_sweep_distribution(
 async def get_sweep_runs(
     sweep_id: str, service: ServiceDep, kind: Annotated[Literal["csv", "parquet"], Query(alias="format")] = "csv"
 ) -> Response:
-    """Download one row for each run that is there: point, seed, digest and every figure.
+    """Download one row for each run: point, seed, digest and every figure.
 
     While the campaign is under way, the file has the runs of its beginning, and its name ends in *so-far*.
     """

@@ -125,7 +125,7 @@ class Sweeps(Requested[SweepRun]):
         return await self._surveys.read(sweep_id, row.document, *self._progress(row), reader)
 
     async def surveyed(self, sweep_id: str, reader: Callable[[Survey], T]) -> tuple[SweepRun, T]:
-        """Call a reader, and return the campaign too: of one that has ended, the results are all there."""
+        """Call a reader, and return the campaign too; if the campaign has ended, its results are complete."""
         before, found = await self.get(sweep_id), await self.read(sweep_id, reader)
         sweep = await self.get(sweep_id)
         return sweep, found if sweep.finished == before.finished else await self.read(sweep_id, reader)

@@ -1312,7 +1312,9 @@ export interface paths {
         };
         /**
          * Get Sweep Runs
-         * @description Download one row for each run that is done: point, seed, digest and every figure.
+         * @description Download one row for each run that is there: point, seed, digest and every figure.
+         *
+         *     While the campaign is under way, the file has the runs of its beginning, and its name ends in *so-far*.
          */
         get: operations["get_sweep_runs"];
         put?: never;
@@ -7783,6 +7785,11 @@ export interface components {
              */
             found: number;
             /**
+             * Runs
+             * @description Runs in these results; until the campaign has ended, `sweep.done` may be ahead
+             */
+            runs: number;
+            /**
              * Figures
              * @description Figures that a run has
              */
@@ -11753,6 +11760,10 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Runs that the file has */
+                    "X-Runs"?: number;
+                    /** @description State of the campaign; until it has ended, more runs come */
+                    "X-State"?: string;
                     [name: string]: unknown;
                 };
                 content: {
