@@ -388,18 +388,3 @@ def test_a_controller_from_outside_cannot_be_had_over_the_network(live: Any) -> 
         answer = live.command(bench, **command)
         assert answer.status_code == 422 and "is not on this bench" in answer.json()["error"]["message"]
     assert "external" not in {card["name"] for card in live.http.get("/api/v1/catalog").json()["blocks"]}
-
-
-@pytest.mark.parametrize(
-    ("path", "meant"),
-    [
-        ("scenarios/ch5-sevn-step", "ch5-seven-step"),
-        ("gallery/ch5-sevn-step/figure", "ch5-seven-step"),
-        ("lectures/ch5-diagnosi", "ch5-diagnosis"),
-        ("sheets/first-lok", "first-look"),
-        ("units/pidd", "pid"),
-    ],
-)
-def test_an_unknown_name_brings_the_nearest(live: Any, path: str, meant: str) -> None:
-    answer = live.http.get(f"/api/v1/{path}")
-    assert answer.status_code == 404 and answer.json()["error"]["hint"] == f"did you mean {meant}?", answer.text

@@ -171,3 +171,18 @@ def test_a_name_that_no_format_takes_is_refused(live: Any, name: str) -> None:
 def test_an_identifier_ends_where_it_ends(live: Any, section: str) -> None:
     answer = live.http.post("/api/v1/benches", json={"scenario": {**SCENARIO, section: {"kalman\n": {}}}})
     assert answer.status_code == 422 and "short name" in answer.json()["error"]["message"], answer.text
+
+
+@pytest.mark.parametrize(
+    ("path", "meant"),
+    [
+        ("scenarios/ch5-sevn-step", "ch5-seven-step"),
+        ("gallery/ch5-sevn-step/figure", "ch5-seven-step"),
+        ("lectures/ch5-diagnosi", "ch5-diagnosis"),
+        ("sheets/first-lok", "first-look"),
+        ("units/pidd", "pid"),
+    ],
+)
+def test_an_unknown_name_brings_the_nearest(live: Any, path: str, meant: str) -> None:
+    answer = live.http.get(f"/api/v1/{path}")
+    assert answer.status_code == 404 and answer.json()["error"]["hint"] == f"did you mean {meant}?", answer.text
