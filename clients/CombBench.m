@@ -43,10 +43,11 @@ classdef CombBench < handle
         end
 
         function columns = trace(lab, run, signals)
-            % Return signals of a run as columns, with tick and time_ms; dots of their names become underscores.
+            % Return signals of a run as columns, with tick and time_ms; the field names tells the signal of each.
             path = ['/runs/', run.id, '/trace?format=mat'];
             if nargin > 2
-                path = [path, '&signals=', strjoin(signals, ',')];
+                asked = cellfun(@(name) ['&signals=', escaped(name)], signals, 'UniformOutput', false);
+                path = [path, asked{:}];
             end
             file = lab.fetch('GET', path, []);
             tidy = onCleanup(@() delete_all({file}));
@@ -122,6 +123,20 @@ classdef CombBench < handle
             end
         end
     end
+end
+
+function text = escaped(name)
+    % Percent-encode a name for a query (RFC 3986): all bytes of UTF-8 but letters, digits and - . _ ~
+    bytes = num2cell(unicode2native(name, 'UTF-8'));
+    kept = ['A':'Z', 'a':'z', '0':'9', '-._~'];
+    for k = 1:numel(bytes)
+        if any(bytes{k} == kept)
+            bytes{k} = char(bytes{k});
+        else
+            bytes{k} = sprintf('%%%02X', bytes{k});
+        end
+    end
+    text = [bytes{:}];
 end
 
 function write_text(file, text)

@@ -74,7 +74,7 @@ class CombBench:
 
     def trace(self, run: dict[str, Any], *signals: str, **query: Any) -> dict[str, Any]:
         """Return signals of a run as arrays, with ``tick`` and ``time_ms``; all of them if none is named."""
-        query |= {"format": "npz"} | ({"signals": ",".join(signals)} if signals else {})
+        query |= {"format": "npz"} | ({"signals": signals} if signals else {})
         with np.load(io.BytesIO(self.ask("GET", f"/runs/{run['id']}/trace", **query))) as file:
             return dict(file)
 

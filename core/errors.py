@@ -37,6 +37,8 @@ UNITS = (
 )
 
 
+MOST_LISTED = 40
+"""Names that an error lists; of more it says how many there are."""
 ALTERNATIVE = re.compile(r"(?:list|dict|literal)\[.*\]")
 """Part of a pydantic location that names one of the types a value may have."""
 
@@ -82,10 +84,23 @@ class InputError(ValueError):
 def unknown(what: str, name: object, allowed: Iterable[str], field: str = "") -> InputError:
     """Build the error for a name that does not exist, and suggest the nearest names."""
     names = list(allowed)
-    near = difflib.get_close_matches(str(name), names, n=1)
-    hint = f"did you mean {near[0]}?" if near else ""
+    hint = did_you_mean(name, names)
     listed = ", ".join(names) if names else "none"
+    if len(names) > MOST_LISTED:
+        beginnings = dict.fromkeys(re.split("[.-]", one)[0] for one in names)
+        listed = f"{len(names)} names" + ("" if hint else f", which begin with {', '.join(beginnings)}")
     return InputError(f"unknown {what} {short(name)}; allowed: {listed}", field, hint, "unknown")
+
+
+def did_you_mean(name: object, allowed: Iterable[str]) -> str:
+    """Return advice with the nearest name, or with the names that end alike; nothing where none is near."""
+    names = list(allowed)
+    near = difflib.get_close_matches(str(name), names, n=1)
+    if not near:
+        ends = list(dict.fromkeys(one.rpartition(".")[2] for one in names))
+        end = difflib.get_close_matches(str(name).rpartition(".")[2], ends, n=1)
+        near = [one for one in names if end and one.rpartition(".")[2] == end[0]][:3]
+    return f"did you mean {' or '.join(near)}?" if near else ""
 
 
 def short(value: object, limit: int = 60) -> str:
@@ -167,9 +182,8 @@ def unknown_field(leaf: str, allowed: Sequence[str], path: str) -> InputError:
     for name in allowed:
         if name != leaf and _without_unit(name) == stem:
             return InputError(f"wrong unit: this field is {name}", path, f"write {name}", "unit")
-    near = difflib.get_close_matches(leaf, allowed, n=1)
     listed = f"; allowed: {', '.join(allowed)}" if allowed else ""
-    return InputError(f"unknown field{listed}", path, f"did you mean {near[0]}?" if near else "", "unknown")
+    return InputError(f"unknown field{listed}", path, did_you_mean(leaf, allowed), "unknown")
 
 
 def _without_unit(name: str) -> str:

@@ -7,6 +7,7 @@ import tomllib
 from typing import Any
 
 from core.errors import InputError
+from core.text import without_mark
 
 DEEPEST = 50
 TOO_DEEP = f"nested too deeply, at most {DEEPEST} levels"
@@ -35,7 +36,7 @@ def read_toml(text: str, field: str, what: str = "TOML") -> dict[str, Any]:
     """
     if not _LONG_KEY.search(text):
         try:
-            document = tomllib.loads(text)
+            document = tomllib.loads(without_mark(text))
             if depth(document) <= DEEPEST:
                 return document
         except tomllib.TOMLDecodeError as error:

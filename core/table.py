@@ -1,11 +1,19 @@
-"""A table written by people: it refuses unknown fields, numbers that are not finite, and true or false for a number."""
+"""A table written by people: it refuses unknown fields, numbers that are not finite, and anything else for a number."""
 
 from __future__ import annotations
 
-from typing import Any, get_args
+from collections.abc import Hashable
+from functools import cache
+from types import NoneType
+from typing import Annotated, Any, Literal, cast, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import InitErrorDetails
+
+NUMBERS = frozenset({int, float, bool})
+TRUTHS = frozenset({"true", "false", "yes", "no", "on", "off", "t", "f", "y", "n"})
+"""Texts that pydantic takes for true or false."""
+OPEN = frozenset({"inf", "infinity"})
 
 
 class Table(BaseModel):
@@ -15,13 +23,37 @@ class Table(BaseModel):
 
     @model_validator(mode="before")
     @classmethod
-    def _truth_is_no_number(cls, values: Any) -> Any:
-        """Refuse true in place of 1: the writer has made a slip."""
+    def _nothing_else_is_a_number(cls, values: Any) -> Any:
+        """Refuse true in place of 1, and "1" or "true" in quotes: the writer has made a slip."""
         for name, value in values.items() if isinstance(values, dict) else ():
-            if isinstance(value, bool) and name in cls.model_fields:
-                annotation = cls.model_fields[name].annotation
-                allowed = [getattr(kind, "__origin__", kind) for kind in get_args(annotation) or (annotation,)]
-                if (int in allowed or float in allowed) and bool not in allowed:
-                    refused = InitErrorDetails(type="float_type", loc=(name,), input=value)
-                    raise ValidationError.from_exception_data(cls.__name__, [refused])
+            if name not in cls.model_fields:
+                continue
+            allowed = _kinds(cast(Hashable, cls.model_fields[name].annotation))
+            takes_numbers = bool(allowed & {int, float})
+            is_slip = isinstance(value, bool) and takes_numbers and bool not in allowed
+            if is_slip or (allowed <= NUMBERS and any(map(_is_quoted, value if isinstance(value, list) else [value]))):
+                kind = "bool_type" if not takes_numbers else "float_type" if float in allowed else "int_type"
+                refused = InitErrorDetails(type=kind, loc=(name,), input=value)
+                raise ValidationError.from_exception_data(cls.__name__, [refused])
         return values
+
+
+@cache
+def _kinds(annotation: Hashable) -> frozenset[Any]:
+    """Return the types that a value, or an item of it, may have."""
+    if get_origin(annotation) is Literal:
+        return frozenset(map(type, get_args(annotation)))
+    parts = [part for part in get_args(annotation) if part not in (NoneType, ...)]
+    if get_origin(annotation) is Annotated:
+        parts = parts[:1]
+    return frozenset().union(*map(_kinds, parts)) if parts else frozenset([annotation])
+
+
+def _is_quoted(value: Any) -> bool:
+    """Whether a value is a text that reads as a number or as true or false; the ends of open ranges are texts."""
+    if not isinstance(value, str) or value.strip().lstrip("+-").lower() in OPEN:
+        return False
+    try:
+        return value.strip().lower() in TRUTHS or float(value) is not None
+    except ValueError:
+        return False

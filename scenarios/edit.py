@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from core.board.document import Document, has, written_over
@@ -14,6 +15,8 @@ OF_NO_BENCH = {"controller", "controllers", "diagnosers", "identifiers", "seed",
     "duration_ms",
 }
 """Parts of a scenario that its comparator does not depend on, which was chosen without faults."""
+
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 
 
 def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
@@ -31,9 +34,13 @@ def written(document: Document, values: dict[str, Any]) -> Document:
     """Return a scenario with values written over; a fitted field that goes with that is no longer named.
 
     Printed marks belong to the events they count from, so other events have none; a comparator belongs to the bench it
-    was chosen on, so another bench has none. It shares the tables that stay as they are.
+    was chosen on, so another bench has none; a length in samples takes the place of one in milliseconds, and the other
+    way round. It shares the tables that stay as they are.
     """
     changed = written_over(document, values)
+    for length, other in (("samples", "duration_ms"), ("duration_ms", "samples")):
+        if values.get(length) is not None and other not in values:
+            changed.pop(other, None)
     if "events" in values and "printed" not in values:
         changed.pop("printed", None)
     if "comparator" not in values and any(path.partition(".")[0] not in OF_NO_BENCH for path in values):
@@ -57,7 +64,7 @@ def _still(row: Any, before: Document, changed: Document) -> Any:
 
 
 def parse_assignment(text: str) -> tuple[str, Any]:
-    """Read ``path=value``; the value is TOML, or plain text if it is not valid TOML.
+    """Read ``path=value``; the value is TOML, a number as people write it, such as ``.5``, or else plain text.
 
     Raises
     ------
@@ -72,4 +79,5 @@ def parse_assignment(text: str) -> tuple[str, Any]:
     except InputError as error:
         if error.code != "malformed":
             raise
-        return path.strip(), value.strip()
+        plain = value.strip()
+        return path.strip(), float(plain) if NUMBER.fullmatch(plain) else plain

@@ -24,6 +24,7 @@ from core.own.unit import Unit, unit
 from core.wall import wall
 from core.wall.code import kept, name_of
 from scenarios.kernel_cache import folder
+from scenarios.reading import read_text
 
 MOST_S = 60
 """Time of the processor to compile a unit."""
@@ -66,12 +67,7 @@ def with_units(document: Document, files: Iterable[Path], field: str = "--unit")
     """Return a document with units from files, each under the name of its file."""
     units = dict(document.get("units", {}))
     for file in files:
-        try:
-            units[file.stem] = {"source": file.read_text("utf-8")}
-        except OSError as error:
-            raise InputError(f"cannot read {file}: {error.strerror}", field) from None
-        except UnicodeDecodeError:
-            raise InputError(f"{file} is not UTF-8 text", field) from None
+        units[file.stem] = {"source": read_text(file, field)}
     return {**document, "units": units} if units else document
 
 

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import math
 import operator
+from functools import cached_property
 from typing import Any, Literal
 
 import tomlkit
 from pydantic import Field, ValidationError
 
+from core.board.changes import check
 from core.board.commands import LONGEST_MS, Command, parse_event
+from core.board.condition import parse_condition
 from core.board.document import Document, has, says_the_same
 from core.board.ensemble import twin_specs
 from core.board.packages import carried
 from core.board.parse import parse
 from core.board.spec import Spec, fields
+from core.board.wiring import signals_of
 from core.errors import InputError, from_validation, short, unknown, unknown_field
 from core.nesting import read_toml
 from core.own.admission import check_admitted
@@ -111,13 +115,27 @@ class Scenario:
         self.events: list[list[Command]] = like.events if like is not None and is_alike else []
         for position, event in enumerate([] if is_alike else self.head.events):
             try:
-                self.events.append(_commands(event))
+                self.events.append(self._checked(event))
             except InputError as error:
                 raise error.under(f"events.{position}") from None
         for position, entry in enumerate(self.head.expect):
             for path in entry.fitted:
                 if not has(document, path):
                     raise InputError(f"this scenario has no {short(path)}", f"expect.{position}.fitted")
+
+    def _checked(self, event: Document) -> list[Command]:
+        """Return the commands of an event, which could be carried out on this bench."""
+        commands = _commands(event)
+        for command in commands:
+            check(self.spec, command)
+        if (when := commands[0].when) is not None:
+            parse_condition(when, self._signals)
+        return commands
+
+    @cached_property
+    def _signals(self) -> list[str]:
+        """Signals that a condition may name."""
+        return signals_of(self.spec).names
 
     @classmethod
     def load(cls, text: str | Document, like: Scenario | None = None) -> Scenario:

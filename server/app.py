@@ -141,6 +141,7 @@ def create_app(settings: Settings) -> FastAPI:
         docs_url=None,
         redoc_url=None,
         redirect_slashes=False,
+        generate_unique_id_function=lambda route: route.name,
         servers=[{"url": str(public)}] if public.origin else None,
     )
     app.state.service, app.state.identity = service, identity

@@ -11,7 +11,8 @@ import typer
 from core import registry
 from core.errors import InputError
 from scenarios.own import with_units
-from server.terminal import JsonOption, plainly, read_text, say
+from scenarios.reading import read_text
+from server.terminal import JsonOption, plainly, say
 from server.units import UnitOption
 
 

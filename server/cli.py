@@ -31,6 +31,7 @@ from server.games import game
 from server.lessons import lectures, sheets
 from server.terminal import JsonOption, load, plainly, say, say_json
 from server.units import UnitOption, check
+from server.version import VERSION
 
 UsageError: Any = typer.BadParameter.__base__
 """Every usage error of options and arguments; Typer exports only one kind of them."""
@@ -63,6 +64,22 @@ app.command()(game)
 MOST_WORKERS = 1024
 NOT_WRITTEN = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE)
 """Errors of a write to an open file."""
+
+
+def show_version(wanted: bool) -> None:
+    """Print the version and end."""
+    if wanted:
+        say(f"combbench {VERSION}")
+        raise typer.Exit
+
+
+@app.callback()
+def common(
+    version: Annotated[
+        bool, typer.Option("--version", callback=show_version, is_eager=True, help="Print the version and end.")
+    ] = False,
+) -> None:
+    """Run, measure and serve MEMS lateral comb resonators."""
 
 
 @app.command()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import errno
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from http import HTTPStatus
 from typing import Any
 from urllib.parse import urlencode
@@ -20,7 +20,7 @@ from starlette.routing import Match
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketDisconnect
 
-from core.errors import InputError, either, field_of, one_line
+from core.errors import InputError, did_you_mean, either, field_of, one_line
 
 log = logging.getLogger(__name__)
 
@@ -99,9 +99,9 @@ class Elsewhere(Exception):
         self.shard = shard
 
 
-def not_found(noun: str, name: str, hint: str = "", field: str = "") -> ApiError:
-    """Refuse an unknown name."""
-    return ApiError(404, "not_found", f"there is no {noun} '{name}'", field, hint)
+def not_found(noun: str, name: str, hint: str = "", field: str = "", known: Iterable[str] = ()) -> ApiError:
+    """Refuse an unknown name; the nearest that is known is better advice than any other."""
+    return ApiError(404, "not_found", f"there is no {noun} '{name}'", field, did_you_mean(name, known) or hint)
 
 
 def body_of(error: Exception) -> ErrorBody:

@@ -25,7 +25,7 @@ def fmu(
     try:
         from scenarios.outside.fmu import export
     except ImportError:
-        hint = "pip install 'combbench[fmi]'"
+        hint = "pip install '.[fmi]' in a checkout"
         raise InputError("needs the package pythonfmu3, which is not installed", "fmu", hint) from None
     try:
         export(chosen, out)

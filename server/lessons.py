@@ -7,9 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
-from core.errors import InputError
 from core.format import format_short, format_si
-from server.terminal import JsonOption, plainly, read_text, say, say_json
+from scenarios.reading import read_text
+from server.terminal import JsonOption, plainly, say, say_json
 
 
 @plainly
@@ -60,11 +60,7 @@ def sheets(
     if check is None:
         found = [library.get(name) for name in library.ids()]
     else:
-        try:
-            found = [check_sheet(check.read_text("utf-8"), check.stem)]
-        except (OSError, UnicodeDecodeError) as error:
-            reason = error.strerror if isinstance(error, OSError) else "not UTF-8 text"
-            raise InputError(f"cannot read {check}: {reason}", "--check") from None
+        found = [check_sheet(read_text(check, "--check"), check.stem)]
     rows: list[dict[str, Any]] = [
         {"id": s.id, "title": s.head.title, "minutes": s.head.minutes, "steps": len(s.steps), "points": s.points}
         for s in found

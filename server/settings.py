@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tomllib
 from dataclasses import dataclass
 from ipaddress import ip_address, ip_network
 from pathlib import Path
@@ -12,12 +11,14 @@ from typing import Any, Literal
 from pydantic import Field, SecretStr, ValidationError, field_validator, model_validator
 from pydantic_settings import (
     BaseSettings,
+    InitSettingsSource,
     PydanticBaseSettingsSource,
     SettingsConfigDict,
-    TomlConfigSettingsSource,
 )
 
 from core.errors import InputError
+from core.nesting import read_toml
+from scenarios.reading import read_text
 from server.platforms import Platform
 from server.security.public import PublicOrigin
 
@@ -29,7 +30,7 @@ ANY_IPV4, ANY_IPV6 = "0.0.0.0", "::"
 class Settings(BaseSettings):
     """All settings of the service; command line > environment > combbench.toml > default."""
 
-    model_config = SettingsConfigDict(env_prefix=PREFIX, extra="forbid", toml_file=CONFIG_FILE)
+    model_config = SettingsConfigDict(env_prefix=PREFIX, extra="forbid")
 
     host: str = Field(
         "127.0.0.1", description="Address to listen on; anything but loopback needs a token or classroom."
@@ -166,7 +167,7 @@ class Settings(BaseSettings):
         file_secret_settings: PydanticBaseSettingsSource,  # noqa: ARG003
     ) -> tuple[PydanticBaseSettingsSource, ...]:
         """Order the sources; no .env file, no secrets folder."""
-        return init_settings, env_settings, TomlConfigSettingsSource(settings_cls, CONFIG_FILE)
+        return init_settings, env_settings, InitSettingsSource(settings_cls, _file_values())
 
 
 @dataclass(frozen=True)
@@ -204,10 +205,6 @@ def load_settings(**given: Any) -> Settings:
         source = _source(name, values, _file_values())
         reason = first["msg"].removeprefix("Value error, ").lower()
         raise InputError(f"setting '{'.'.join(place)}' from {source}: {reason}", field=name) from None
-    except (ValueError, RecursionError) as error:  # also a whole number of more digits than Python reads
-        raise InputError(f"{CONFIG_FILE} is not valid TOML: {error}") from None
-    except OSError as error:
-        raise InputError(f"cannot read {CONFIG_FILE}: {error.strerror}") from None
 
 
 def describe_settings(settings: Settings, **given: Any) -> list[EffectiveSetting]:
@@ -249,7 +246,4 @@ def _source(name: str, values: dict[str, Any], file_values: dict[str, Any]) -> s
 
 def _file_values() -> dict[str, Any]:
     """Read combbench.toml if there is one."""
-    try:
-        return tomllib.loads(CONFIG_FILE.read_text("utf-8"))
-    except (OSError, ValueError, RecursionError):
-        return {}
+    return read_toml(read_text(CONFIG_FILE, ""), str(CONFIG_FILE)) if CONFIG_FILE.exists() else {}

@@ -23,6 +23,7 @@ from scenarios.campaign.survey import Survey, listed
 from scenarios.campaign.sweep import Sweep
 from scenarios.library import get
 from scenarios.own import with_units
+from scenarios.reading import read_text
 from scenarios.report.campaign import surveyed_report
 from scenarios.report.html import as_toml
 from scenarios.report.traces import write_text
@@ -78,12 +79,7 @@ def read_sweep(path: Path, units: Iterable[Path] = ()) -> Sweep:
 
 
 def _toml(path: Path, field: str) -> dict[str, Any]:
-    try:
-        return read_toml(path.read_text("utf-8"), field, f"TOML in {path}")
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror}", field) from None
-    except UnicodeDecodeError:
-        raise InputError(f"{path} is not UTF-8 text", field) from None
+    return read_toml(read_text(path, field), field, f"TOML in {path}")
 
 
 def carry_out(

@@ -1,4 +1,4 @@
-"""What commands share: lines and documents printed, files read, bad input in one line."""
+"""What commands share: lines and documents printed, scenarios found, bad input in one line."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ import typer
 from core.errors import InputError
 from scenarios.library import get
 from scenarios.own import with_units
+from scenarios.reading import read_text
 from scenarios.schema import Scenario
 
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document.")]
@@ -46,16 +47,6 @@ def plainly(command: Callable[P, T]) -> Callable[P, T]:
             raise typer.Exit(2) from None
 
     return guarded
-
-
-def read_text(path: Path, field: str) -> str:
-    """Return what is in a file."""
-    try:
-        return path.read_text("utf-8")
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror}", field) from None
-    except UnicodeDecodeError:
-        raise InputError(f"{path} is not UTF-8 text", field) from None
 
 
 def load(name: str, units: Sequence[Path] | None = None) -> Scenario:

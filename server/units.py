@@ -9,7 +9,8 @@ import typer
 
 from core.errors import InputError
 from core.format import format_si
-from server.terminal import JsonOption, plainly, read_text, say, say_json
+from scenarios.reading import read_text
+from server.terminal import JsonOption, plainly, say, say_json
 
 UnitOption = Annotated[
     list[Path] | None,

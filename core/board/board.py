@@ -252,7 +252,7 @@ class Board:
         return self._do(command, actor)
 
     def _wait(self, command: Command, actor: str, tick: int | None, condition: Condition | None) -> LogEntry:
-        changes.check(self, command)
+        changes.check(self.spec, command)
         self.pending.add(Pending(command, actor, tick, condition, self.tick))
         return self.note(actor, "scheduled", f"waiting: {words.describe(command, self.spec.library)}", command=command)
 

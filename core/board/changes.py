@@ -45,16 +45,16 @@ class Board(Protocol):
         """Write an entry of the log."""
 
 
-def check(board: Board, command: Command) -> None:
-    """Refuse a command for later that could never be carried out."""
+def check(spec: Spec, command: Command) -> None:
+    """Refuse a command for later that could never be carried out on a bench."""
     if isinstance(command, Inject):
-        _fault_params(board.spec, command, 0)
+        _fault_params(spec, command, 0)
     elif isinstance(command, Heal):
-        _names(board.spec, command)
+        _names(spec, command)
     elif isinstance(command, Set):
-        live_change(board.spec, command.set)
+        live_change(spec, command.set)
     elif isinstance(command, Switch):
-        live_change(board.spec, switched(board.spec, command))
+        live_change(spec, switched(spec, command))
 
 
 def carry_out(board: Board, command: Command) -> tuple[Any, Any]:

@@ -52,7 +52,7 @@ def twin_documents(document: Document) -> dict[str, Document]:
     base = {key: value for key, value in document.items() if key != "twins"}
     found = {}
     for name, values in twins.items():
-        if not IDENTIFIER.match(name):
+        if not IDENTIFIER.fullmatch(name):
             raise InputError("must be a short name of small letters, digits and _", f"twins.{name}")
         if not isinstance(values, dict):
             raise InputError(f"must be a table, got {short(values)}", f"twins.{name}")

@@ -67,7 +67,7 @@ def library_of(document: dict[str, Any]) -> Library:
         raise InputError(f"must be a table of at most {MOST_UNITS} units", "units")
     texts = []
     for name, table in units.items():
-        if not IDENTIFIER.match(name):
+        if not IDENTIFIER.fullmatch(name):
             raise InputError("must be a short name of small letters, digits and _", f"units.{short(name)}")
         if not isinstance(table, dict) or not isinstance(table.get("source"), str):
             raise InputError(f"must be a table with its source, got {short(table)}", f"units.{name}")

@@ -276,7 +276,7 @@ def _measuring(library: Library, kind: object) -> str:
 
 
 def _named(library: Library, family: str, key: str, name: str, table: Document) -> Section:
-    if not IDENTIFIER.match(name):
+    if not IDENTIFIER.fullmatch(name):
         raise InputError("must be a short name of small letters, digits and _", f"{key}.{name}")
     return _chosen(library, family, table, f"{key}.{name}")
 

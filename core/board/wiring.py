@@ -205,6 +205,11 @@ def unread(spec: Spec, order: list[Instance]) -> list[bool]:
     return [entry.key in spec.sensors and issubclass(entry.block, Sensor) and entry.key not in read for entry in order]
 
 
+def signals_of(spec: Spec) -> SignalTable:
+    """Return the signals of a bench, without its arrays."""
+    return _laid_out(spec, instances(spec))[0]
+
+
 def _laid_out(spec: Spec, order: list[Instance]) -> tuple[SignalTable, dict[str, int], int]:
     """Return the traced signals, the place of every signal, and how many places there are."""
     ports: dict[str, list[tuple[Port, Instance]]] = {"output": [], "tap": [], "hidden": []}

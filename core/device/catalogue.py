@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -16,6 +15,7 @@ from core.device.geometry import Geometry
 from core.device.gyroscope import GyroscopeTable
 from core.device.transfer_function import TransferFunction
 from core.errors import from_validation, unknown
+from core.nesting import read_toml
 
 
 @cache
@@ -23,7 +23,7 @@ def devices() -> tuple[Device, ...]:
     """Return every device of the catalogue, by id."""
     folder = files("core.device") / "data"
     texts = [entry.read_text("utf-8") for entry in folder.iterdir() if entry.name.endswith(".toml")]
-    parsed = [Device.model_validate(tomllib.loads(text)) for text in texts]
+    parsed = [Device.model_validate(read_toml(text, "device")) for text in texts]
     return tuple(sorted(parsed, key=lambda device: device.id))
 
 

@@ -16,7 +16,10 @@ class NamedModel(BlockParams):
     """One model of a bank: what of the nominal device it takes for changed, and a name for that."""
 
     name: str = Field(
-        min_length=1, max_length=24, pattern=r"^[^\s.]+$", description="short name, without spaces or dots"
+        min_length=1,
+        max_length=24,
+        pattern=r"^[^\s.\x00-\x1f\x7f]+$",
+        description="short name, without spaces or dots",
     )
 
     @property

@@ -35,6 +35,7 @@ from core.own.values import Own
 from core.reference.waveform import Waveform
 from core.registry import blocks
 from core.sense.sensor import Sensor
+from core.text import without_mark
 
 BASES: tuple[tuple[type[Block], str], ...] = (
     (Waveform, "reference"),
@@ -101,6 +102,7 @@ def unit(name: str, source: str) -> Unit:
     UnitError
         Naming line and column.
     """
+    source = without_mark(source)
     tree = read(source)
     mark = hashlib.sha256(source.encode()).hexdigest()[:12]
     declared = Declaration(tree, f"core.own.{name}_{mark}")

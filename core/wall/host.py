@@ -22,7 +22,7 @@ MOST_BYTES = 4 << 20
 """Of a module, and of the memory of an instance."""
 FUEL = 4_000_000
 """Instructions of a call: a sample has at most 50 000 operations, each of some instructions."""
-INSTALL = "install wasmtime: pip install 'combbench[wall]'; or set units to teacher or off"
+INSTALL = "install wasmtime: pip install '.[wall]' in a checkout; or set units to teacher or off"
 
 
 @dataclass(frozen=True)

@@ -156,7 +156,7 @@ def waiting(scenario: Scenario, board: Board) -> Queue:
     for position, commands in enumerate(scenario.events):
         for command in commands:
             try:
-                check(board, command)
+                check(board.spec, command)
             except InputError as error:
                 raise error.under(f"events.{position}") from None
             queue.add(Pending(command, "scenario", command.tick(board.dt_ms) or 0))

@@ -94,6 +94,7 @@ def _ticks(base: Scenario, values: Values) -> float:
         value = values.get(path, usual)
         return float(value) if isinstance(value, Real) else 0.0
 
-    if duration_ms := number("duration_ms", base.head.duration_ms or 0.0):
+    usual_ms = 0.0 if "samples" in values else base.head.duration_ms or 0.0
+    if duration_ms := number("duration_ms", usual_ms):
         return duration_ms * number("sample_rate_khz", base.spec.frame.sample_rate_khz)
     return number("samples", base.samples or DEFAULT_SAMPLES)

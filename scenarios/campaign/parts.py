@@ -184,8 +184,9 @@ class Parts:
         _put(self.path(number), fitted(table, schema))
 
 
-def write_runs(parts: Parts, file: BinaryIO, *, kind: Literal["csv", "parquet"]) -> None:
-    """Write a row for each run that is there, file after file, without what the diagnosers said sample by sample."""
+def write_runs(parts: Parts, file: BinaryIO, *, kind: Literal["csv", "parquet"]) -> int:
+    """Write a row for each run, without the verdicts of single samples; return the number of rows."""
+    rows = 0
     schema = parts.schema() or pa.schema([])
     names = [name for name in schema.names if about(schema.field(name)) != "diagnosis" and name != "key"]
     names = ["key", *names] if "key" in schema.names else names
@@ -193,6 +194,8 @@ def write_runs(parts: Parts, file: BinaryIO, *, kind: Literal["csv", "parquet"])
     with pq.ParquetWriter(file, chosen, compression="zstd") if kind == "parquet" else CSVWriter(file, chosen) as writer:
         for table in parts.tables(names):
             writer.write_table(table.select(names).replace_schema_metadata().cast(chosen))
+            rows += table.num_rows
+    return rows
 
 
 def _put(path: Path, table: pa.Table) -> None:

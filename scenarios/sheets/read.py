@@ -9,6 +9,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from core.errors import InputError, from_validation
 from core.nesting import read_toml
+from core.text import without_mark
 from scenarios.sheets.sheet import AnyStep, Blind, Head, Hold, Prediction, Question, Section, Sheet
 
 FENCE, MARK, END = "+++", "```step", "```"
@@ -35,7 +36,7 @@ def read_sheet(text: str, name: str) -> Sheet:
     """
     if len(text) > LONGEST:
         raise InputError(f"has more than {LONGEST} characters", f"sheet {name}")
-    lines = text.replace("\r\n", "\n").split("\n")
+    lines = without_mark(text).replace("\r\n", "\n").split("\n")
     if lines[0].strip() != FENCE or FENCE not in (line.strip() for line in lines[1:]):
         raise at(name, 1, "", InputError(f"begins with front matter between two lines of {FENCE}"))
     end = next(i for i, line in enumerate(lines) if i and line.strip() == FENCE)

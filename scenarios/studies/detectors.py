@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from core.block import BlockParams, FloatArray, parameter
-from core.errors import InputError
+from core.errors import InputError, unknown
 from scenarios.studies.monte_carlo import again
 from scenarios.studies.study import Study
 
@@ -46,7 +46,7 @@ class Detectors(Study):
         names = list(board.signals.names)
         for i, signal in enumerate(params.signals):
             if signal not in names:
-                raise InputError(f"there is no signal {signal}", f"study.signals.{i}")
+                raise unknown("signal", signal, names, f"study.signals.{i}")
         if not params.signals:
             raise InputError("needs a signal at least", "study.signals")
         columns = [names.index(signal) for signal in params.signals]

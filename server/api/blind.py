@@ -11,7 +11,7 @@ from server.api.bodies import Body, StrictRoute
 from server.api.classes import Outcomes
 from server.api.deps import PersonDep, RateLimited, ServiceDep, SessionDep
 from server.api.students import students_of
-from server.bench.blind import Question
+from server.bench.blind import HiddenQuestion
 from server.errors import REFUSED, ApiError, why
 from server.people.blind_class import begin_for
 from server.people.blinds import Answer
@@ -43,7 +43,7 @@ class Said(Body):
 class Blindness(BaseModel):
     """The hidden fault of a bench, and the answers before."""
 
-    question: Question | None = Field(description="Null while nothing is hidden")
+    question: HiddenQuestion | None = Field(description="Null while nothing is hidden")
     rule: str = Field(description="How points are counted")
     answers: list[Answer] = Field(description="Oldest first, each with the truth")
 

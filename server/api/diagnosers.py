@@ -67,7 +67,7 @@ def find_turn(
 
 
 @router.get("/aliases")
-def map_aliases(
+def map_bench_aliases(
     session: SessionDep,
     name: str,
     frequency_hz: Annotated[

@@ -8,13 +8,14 @@ import io
 import os
 import re
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Any, BinaryIO, cast
 
 import pyarrow as pa
 from fastapi import Depends, Query
 from fastapi.responses import FileResponse, Response, StreamingResponse
+from pydantic import Field
 
 from server.service import Service
 from server.store.traces import MEDIA_TYPES, Cut, Format, read_cut, write
@@ -68,17 +69,20 @@ def _pieces(file: BinaryIO) -> Iterator[bytes]:
 
 
 Tick = Annotated[int | None, Query(ge=-(2**53), le=2**53)]
+Signals = Annotated[
+    Sequence[Annotated[str, Field(max_length=8000)]],
+    Query(max_length=1000, description="Names, one each time, or several between commas; all unless given"),
+]
 
 
 def get_cut(
-    signals: Annotated[str, Query(description="Names, separated by commas; all when empty", max_length=8000)] = "",
+    signals: Signals = (),
     start_tick: Tick = None,
     end_tick: Annotated[int | None, Query(ge=-(2**53), le=2**53, description="The one behind the last")] = None,
     every: Annotated[int, Query(ge=1, le=1_000_000, description="Every so many ticks")] = 1,
 ) -> Cut:
     """Read from the query which part of a trace is wanted."""
-    names = tuple(name.strip() for name in signals.split(",") if name.strip())
-    return Cut(tuple(dict.fromkeys(names)), start_tick, end_tick, every)
+    return Cut(tuple(name for name in signals if name.strip()), start_tick, end_tick, every)
 
 
 CutDep = Annotated[Cut, Depends(get_cut)]

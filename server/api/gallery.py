@@ -117,7 +117,7 @@ async def get_gallery(
 async def get_figure(scenario_id: str, service: ServiceDep) -> Response:
     """Return the figure of a library scenario, small, with axes and units."""
     if scenario_id not in ids():
-        raise not_found("scenario", scenario_id)
+        raise not_found("scenario", scenario_id, known=ids())
     figure = service.figures.made.get(scenario_id)
     if figure is None:
         raise not_found("figure of", scenario_id, "figures are made one after the other once the gallery is opened")

@@ -108,7 +108,7 @@ async def put_cue(
 async def _get(lecture_id: str) -> Lecture:
     """Return a lecture, or refuse with 404; reading one wires the bench of every cue."""
     if lecture_id not in lecture_ids():
-        raise not_found("lecture", lecture_id, f"there are: {', '.join(lecture_ids())}")
+        raise not_found("lecture", lecture_id, f"there are: {', '.join(lecture_ids())}", known=lecture_ids())
     return await asyncio.to_thread(lecture, lecture_id)
 
 

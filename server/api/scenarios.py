@@ -92,7 +92,7 @@ def list_scenarios() -> ScenarioList:
 def get_scenario(scenario_id: str) -> ScenarioText:
     """Return a scenario of the library as a document and as TOML."""
     if scenario_id not in ids():
-        raise not_found("scenario", scenario_id, "list them at /api/v1/scenarios")
+        raise not_found("scenario", scenario_id, "list them at /api/v1/scenarios", known=ids())
     scenario = get(scenario_id)
     return ScenarioText(document=scenario.document, toml=scenario.toml(), warnings=scenario.warnings)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, BinaryIO, Literal
 
 from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel, Field
@@ -22,8 +22,17 @@ from server.runs.listing import clean_label
 from server.runs.sweeps import SweepRun
 from server.store.traces import MEDIA_TYPES
 
-MOST_POINTS, MOST_AT_ONCE = 1000, 20_000
-"""Points of a page, and of an answer that is not asked for by pages."""
+MOST_POINTS = 20_000
+"""Points of an answer."""
+SO_FAR = "-so-far"
+"""End of the name of a file with the runs of a campaign under way."""
+RUNS = {
+    "X-Runs": {"description": "Runs that the file has", "schema": {"type": "integer"}},
+    "X-State": {
+        "description": "State of the campaign; until it has ended, more runs come",
+        "schema": {"type": "string"},
+    },
+}
 
 router = APIRouter(prefix="/sweeps", tags=["sweeps"], route_class=StrictRoute)
 
@@ -47,6 +56,7 @@ class SweepPoints(BaseModel):
     sweep: SweepRun
     points: list[PointTally]
     found: int = Field(description="Points that have runs, on all pages")
+    runs: int = Field(description="Runs in these results; until the campaign has ended, `sweep.done` may be ahead")
     figures: list[str] = Field(description="Figures that a run has")
     quantities: list[str] = Field(description="What runs can be counted over: axes that are numbers, seed, figures")
 
@@ -113,16 +123,16 @@ async def get_sweep_points(
 
     def read(survey: Survey) -> dict[str, Any]:
         order = survey.order(sort, descending=descending)
-        if limit is None and not sort and survey.points > MOST_AT_ONCE:
-            text = f"this campaign has {survey.points} points, at most {MOST_AT_ONCE} are sent at once"
-            raise ApiError(422, "too_long", text, "limit", f"ask page by page, up to {MOST_POINTS} points each")
         is_page = limit is not None or sort or offset
         chosen = order[offset : None if limit is None else offset + limit] if is_page else range(survey.points)
+        if len(chosen) > MOST_POINTS:
+            text = f"these are {len(chosen)} points, at most {MOST_POINTS} are sent at once"
+            raise ApiError(422, "too_long", text, "limit", "ask page by page")
         about = {"found": len(order), "quantities": survey.quantities, "figures": survey.figures}
-        return {"points": survey.page(chosen), **about}
+        return {"points": survey.page(chosen), "runs": survey.runs(), **about}
 
-    found = await service.sweeps.read(sweep_id, read)
-    return SweepPoints(sweep=await service.sweeps.get(sweep_id), **found)
+    sweep, found = await service.sweeps.surveyed(sweep_id, read)
+    return SweepPoints(sweep=sweep, **found)
 
 
 @router.get("/{sweep_id}/distribution")
@@ -139,17 +149,28 @@ async def get_sweep_distribution(
 @router.get(
     "/{sweep_id}/runs",
     response_class=Response,
-    responses={200: {"content": {MEDIA_TYPES[kind]: {} for kind in ("csv", "parquet")}}},
+    responses={200: {"headers": RUNS, "content": {MEDIA_TYPES[kind]: {} for kind in ("csv", "parquet")}}},
 )
 async def get_sweep_runs(
     sweep_id: str, service: ServiceDep, kind: Annotated[Literal["csv", "parquet"], Query(alias="format")] = "csv"
 ) -> Response:
-    """Download one row for each run that is done: point, seed, digest and every figure."""
-    parts = await service.sweeps.read(sweep_id, lambda survey: survey.parts if survey.runs() else None)
+    """Download one row for each run: point, seed, digest and every figure.
+
+    While the campaign is under way, the file has the runs of its beginning, and its name ends in *so-far*.
+    """
+    sweep, parts = await service.sweeps.surveyed(sweep_id, lambda survey: survey.parts if survey.runs() else None)
     if parts is None:
         raise ApiError(409, "conflict", "no run of this campaign is done yet")
-    name = f"{(await service.sweeps.get(sweep_id)).name}-runs"
-    return await written_response(service, lambda file: write_runs(parts, file, kind=kind), name, kind)
+    runs = 0
+
+    def put(file: BinaryIO) -> None:
+        nonlocal runs
+        runs = write_runs(parts, file, kind=kind)
+
+    name = f"{sweep.name}-runs{SO_FAR if sweep.finished is None else ''}"
+    response = await written_response(service, put, name, kind)
+    response.headers.update({"X-Runs": str(runs), "X-State": sweep.state})
+    return response
 
 
 @router.get("/{sweep_id}/report", response_class=Response, responses={200: {"content": {HTML: {}}}})

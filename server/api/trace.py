@@ -12,17 +12,15 @@ from core.board.history import Float32Array
 from core.errors import InputError
 from server.api.bodies import StrictRoute
 from server.api.deps import SeenDep, ServiceDep
-from server.api.files import table_response
+from server.api.files import Signals, Tick, table_response
 from server.bench.session import Seen
 from server.errors import ApiError
-from server.store.traces import MEDIA_TYPES, Format, schema_of, table_of
+from server.store.traces import MEDIA_TYPES, Format, asked, schema_of, table_of
 from server.stream.view import Span
 from server.stream.wire import MAX_COLUMNS
 from server.version import VERSION
 
 router = APIRouter(prefix="/benches/{bench_id}/trace", tags=["trace"], route_class=StrictRoute)
-
-Tick = Annotated[int | None, Query(ge=-(2**53), le=2**53)]
 
 
 class Extremes(BaseModel):
@@ -49,14 +47,15 @@ class Trace(BaseModel):
 async def get_trace(
     session: SeenDep,
     service: ServiceDep,
-    signals: Annotated[str, Query(description="Names, separated by commas; all when empty", max_length=8000)] = "",
+    signals: Signals = (),
     start_tick: Tick = None,
     end_tick: Tick = None,
     columns: Annotated[int, Query(ge=1, le=MAX_COLUMNS)] = 800,
     kind: Annotated[Format | None, Query(alias="format", description="A file with every sample")] = None,
 ) -> Response | Trace:
     """Return a span of the past; the board does not stop for it."""
-    names = [name.strip() for name in signals.split(",") if name.strip()] or [s.name for s in session.signals]
+    known = [signal.name for signal in session.signals]
+    names = list(asked(signals, set(known))) or known
     indices = session.indices(names)
     history = session.history
     first, head = history.first_tick, history.end_tick

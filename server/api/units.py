@@ -26,7 +26,7 @@ router = APIRouter(prefix="/units", tags=["units"], route_class=StrictRoute)
 USUAL = "first-look"
 Origin = Literal["library", "folder", "command line"]
 Name = Annotated[str, Field(pattern=IDENTIFIER.pattern, description="Small letters, digits and _, a letter first")]
-NamePath = Annotated[str, Path(pattern=IDENTIFIER.pattern)]
+NamePath = Annotated[str, Path(pattern=IDENTIFIER.pattern, description="Name of a unit")]
 
 
 class UnitEntry(BaseModel):
@@ -104,7 +104,8 @@ def get_unit(name: NamePath, service: ServiceDep) -> UnitText:
     for one in copies():
         if one.name == name:
             return _text(one, "library")
-    raise not_found("unit", name, "list them at /api/v1/units")
+    known = (one.name for one in (*service.units.all(), *copies()))
+    raise not_found("unit", name, "list them at /api/v1/units", known=known)
 
 
 @router.post("", dependencies=[RateLimited])

@@ -68,7 +68,7 @@ class Played(BaseModel):
     seed: int
 
 
-class Question(BaseModel):
+class HiddenQuestion(BaseModel):
     """The words people get about a hidden fault, or about the game that is played."""
 
     id: str
@@ -83,7 +83,7 @@ class Question(BaseModel):
 class Blind(BaseModel):
     """A hidden fault: the question, and what answers it."""
 
-    question: Question
+    question: HiddenQuestion
     truth: str
     came_tick: int | None = Field(description="When the fault comes; null for a healthy device")
     faults: list[Document]
@@ -183,7 +183,7 @@ def hide(board: TickSource, sheet: Document, id_: str, shows: bool, which: int, 
     latest = board.tick + round(LATEST_S * ms_per_s / board.dt_ms)
     came = board.tick + round((EARLIEST_S + when * (LATEST_S - EARLIEST_S)) * ms_per_s / board.dt_ms)
     return Blind(
-        question=Question(
+        question=HiddenQuestion(
             id=id_,
             answers=[item.name for item in answers],
             factors=[item.model_dump(exclude_defaults=True, exclude={"name"}) for item in answers],
@@ -214,7 +214,7 @@ def play(played: Played, id_: str, sheet: Document, may_set: list[str], may_inje
     shows : str
         The diagnoser that may be looked at.
     """
-    question = Question(id=id_, game=played, answers=[], factors=[], shows=[shows], began_tick=0, by_tick=0)
+    question = HiddenQuestion(id=id_, game=played, answers=[], factors=[], shows=[shows], began_tick=0, by_tick=0)
     shown = {key: value for key, value in sheet.items() if key in SHEET}
     return Blind(
         question=question,

@@ -12,7 +12,7 @@ from core.board.document import Document
 from core.cards import BlockCard
 from core.loop.score import Scores
 from core.signals import Signal
-from server.bench.blind import Question
+from server.bench.blind import HiddenQuestion
 
 State = Literal["running", "paused", "tripped"]
 
@@ -169,7 +169,9 @@ class Bench(BenchStatus):
     replay_of: str | None = Field(None, description="The recording it plays; such a bench takes no changes")
     recorded_scale: float | None = Field(None, description="Device seconds per wall second it was recorded at")
     opened: Opened | None = Field(None, description="The experiment it was opened from, if it was")
-    blind: Question | None = Field(None, description="Asked while a fault is hidden here; little else is served then")
+    blind: HiddenQuestion | None = Field(
+        None, description="Asked while a fault is hidden here; little else is served then"
+    )
     name: str = Field("", description="What people call it beside the title, as a branch: with PID")
     keep: bool = Field(False, description="It is never let go")
     let_go_in_s: float | None = Field(

@@ -114,7 +114,7 @@ class Sheets:
         """Return a sheet, or refuse with 404."""
         found = self._known(sheet_id)
         if found is None:
-            raise not_found("sheet", sheet_id)
+            raise not_found("sheet", sheet_id, known=(sheet.id for sheet in self.all()))
         return found
 
     def _known(self, sheet_id: str) -> Sheet | None:

@@ -124,6 +124,12 @@ class Sweeps(Requested[SweepRun]):
         row = await self._readable(sweep_id)
         return await self._surveys.read(sweep_id, row.document, *self._progress(row), reader)
 
+    async def surveyed(self, sweep_id: str, reader: Callable[[Survey], T]) -> tuple[SweepRun, T]:
+        """Call a reader, and return the campaign too; if the campaign has ended, its results are complete."""
+        before, found = await self.get(sweep_id), await self.read(sweep_id, reader)
+        sweep = await self.get(sweep_id)
+        return sweep, found if sweep.finished == before.finished else await self.read(sweep_id, reader)
+
     async def report(self, sweep_id: str) -> str:
         """Return the report of the results so far."""
         row = await self._readable(sweep_id)

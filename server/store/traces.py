@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO, Literal, cast
@@ -16,9 +16,12 @@ from numpy.typing import NDArray
 
 from core.errors import InputError, unknown
 from core.signals import CLOCK
+from scenarios.report.matlab import variables
 from scenarios.report.traces import packing
 
 LARGEST = 2**62
+NAMES = "names"
+"""Structure of a MAT file that tells the name of the signal in each variable."""
 Format = Literal["csv", "parquet", "npz", "mat"]
 
 MEDIA_TYPES: dict[str, str] = {
@@ -54,7 +57,7 @@ def table_of(schema: pa.Schema, first_tick: int, dt_ms: float, samples: NDArray[
 
 @dataclass(frozen=True)
 class Cut:
-    """A part of a trace: signals (all when empty), ticks from start to before end, every so many."""
+    """A part of a trace: signals as asked for (all when empty), ticks from start to before end, every so many."""
 
     signals: tuple[str, ...] = ()
     start: int | None = None
@@ -86,10 +89,11 @@ def read_cut(path: Path, cut: Cut, most: int) -> pa.Table:
     """
     file = pq.ParquetFile(path)
     known = file.schema_arrow.names
-    for name in cut.signals:
+    signals = asked(cut.signals, known)
+    for name in signals:
         if name not in known[2:]:
             raise unknown("signal", name, known[2:], "signals")
-    columns = [*known[:2], *cut.signals] if cut.signals else known
+    columns = [*known[:2], *signals] if signals else known
     start, end = cut.start if cut.start is not None else -LARGEST, cut.end if cut.end is not None else LARGEST
     pieces, count, first = [], 0, None
     for batch in file.iter_batches(columns=columns):
@@ -127,6 +131,13 @@ def write(table: pa.Table, file: BinaryIO, kind: Format) -> None:
         return
     from scipy.io import savemat  # loads half of scipy
 
-    # MATLAB knows no dots in a name.
-    named = {name.replace(".", "_"): array for name, array in arrays.items()}
-    savemat(cast(Any, file), named, oned_as="column")
+    own = variables(list(arrays), taken=[NAMES])
+    named: dict[str, Any] = {own[name]: array for name, array in arrays.items()}
+    named[NAMES] = {variable: name for name, variable in own.items()}
+    savemat(cast(Any, file), named, oned_as="column", long_field_names=True)
+
+
+def asked(given: Iterable[str], known: Collection[str]) -> tuple[str, ...]:
+    """Return the names that are asked for, each once: a text is a known name, or names between commas."""
+    parts = ([text] if text in known else text.split(",") for text in given)
+    return tuple(dict.fromkeys(name.strip() for part in parts for name in part if name.strip()))

@@ -82,7 +82,7 @@ class Units:
         ApiError
             When the name is taken, or there is no room.
         """
-        if not IDENTIFIER.match(name):
+        if not IDENTIFIER.fullmatch(name):
             raise InputError("must be a short name of small letters, digits and _", "name")
         if any(name in registry.blocks(family) for family in registry.FAMILIES):
             text = f"{name} is a block of the library, whose place it would take on every new bench"

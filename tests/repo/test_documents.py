@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -34,6 +35,17 @@ def test_named_paths_exist(name: str, root: Path, documents: dict[str, str]) -> 
         if is_ours and not PLACEHOLDER.search(span) and not list(root.glob(span.rstrip("/"))):
             missing.append(span)
     assert not missing, f"{name} names what is not there (a new file's name is written <name>): {missing}"
+
+
+def test_what_is_installed_is_the_checkout_with_extras_that_it_has(root: Path, files: list[Path]) -> None:
+    extras = tomllib.loads((root / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    texts = {path: path.read_text() for path in files if path.suffix in (".md", ".py") and path.name != "CHANGELOG.md"}
+    named = {(extra, path) for path, text in texts.items() for extra in re.findall(r"pip install '\.\[(\w+)\]'", text)}
+    assert {extra for extra, _ in named} >= {"fmi", "wall"}
+    assert [(extra, path) for extra, path in named if extra not in extras] == []
+    assert [path for path, text in texts.items() if re.search(r"pip install [^\n]*combbench\[", text)] == [], (
+        "no index has the project"
+    )
 
 
 def test_links_between_documents_resolve(root: Path, files: list[Path]) -> None:

@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +43,11 @@ def alike(one: Any, other: Any) -> bool:
     if isinstance(one, list):
         return len(one) == len(other) and all(map(alike, one, other))
     return bool(one == (pytest.approx(other, rel=1e-9) if isinstance(other, float) else other))
+
+
+def test_the_version_is_said(call):
+    result = call("--version")
+    assert (result.exit_code, result.stdout) == (0, f"combbench {version('combbench')}\n")
 
 
 def test_run_prints_one_json_object(call):

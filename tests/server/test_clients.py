@@ -97,8 +97,9 @@ OCTAVE = """
 addpath('{clients}');
 lab = CombBench('{address}', '{token}');
 done = lab.run('first-look', struct('seed', 7, 'set', containers.Map({{'samples', 'sensor.noise_um'}}, {{300, 0.06}})));
-trace = lab.trace(done, {{'plant.displacement'}});
+trace = lab.trace(done, {{'plant.displacement', 'kalman.probability.m+5'}});
 printf('%s\\n%.17g\\n%d\\n', done.summary.digest, sum(trace.plant_displacement), numel(trace.tick));
+printf('%s %d\\n', trace.names.kalman_probability_m_plus_5, numel(trace.kalman_probability_m_plus_5));
 campaign = struct('schema', 1, 'id', 'clients', 'scenario', 'ch3-mrac-spring-x2', 'seeds', '1:2');
 campaign.grid = containers.Map({{'controller.adaptation_gain'}}, {{[10.5, 30.5]}});
 points = lab.points(lab.sweep(campaign));
@@ -126,9 +127,10 @@ def test_the_client_of_matlab_in_octave(live: Any, tmp_path: Path) -> None:
     environment = {**os.environ, "TMPDIR": str(temporary)}
     command = ["octave-cli", "--quiet", program]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=110)
-    digest, total, ticks, campaign, controller, refused = done.stdout.splitlines()
+    digest, total, ticks, named, campaign, controller, refused = done.stdout.splitlines()
     here = run(with_values(get("first-look"), {"samples": 300, "sensor.noise_um": 0.06}), 7)
     assert (digest, int(ticks), campaign, controller) == (here.digest, 300, "2 2", "mrac"), done.stderr
+    assert named == "kalman.probability.m+5 300"
     assert float(total) == pytest.approx(here.signal("plant.displacement").sum(), rel=1e-12)
     assert not [*temporary.iterdir()], "it leaves files behind"
     assert refused.startswith("CombBench:unknown|scenario: unknown scenario 'ch5-sevn-step'")

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import Any
 
 import pytest
+from jsonschema import Draft202012Validator
 from pydantic import TypeAdapter
 
+from core.nesting import read_toml
+from scenarios.campaign.sweep import Sweep
+from scenarios.sheets.read import read_sheet
 from server.app import create_app
+from server.document import REF
+from server.examples import EXAMPLES
 from server.settings import Settings
-from server.stream.wire import CLIENT_MESSAGE, ServerMessage
+from server.stream.wire import CLIENT_MESSAGE, ClientMessage, ServerMessage
 
 
 @pytest.fixture(scope="module")
@@ -27,6 +35,11 @@ def references(node: Any) -> set[str]:
     return set()
 
 
+def operations(document: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
+    """Return each operation with its method and path."""
+    return [(f"{method} {path}", one) for path, each in document["paths"].items() for method, one in each.items()]
+
+
 def test_the_paths_of_the_contract_are_there(document: dict[str, Any]) -> None:
     wanted = {
         "/catalog", "/devices", "/scenarios", "/benches", "/benches/{bench_id}", "/benches/{bench_id}/commands",
@@ -36,6 +49,75 @@ def test_the_paths_of_the_contract_are_there(document: dict[str, Any]) -> None:
     assert {f"/api/v1{path}" for path in wanted} | {"/health/live", "/health/ready", "/metrics"} <= set(
         document["paths"]
     )
+
+
+def test_each_schema_is_titled_by_its_name_alone(document: dict[str, Any]) -> None:
+    schemas = document["components"]["schemas"]
+    assert [name for name, schema in schemas.items() if schema.get("title") != name] == []
+
+
+def test_each_operation_has_a_short_name_of_its_own(document: dict[str, Any]) -> None:
+    names = [operation["operationId"] for _, operation in operations(document)]
+    assert len(set(names)) == len(names)
+    assert [name for name in names if len(name) > 32 or not re.fullmatch(r"[a-z]+(_[a-z]+)*", name)] == []
+
+
+def test_each_parameter_says_its_meaning(document: dict[str, Any]) -> None:
+    for where, operation in operations(document):
+        for parameter in operation.get("parameters", []):
+            assert len(parameter.get("description", "")) > 5, (where, parameter["name"])
+
+
+def test_each_body_has_two_examples_that_it_takes(document: dict[str, Any]) -> None:
+    bodies = {operation["operationId"]: operation["requestBody"] for _, operation in operations(document)
+              if "requestBody" in operation}  # fmt: skip
+    assert EXAMPLES.keys() == bodies.keys()
+    for name, body in bodies.items():
+        content = body["content"]["application/json"]
+        schema = {**content["schema"], "components": document["components"]}
+        examples = [example["value"] for example in content["examples"].values()]
+        assert len(examples) == 2 and examples[0] != examples[1], name
+        for example in examples:
+            Draft202012Validator(schema).validate(example)
+
+
+def test_examples_of_plain_questions_are_answered(live: Any, document: dict[str, Any]) -> None:
+    asked = [(where.split()[1], operation["operationId"]) for where, operation in operations(document)
+             if re.match("post /api/v1/(devices|theory|scenarios|units|benches$)", where)]  # fmt: skip
+    for path, name in asked:
+        for example in EXAMPLES.get(name, ()) if "{" not in path else ():
+            answer = live.http.post(path, json=example)
+            assert answer.is_success, (name, answer.text)
+            assert answer.json().get("error") is None, (name, answer.text)
+
+
+def test_examples_of_campaigns_and_sheets_can_be_read() -> None:
+    for example in EXAMPLES["start_sweep"]:
+        assert len(Sweep(read_toml(text, "sweep") if isinstance(text := example["sweep"], str) else text)) >= 2
+    for example in EXAMPLES["open_sheet"]:
+        assert read_sheet(example["text"], "example").head.title
+
+
+def test_the_stream_and_the_doors_mean_the_same_by_each_name(document: dict[str, Any]) -> None:
+    schemas = document["components"]["schemas"]
+    for kind, mode in ((ClientMessage, "validation"), (ServerMessage, "serialization")):
+        inner = TypeAdapter(kind).json_schema(mode=mode, ref_template=REF)["$defs"]  # type: ignore[arg-type]
+        for name, schema in inner.items():
+            assert schemas[name].get("properties", {}).keys() == schema.get("properties", {}).keys(), name
+            assert schemas[name].get("description", "") == schema.get("description", ""), name
+
+
+def test_clients_learn_where_the_service_is_and_how_to_come_in(document: dict[str, Any], tmp_path: Path) -> None:
+    assert [server["url"] for server in document["servers"]] == ["http://{host}:{port}"]
+    usual = {name: one["default"] for name, one in document["servers"][0]["variables"].items()}
+    assert usual == {"host": Settings.model_fields["host"].default, "port": str(Settings.model_fields["port"].default)}
+    public = create_app(Settings(data=tmp_path, public_origin="https://lab.example/bench"))
+    assert [server["url"] for server in public.servers] == ["https://lab.example/bench"]
+    scheme = document["components"]["securitySchemes"]["token"]
+    assert (scheme["type"], scheme["scheme"]) == ("http", "bearer")
+    opened = {where for where, operation in operations(document) if operation["security"] == []}
+    assert opened == {"get /health/live", "get /health/ready", "post /api/v1/classes/{class_id}/join"}
+    assert all(operation["security"] in ([], [{"token": []}]) for _, operation in operations(document))
 
 
 def test_no_reference_leads_nowhere(document: dict[str, Any]) -> None:

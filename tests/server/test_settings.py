@@ -43,9 +43,9 @@ def test_a_wrong_file_is_refused_in_one_line(here: Path) -> None:
         ("colour = 1", ["unknown setting 'colour'", "combbench.toml"]),
         ("port = 'many'", ["'port'", "combbench.toml", "integer"]),
         ("max_benches = 0", ["'max_benches'", "greater than or equal to 1"]),
-        ("port = [", ["not valid TOML"]),
-        ("port = " + "[" * 5000, ["not valid TOML"]),
-        ("port = '\xff'", ["not valid TOML", "utf-8"]),
+        ("port = [", ["malformed TOML", "combbench.toml"]),
+        ("port = " + "[" * 5000, ["nested too deeply", "combbench.toml"]),
+        ("port = '\xff'", ["not UTF-8 text", "combbench.toml"]),
     ):
         (here / "combbench.toml").write_text(text, "latin-1")
         with pytest.raises(InputError) as caught:

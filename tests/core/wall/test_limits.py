@@ -178,7 +178,7 @@ def test_without_the_package_the_wall_is_not_built_and_says_what_to_install(monk
     host.machine.cache_clear()
     with pytest.raises(InputError, match="wasmtime") as raised:
         built.build()
-    assert raised.value.field == "units" and "combbench[wall]" in raised.value.hint
+    assert raised.value.field == "units" and "'.[wall]' in a checkout" in raised.value.hint
     assert not wall.is_demanded()
 
 

@@ -158,10 +158,11 @@ def test_one_that_stops_says_how_to_go_on(sweep: Any, monkeypatch: pytest.Monkey
 
 def test_a_run_that_cannot_be_carried_out_is_exit_1(sweep: Any, tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text(
-        'schema = 1\nscenario = "ch5-seven-step"\nset.samples = 50\ngrid."events.0.severity" = [0.05, 1e9]\n'
+        'schema = 1\nscenario = "ch5-seven-step"\nset.samples = 50\n'
+        'grid."events.0.fault" = ["damping", "sensor_dropout"]\ngrid."events.0.severity" = [0.05, 5.0]\n'
     )
     ended = sweep("--workers", "1")
-    assert ended.exit_code == 1 and "2 of 2 runs, 1 could not be carried out" in ended.stdout
+    assert ended.exit_code == 1 and "4 of 4 runs, 1 could not be carried out" in ended.stdout
     assert "Runs that could not be carried out" in (tmp_path / "sweeps" / "sweep" / "report.html").read_text()
 
 
@@ -177,6 +178,7 @@ BAD = [
     ("set.device" + ".a" * 500 + " = 1", [], "sweep: nested too deeply, at most 50 levels"),
     ('[grid]\n"device' + ".a" * 500 + '" = [1]\n', [], "nested too deeply, at most 50 levels"),
     ('[grid]\n"controller.kind" = []\n', [], "grid.controller.kind"),
+    ('[grid]\n"events.0.severity" = [0.05, 1e9]\n', [], "events.0.severity: must be <= 20"),
     ('[grid]\n"controller.knd" = ["pid"]\n', [], "controller.knd"),
 ]
 

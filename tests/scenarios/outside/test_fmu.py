@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 import sys
 import zipfile
 from pathlib import Path
@@ -68,6 +69,15 @@ def test_its_description_names_the_units(tmp_path: Path) -> None:
     assert [*tmp_path.iterdir()] == [path]
 
 
+def test_each_variable_has_a_structured_name_of_fmi_3(tmp_path: Path) -> None:
+    path = tmp_path / "device.fmu"
+    export(quiet(title='Ω+5, "m" & <b>'), path)
+    names = [variable.name for variable in fmpy.read_model_description(str(path)).modelVariables]
+    identifier = r"(?:[A-Za-z_][A-Za-z0-9_]*|'(?:[^'\\]|\\.)+')(?:\[\d+(?:,\d+)*\])?"  # FMI 3.0, 2.4.7.5.1
+    assert names and len(set(names)) == len(names)
+    assert [name for name in names if not re.fullmatch(rf"{identifier}(?:\.{identifier})*", name)] == []
+
+
 def test_a_longer_step_holds_the_voltage_and_one_between_samples_is_refused(tmp_path: Path) -> None:
     scenario, path = quiet(), tmp_path / "device.fmu"
     export(scenario, path)
@@ -112,4 +122,7 @@ def test_without_the_package_one_line_says_so(monkeypatch: pytest.MonkeyPatch, t
     monkeypatch.setitem(sys.modules, "pythonfmu3", None)
     done = CliRunner().invoke(app, ["fmu", "first-look", "--out", str(tmp_path / "device.fmu")])
     assert done.exit_code == 2 and not [*tmp_path.iterdir()]
-    assert done.stderr.startswith("combbench: fmu: needs the package pythonfmu3") and "combbench[fmi]" in done.stderr
+    assert (
+        done.stderr.startswith("combbench: fmu: needs the package pythonfmu3")
+        and "'.[fmi]' in a checkout" in done.stderr
+    )

@@ -62,11 +62,15 @@ def test_a_campaign_is_read_from_its_files(serve: Any, tmp_path: Path, monkeypat
         assert sum(get("distribution?x=seed")["counts"][0]) == 12
 
         check(live.http.get(f"{path}/points?sort=nis"), 422, None, "nis")
-        check(live.http.get(f"{path}/points?limit=1001"), 422, None, "1000")
+        assert get("points?limit=5000")["points"] == everything["points"] and everything["runs"] == 12
+        check(live.http.get(f"{path}/points?limit=20001"), 422, None, "20000")
         check(live.http.get(f"{path}/distribution?x=variant"), 422, None, "variant")
         check(live.http.get(f"{path}/distribution"), 422, None)
 
-        table = pyarrow.csv.read_csv(io.BytesIO(live.http.get(f"{path}/runs").content))
+        answer = live.http.get(f"{path}/runs")
+        assert (answer.headers["X-Runs"], answer.headers["X-State"]) == ("12", "done")
+        assert "so-far" not in answer.headers["Content-Disposition"]
+        table = pyarrow.csv.read_csv(io.BytesIO(answer.content))
         assert table.column_names[0] == "key" and table["key"].to_pylist() == frame["key"].to_pylist()
         assert not any(name.endswith(".confusion") for name in table.column_names)
 
@@ -88,8 +92,38 @@ def test_files_grow_while_a_campaign_runs(serve: Any, tmp_path: Path) -> None:
         while not (answer := live.http.get(f"{path}/points?limit=5").json())["found"]:
             pass
         assert answer["sweep"]["state"] == "running" and 0 < answer["points"][0]["runs"] <= answer["sweep"]["done"]
+        part = live.http.get(f"{path}/runs")
+        assert (part.headers["X-State"], part.headers["X-Runs"]) == ("running", str(part.text.count("\n") - 1))
+        assert 'runs-so-far.csv"' in part.headers["Content-Disposition"]
         live.http.delete(path)
         found = ended(live, sweep_id)
         answer = live.http.get(f"{path}/points").json()
         assert sum(point["runs"] for point in answer["points"]) == found["done"] < 900
         assert len(pq.read_table(tmp_path / "sweeps" / sweep_id)) == found["done"]
+
+
+def test_results_that_end_while_they_are_read_are_read_again(serve: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An answer that says the campaign is done has all of its runs."""
+    with serve() as live:
+        sweeps = live.service.sweeps
+        sweep_id = live.http.post("/api/v1/sweeps", json={"sweep": CAMPAIGN}).json()["id"]
+        ended(live, sweep_id)
+        running, read = True, sweeps.read
+        get = sweeps.get
+
+        async def get_late(asked: str) -> Any:
+            found = await get(asked)
+            return found.model_copy(update={"state": "running", "finished": None}) if running else found
+
+        async def read_early(asked: str, reader: Any) -> Any:
+            nonlocal running
+            found = await read(asked, reader)
+            if not running:
+                return found
+            running = False  # it ends now
+            return {**found, "points": [], "runs": 0}
+
+        monkeypatch.setattr(sweeps, "get", get_late)
+        monkeypatch.setattr(sweeps, "read", read_early)
+        answer = live.http.get(f"/api/v1/sweeps/{sweep_id}/points").json()
+        assert (answer["sweep"]["state"], answer["runs"], len(answer["points"])) == ("done", 12, 3)

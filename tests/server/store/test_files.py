@@ -29,8 +29,9 @@ def read(path: Path, kind: str) -> dict[str, Any]:
         return {name: column.to_numpy() for name, column in zip(*_columns(pyarrow.csv.read_csv(path)), strict=True)}
     if kind == "npz":
         return dict(np.load(path))
-    found = {k: v[:, 0] for k, v in loadmat(path).items() if not k.startswith("__")}
-    return {name.replace("_", ".", 1) if name not in ("tick", "time_ms") else name: v for name, v in found.items()}
+    found = {k: v for k, v in loadmat(path).items() if not k.startswith("__")}
+    names = found.pop("names")
+    return {str(names[variable][0, 0][0]): values[:, 0] for variable, values in found.items()}
 
 
 def _columns(table: Any) -> tuple[list[str], list[Any]]:

@@ -102,7 +102,7 @@ export const api = {
     data(client.GET("/api/v1/sweeps/{sweep_id}/distribution", { params: { ...sweep(id).params, query } })),
   scenario: (scenario_id: string) =>
     data(client.GET("/api/v1/scenarios/{scenario_id}", { params: { path: { scenario_id } } })),
-  trace: (bench_id: string, signals: string, start_tick: number, end_tick: number, columns: number) =>
+  trace: (bench_id: string, signals: string[], start_tick: number, end_tick: number, columns: number) =>
     data(
       client.GET("/api/v1/benches/{bench_id}/trace", {
         params: { path: { bench_id }, query: { signals, start_tick, end_tick, columns } },

@@ -15,7 +15,7 @@ export interface paths {
          * Get Catalog
          * @description List every block, or those of one family.
          */
-        get: operations["get_catalog_api_v1_catalog_get"];
+        get: operations["get_catalog"];
         put?: never;
         post?: never;
         delete?: never;
@@ -35,7 +35,7 @@ export interface paths {
          * Get Devices
          * @description List every device.
          */
-        get: operations["get_devices_api_v1_devices_get"];
+        get: operations["get_devices"];
         put?: never;
         post?: never;
         delete?: never;
@@ -57,7 +57,7 @@ export interface paths {
          * Evaluate
          * @description Work out the figures of a device in its environment.
          */
-        post: operations["evaluate_api_v1_devices_evaluate_post"];
+        post: operations["evaluate"];
         delete?: never;
         options?: never;
         head?: never;
@@ -77,7 +77,7 @@ export interface paths {
          * Bode
          * @description Return the frequency response of a device with its tolerance band.
          */
-        post: operations["bode_api_v1_devices_bode_post"];
+        post: operations["bode"];
         delete?: never;
         options?: never;
         head?: never;
@@ -97,7 +97,7 @@ export interface paths {
          * Spread
          * @description Draw devices from the process; the same seed gives the same devices.
          */
-        post: operations["spread_api_v1_devices_spread_post"];
+        post: operations["spread"];
         delete?: never;
         options?: never;
         head?: never;
@@ -112,16 +112,16 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Map Aliases
+         * Map Bench Aliases
          * @description Map the response of every hypothesis to the tones of the drive, and name those with the same response.
          */
-        get: operations["map_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_get"];
+        get: operations["map_bench_aliases"];
         put?: never;
         /**
          * Get Aliases
          * @description Report the hypotheses of a list that look alike under the drive.
          */
-        post: operations["get_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_post"];
+        post: operations["get_aliases"];
         delete?: never;
         options?: never;
         head?: never;
@@ -139,7 +139,7 @@ export interface paths {
          * List Scenarios
          * @description List the library.
          */
-        get: operations["list_scenarios_api_v1_scenarios_get"];
+        get: operations["list_scenarios"];
         put?: never;
         post?: never;
         delete?: never;
@@ -159,7 +159,7 @@ export interface paths {
          * Get Scenario
          * @description Return a scenario of the library as a document and as TOML.
          */
-        get: operations["get_scenario_api_v1_scenarios__scenario_id__get"];
+        get: operations["get_scenario"];
         put?: never;
         post?: never;
         delete?: never;
@@ -181,7 +181,7 @@ export interface paths {
          * Check Scenario
          * @description Check a scenario without running it; the answer 422 says what is wrong with it.
          */
-        post: operations["check_scenario_api_v1_scenarios_check_post"];
+        post: operations["check_scenario"];
         delete?: never;
         options?: never;
         head?: never;
@@ -199,13 +199,13 @@ export interface paths {
          * List Units
          * @description List the units one may begin with, and say whether one may bring any.
          */
-        get: operations["list_units_api_v1_units_get"];
+        get: operations["list_units"];
         put?: never;
         /**
          * Check Unit
          * @description Check the text of a unit; nothing is compiled and nothing is kept.
          */
-        post: operations["check_unit_api_v1_units_post"];
+        post: operations["check_unit"];
         delete?: never;
         options?: never;
         head?: never;
@@ -223,18 +223,18 @@ export interface paths {
          * Get Unit
          * @description Return the text of a unit.
          */
-        get: operations["get_unit_api_v1_units__name__get"];
+        get: operations["get_unit"];
         /**
          * Keep Unit
          * @description Keep a unit in the folder of this server: every new bench has it, and runs that name it.
          */
-        put: operations["keep_unit_api_v1_units__name__put"];
+        put: operations["keep_unit"];
         post?: never;
         /**
          * Delete Unit
          * @description Delete a unit from the folder of this server; benches that have it keep it.
          */
-        delete: operations["delete_unit_api_v1_units__name__delete"];
+        delete: operations["delete_unit"];
         options?: never;
         head?: never;
         patch?: never;
@@ -251,13 +251,13 @@ export interface paths {
          * List Benches
          * @description List the live benches without those of students, which their class lists; a student sees the own bench.
          */
-        get: operations["list_benches_api_v1_benches_get"];
+        get: operations["list_benches"];
         put?: never;
         /**
          * Create Bench
          * @description Make a bench and let it run; a student's takes the place of the one before.
          */
-        post: operations["create_bench_api_v1_benches_post"];
+        post: operations["create_bench"];
         delete?: never;
         options?: never;
         head?: never;
@@ -275,21 +275,21 @@ export interface paths {
          * Get Bench
          * @description Describe a bench.
          */
-        get: operations["get_bench_api_v1_benches__bench_id__get"];
+        get: operations["get_bench"];
         put?: never;
         post?: never;
         /**
          * Delete Bench
          * @description Close a bench; what it recorded stays.
          */
-        delete: operations["delete_bench_api_v1_benches__bench_id__delete"];
+        delete: operations["delete_bench"];
         options?: never;
         head?: never;
         /**
          * Name Bench
          * @description Call a bench something, as a branch by what differs in it.
          */
-        patch: operations["name_bench_api_v1_benches__bench_id__patch"];
+        patch: operations["name_bench"];
         trace?: never;
     };
     "/api/v1/benches/{bench_id}/reopen": {
@@ -305,7 +305,7 @@ export interface paths {
          * Reopen Bench
          * @description Return a bench; one that was let go is opened again by the same id, with the same bits, standing or running.
          */
-        post: operations["reopen_bench_api_v1_benches__bench_id__reopen_post"];
+        post: operations["reopen_bench"];
         delete?: never;
         options?: never;
         head?: never;
@@ -328,7 +328,7 @@ export interface paths {
          *     Commands to the board are events of a scenario; their earlier notation, by the kinds inject, heal, set, switch and
          *     reset_trip, is still read.
          */
-        post: operations["command_api_v1_benches__bench_id__commands_post"];
+        post: operations["command"];
         delete?: never;
         options?: never;
         head?: never;
@@ -346,7 +346,7 @@ export interface paths {
          * List Events
          * @description List what happened after an event.
          */
-        get: operations["list_events_api_v1_benches__bench_id__events_get"];
+        get: operations["list_events"];
         put?: never;
         post?: never;
         delete?: never;
@@ -368,7 +368,7 @@ export interface paths {
          *
          *     It begins with the digest. Run headless, it gives the same bits.
          */
-        get: operations["save_scenario_api_v1_benches__bench_id__scenario_get"];
+        get: operations["save_scenario"];
         put?: never;
         post?: never;
         delete?: never;
@@ -388,7 +388,7 @@ export interface paths {
          * Get Digest
          * @description Return the digest of the trace so far.
          */
-        get: operations["get_digest_api_v1_benches__bench_id__digest_get"];
+        get: operations["get_digest"];
         put?: never;
         post?: never;
         delete?: never;
@@ -410,7 +410,7 @@ export interface paths {
          * Fork Bench
          * @description Make a second bench that goes on from this moment, a snapshot or a tick of the past, bit for bit.
          */
-        post: operations["fork_bench_api_v1_benches__bench_id__fork_post"];
+        post: operations["fork_bench"];
         delete?: never;
         options?: never;
         head?: never;
@@ -432,7 +432,7 @@ export interface paths {
          *
          *     With ``repeat`` it begins as this one began, but for the values, and what was done on this one is done again.
          */
-        post: operations["vary_bench_api_v1_benches__bench_id__variant_post"];
+        post: operations["vary_bench"];
         delete?: never;
         options?: never;
         head?: never;
@@ -450,7 +450,7 @@ export interface paths {
          * List Narration
          * @description List what the narrator has said after a sentence; all of it if the bench has jumped since.
          */
-        get: operations["list_narration_api_v1_benches__bench_id__narration_get"];
+        get: operations["list_narration"];
         put?: never;
         post?: never;
         delete?: never;
@@ -472,7 +472,7 @@ export interface paths {
          * Identification
          * @description Identify the device by a swept sine, with the faults and the air it has now.
          */
-        post: operations["identification_api_v1_benches__bench_id__identification_post"];
+        post: operations["identification"];
         delete?: never;
         options?: never;
         head?: never;
@@ -490,7 +490,7 @@ export interface paths {
          * Region
          * @description Map where the shuttle pulls in, for a voltage held on it.
          */
-        get: operations["region_api_v1_benches__bench_id__unstable_region_get"];
+        get: operations["region"];
         put?: never;
         post?: never;
         delete?: never;
@@ -510,7 +510,7 @@ export interface paths {
          * Plants
          * @description Measure the cost of a tick with each plant.
          */
-        get: operations["plants_api_v1_benches__bench_id__plants_get"];
+        get: operations["plants"];
         put?: never;
         post?: never;
         delete?: never;
@@ -530,7 +530,7 @@ export interface paths {
          * Flops
          * @description Count the operations of every diagnoser as it is now, and compare them with a board of some speed.
          */
-        get: operations["flops_api_v1_benches__bench_id__flops_get"];
+        get: operations["flops"];
         put?: never;
         post?: never;
         delete?: never;
@@ -550,7 +550,7 @@ export interface paths {
          * Explain Sample
          * @description Work out how a sample changed every hypothesis: prior, residual, likelihood, posterior.
          */
-        get: operations["explain_sample_api_v1_benches__bench_id__diagnosers__name__explain_get"];
+        get: operations["explain_sample"];
         put?: never;
         post?: never;
         delete?: never;
@@ -570,7 +570,7 @@ export interface paths {
          * Find Turn
          * @description Find the sample up to this one at which the verdict last changed.
          */
-        get: operations["find_turn_api_v1_benches__bench_id__diagnosers__name__turn_get"];
+        get: operations["find_turn"];
         put?: never;
         post?: never;
         delete?: never;
@@ -590,7 +590,7 @@ export interface paths {
          * Get Readout
          * @description Fit angle random walk, bias instability and rate random walk to the record so far.
          */
-        get: operations["get_readout_api_v1_benches__bench_id__readouts__name__get"];
+        get: operations["get_readout"];
         put?: never;
         post?: never;
         delete?: never;
@@ -610,7 +610,7 @@ export interface paths {
          * List Printed
          * @description List what is printed of the figure, with the ticks at which it is drawn.
          */
-        get: operations["list_printed_api_v1_benches__bench_id__printed_get"];
+        get: operations["list_printed"];
         put?: never;
         post?: never;
         delete?: never;
@@ -630,7 +630,7 @@ export interface paths {
          * List Claims
          * @description Measure the claims of a bench over what it has run since tick 0, with the bits of a headless run.
          */
-        get: operations["list_claims_api_v1_benches__bench_id__claims_get"];
+        get: operations["list_claims"];
         put?: never;
         post?: never;
         delete?: never;
@@ -650,13 +650,13 @@ export interface paths {
          * List Snapshots
          * @description List the moments kept.
          */
-        get: operations["list_snapshots_api_v1_benches__bench_id__snapshots_get"];
+        get: operations["list_snapshots"];
         put?: never;
         /**
          * Take Snapshot
          * @description Keep this moment.
          */
-        post: operations["take_snapshot_api_v1_benches__bench_id__snapshots_post"];
+        post: operations["take_snapshot"];
         delete?: never;
         options?: never;
         head?: never;
@@ -677,7 +677,7 @@ export interface paths {
          * Delete Snapshot
          * @description Forget a moment.
          */
-        delete: operations["delete_snapshot_api_v1_benches__bench_id__snapshots__snapshot_id__delete"];
+        delete: operations["delete_snapshot"];
         options?: never;
         head?: never;
         patch?: never;
@@ -696,7 +696,7 @@ export interface paths {
          * Restore Snapshot
          * @description Go back to a moment; from there the bench computes the same bits again.
          */
-        post: operations["restore_snapshot_api_v1_benches__bench_id__snapshots__snapshot_id__restore_post"];
+        post: operations["restore_snapshot"];
         delete?: never;
         options?: never;
         head?: never;
@@ -716,7 +716,7 @@ export interface paths {
          * Save Parameter Set
          * @description Keep every value of a bench that may change while it runs.
          */
-        post: operations["save_parameter_set_api_v1_benches__bench_id__parameter_sets_post"];
+        post: operations["save_parameter_set"];
         delete?: never;
         options?: never;
         head?: never;
@@ -736,7 +736,7 @@ export interface paths {
          * Apply Parameter Set
          * @description Give a bench the values of a set, all in one tick.
          */
-        post: operations["apply_parameter_set_api_v1_benches__bench_id__parameter_sets__set_id__post"];
+        post: operations["apply_parameter_set"];
         delete?: never;
         options?: never;
         head?: never;
@@ -754,7 +754,7 @@ export interface paths {
          * List Parameter Sets
          * @description List the sets.
          */
-        get: operations["list_parameter_sets_api_v1_parameter_sets_get"];
+        get: operations["list_parameter_sets"];
         put?: never;
         post?: never;
         delete?: never;
@@ -774,21 +774,21 @@ export interface paths {
          * Get Parameter Set
          * @description Return a set with its values.
          */
-        get: operations["get_parameter_set_api_v1_parameter_sets__set_id__get"];
+        get: operations["get_parameter_set"];
         put?: never;
         post?: never;
         /**
          * Delete Parameter Set
          * @description Forget a set.
          */
-        delete: operations["delete_parameter_set_api_v1_parameter_sets__set_id__delete"];
+        delete: operations["delete_parameter_set"];
         options?: never;
         head?: never;
         /**
          * Rename Parameter Set
          * @description Give a set another name.
          */
-        patch: operations["rename_parameter_set_api_v1_parameter_sets__set_id__patch"];
+        patch: operations["rename_parameter_set"];
         trace?: never;
     };
     "/api/v1/parameter-sets/{set_id}/difference": {
@@ -802,7 +802,7 @@ export interface paths {
          * Compare Parameter Sets
          * @description Say where a set differs from another set or from a bench.
          */
-        get: operations["compare_parameter_sets_api_v1_parameter_sets__set_id__difference_get"];
+        get: operations["compare_parameter_sets"];
         put?: never;
         post?: never;
         delete?: never;
@@ -822,13 +822,13 @@ export interface paths {
          * List Bench Recordings
          * @description List the recordings of a bench.
          */
-        get: operations["list_bench_recordings_api_v1_benches__bench_id__recordings_get"];
+        get: operations["list_bench_recordings"];
         put?: never;
         /**
          * Start Recording
          * @description Begin to record: now, or when a condition holds, with some of the past; `ticks: 0` keeps the past alone.
          */
-        post: operations["start_recording_api_v1_benches__bench_id__recordings_post"];
+        post: operations["start_recording"];
         delete?: never;
         options?: never;
         head?: never;
@@ -848,7 +848,7 @@ export interface paths {
          * Stop Recording
          * @description End a recording; the answer comes when its file is whole.
          */
-        post: operations["stop_recording_api_v1_benches__bench_id__recordings__recording_id__stop_post"];
+        post: operations["stop_recording"];
         delete?: never;
         options?: never;
         head?: never;
@@ -866,7 +866,7 @@ export interface paths {
          * List Recordings
          * @description List all recordings, also of benches that are gone; a student sees those of the own benches.
          */
-        get: operations["list_recordings_api_v1_recordings_get"];
+        get: operations["list_recordings"];
         put?: never;
         post?: never;
         delete?: never;
@@ -886,14 +886,14 @@ export interface paths {
          * Get Recording
          * @description Describe a recording: scenario, seed, events, versions, layout.
          */
-        get: operations["get_recording_api_v1_recordings__recording_id__get"];
+        get: operations["get_recording"];
         put?: never;
         post?: never;
         /**
          * Delete Recording
          * @description Delete a recording that has ended.
          */
-        delete: operations["delete_recording_api_v1_recordings__recording_id__delete"];
+        delete: operations["delete_recording"];
         options?: never;
         head?: never;
         patch?: never;
@@ -912,7 +912,7 @@ export interface paths {
          * Replay Recording
          * @description Play a recording on a bench of its own: the same streams; commands start, pause, step, seek, loop, time_scale.
          */
-        post: operations["replay_recording_api_v1_recordings__recording_id__replay_post"];
+        post: operations["replay_recording"];
         delete?: never;
         options?: never;
         head?: never;
@@ -932,7 +932,7 @@ export interface paths {
          * Compare Recordings
          * @description Compare two recordings signal by signal: pass or fail.
          */
-        post: operations["compare_recordings_api_v1_recordings__recording_id__compare_post"];
+        post: operations["compare_recordings"];
         delete?: never;
         options?: never;
         head?: never;
@@ -950,7 +950,7 @@ export interface paths {
          * Get Recording Trace
          * @description Download a recording, or a part of it.
          */
-        get: operations["get_recording_trace_api_v1_recordings__recording_id__trace_get"];
+        get: operations["get_recording_trace"];
         put?: never;
         post?: never;
         delete?: never;
@@ -970,7 +970,7 @@ export interface paths {
          * Get Trace
          * @description Return a span of the past; the board does not stop for it.
          */
-        get: operations["get_trace_api_v1_benches__bench_id__trace_get"];
+        get: operations["get_trace"];
         put?: never;
         post?: never;
         delete?: never;
@@ -990,13 +990,13 @@ export interface paths {
          * List Runs
          * @description List runs, newest first; text, state and scenario choose among them.
          */
-        get: operations["list_runs_api_v1_runs_get"];
+        get: operations["list_runs"];
         put?: never;
         /**
          * Start Run
          * @description Queue a headless run; it does not disturb the live benches.
          */
-        post: operations["start_run_api_v1_runs_post"];
+        post: operations["start_run"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1016,7 +1016,7 @@ export interface paths {
          * Remove Runs
          * @description Remove runs that have ended, and their files; all that have ended if none is named.
          */
-        post: operations["remove_runs_api_v1_runs_remove_post"];
+        post: operations["remove_runs"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1034,7 +1034,7 @@ export interface paths {
          * Compare Finished Runs
          * @description Put finished runs side by side: figures, differences from the first run, and the signals that all have.
          */
-        get: operations["compare_finished_runs_api_v1_runs_compare_get"];
+        get: operations["compare_finished_runs"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1054,7 +1054,7 @@ export interface paths {
          * Compare Traces
          * @description Return one signal of several finished runs, to be laid over each other.
          */
-        get: operations["compare_traces_api_v1_runs_compare_trace_get"];
+        get: operations["compare_traces"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1074,21 +1074,21 @@ export interface paths {
          * Get Run
          * @description Return how far a run is, and its summary once it is done.
          */
-        get: operations["get_run_api_v1_runs__run_id__get"];
+        get: operations["get_run"];
         put?: never;
         post?: never;
         /**
          * Cancel Run
          * @description Cancel a run that waits or is under way.
          */
-        delete: operations["cancel_run_api_v1_runs__run_id__delete"];
+        delete: operations["cancel_run"];
         options?: never;
         head?: never;
         /**
          * Rename Run
          * @description Give a run a name.
          */
-        patch: operations["rename_run_api_v1_runs__run_id__patch"];
+        patch: operations["rename_run"];
         trace?: never;
     };
     "/api/v1/runs/{run_id}/trace": {
@@ -1102,7 +1102,7 @@ export interface paths {
          * Get Run Trace
          * @description Download the trace of a run (of its first seed).
          */
-        get: operations["get_run_trace_api_v1_runs__run_id__trace_get"];
+        get: operations["get_run_trace"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1122,7 +1122,7 @@ export interface paths {
          * Get Run Report
          * @description Download the report of a run, one HTML file that needs nothing else.
          */
-        get: operations["get_run_report_api_v1_runs__run_id__report_get"];
+        get: operations["get_run_report"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1142,7 +1142,7 @@ export interface paths {
          * Get Run Thumbnail
          * @description Return a small drawing of a run.
          */
-        get: operations["get_run_thumbnail_api_v1_runs__run_id__thumbnail_get"];
+        get: operations["get_run_thumbnail"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1162,7 +1162,7 @@ export interface paths {
          * Get Run Scenario
          * @description Return what a run carries out as a scenario in TOML; a bench made of it has the same bits.
          */
-        get: operations["get_run_scenario_api_v1_runs__run_id__scenario_get"];
+        get: operations["get_run_scenario"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1182,7 +1182,7 @@ export interface paths {
          * Get Run Script
          * @description Download a Python script that repeats a run over REST and checks that it gives the same bits.
          */
-        get: operations["get_run_script_api_v1_runs__run_id__script_get"];
+        get: operations["get_run_script"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1202,13 +1202,13 @@ export interface paths {
          * List Sweeps
          * @description List campaigns, newest first; text, state and scenario choose among them.
          */
-        get: operations["list_sweeps_api_v1_sweeps_get"];
+        get: operations["list_sweeps"];
         put?: never;
         /**
          * Start Sweep
          * @description Start a campaign, or go on with one that was stopped; a second request for a campaign returns the same one.
          */
-        post: operations["start_sweep_api_v1_sweeps_post"];
+        post: operations["start_sweep"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1228,7 +1228,7 @@ export interface paths {
          * Remove Sweeps
          * @description Remove campaigns that have ended; all that have ended if none is named.
          */
-        post: operations["remove_sweeps_api_v1_sweeps_remove_post"];
+        post: operations["remove_sweeps"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1246,21 +1246,21 @@ export interface paths {
          * Get Sweep
          * @description Return how far a campaign is.
          */
-        get: operations["get_sweep_api_v1_sweeps__sweep_id__get"];
+        get: operations["get_sweep"];
         put?: never;
         post?: never;
         /**
          * Cancel Sweep
          * @description Stop a campaign; the runs that are done stay.
          */
-        delete: operations["cancel_sweep_api_v1_sweeps__sweep_id__delete"];
+        delete: operations["cancel_sweep"];
         options?: never;
         head?: never;
         /**
          * Rename Sweep
          * @description Give a campaign a name.
          */
-        patch: operations["rename_sweep_api_v1_sweeps__sweep_id__patch"];
+        patch: operations["rename_sweep"];
         trace?: never;
     };
     "/api/v1/sweeps/{sweep_id}/points": {
@@ -1274,7 +1274,7 @@ export interface paths {
          * Get Sweep Points
          * @description Return figures, confusion, delays and receiver operating characteristics of the runs done so far.
          */
-        get: operations["get_sweep_points_api_v1_sweeps__sweep_id__points_get"];
+        get: operations["get_sweep_points"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1294,7 +1294,7 @@ export interface paths {
          * Get Sweep Distribution
          * @description Count the runs done so far over one quantity or two; few runs are listed as well.
          */
-        get: operations["get_sweep_distribution_api_v1_sweeps__sweep_id__distribution_get"];
+        get: operations["get_sweep_distribution"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1312,9 +1312,11 @@ export interface paths {
         };
         /**
          * Get Sweep Runs
-         * @description Download one row for each run that is done: point, seed, digest and every figure.
+         * @description Download one row for each run: point, seed, digest and every figure.
+         *
+         *     While the campaign is under way, the file has the runs of its beginning, and its name ends in *so-far*.
          */
-        get: operations["get_sweep_runs_api_v1_sweeps__sweep_id__runs_get"];
+        get: operations["get_sweep_runs"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1334,7 +1336,7 @@ export interface paths {
          * Get Sweep Report
          * @description Download the report, one HTML file that needs nothing else.
          */
-        get: operations["get_sweep_report_api_v1_sweeps__sweep_id__report_get"];
+        get: operations["get_sweep_report"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1354,7 +1356,7 @@ export interface paths {
          * Get Sweep Script
          * @description Download a Python script that repeats a campaign over REST.
          */
-        get: operations["get_sweep_script_api_v1_sweeps__sweep_id__script_get"];
+        get: operations["get_sweep_script"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1376,7 +1378,7 @@ export interface paths {
          * Find Threshold
          * @description Look headless where a claim begins to hold; it does not disturb the live benches.
          */
-        post: operations["find_threshold_api_v1_thresholds_post"];
+        post: operations["find_threshold"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1394,14 +1396,14 @@ export interface paths {
          * Get Threshold
          * @description Return how far a search is, and what it found once it is done.
          */
-        get: operations["get_threshold_api_v1_thresholds__threshold_id__get"];
+        get: operations["get_threshold"];
         put?: never;
         post?: never;
         /**
          * Cancel Threshold
          * @description Cancel a search that waits or is under way; the runs that are done stay.
          */
-        delete: operations["cancel_threshold_api_v1_thresholds__threshold_id__delete"];
+        delete: operations["cancel_threshold"];
         options?: never;
         head?: never;
         patch?: never;
@@ -1418,7 +1420,7 @@ export interface paths {
          * Get Gallery
          * @description Show every library scenario: claim, expectations, figure and measured values. Missing figures are made now.
          */
-        get: operations["get_gallery_api_v1_gallery_get"];
+        get: operations["get_gallery"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1438,7 +1440,7 @@ export interface paths {
          * Get Figure
          * @description Return the figure of a library scenario, small, with axes and units.
          */
-        get: operations["get_figure_api_v1_gallery__scenario_id__figure_get"];
+        get: operations["get_figure"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1460,7 +1462,7 @@ export interface paths {
          * Run Gallery
          * @description Run the library, or a part of it; a scenario that has been run with this version is not run again.
          */
-        post: operations["run_gallery_api_v1_gallery_run_post"];
+        post: operations["run_gallery"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1478,7 +1480,7 @@ export interface paths {
          * List Benchmarks
          * @description List the benchmarks.
          */
-        get: operations["list_benchmarks_api_v1_benchmarks_get"];
+        get: operations["list_benchmarks"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1498,7 +1500,7 @@ export interface paths {
          * Get Benchmark
          * @description Return a benchmark: tracks, and the table of the diagnosers of the library on the public seeds.
          */
-        get: operations["get_benchmark_api_v1_benchmarks__benchmark_id__get"];
+        get: operations["get_benchmark"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1520,7 +1522,7 @@ export interface paths {
          * Judge Positive Real
          * @description Judge a transfer function, and return its Nyquist curve over the frequencies that matter.
          */
-        post: operations["judge_positive_real_api_v1_theory_positive_real_post"];
+        post: operations["judge_positive_real"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1540,7 +1542,7 @@ export interface paths {
          * Judge Positive Definite
          * @description Judge a matrix.
          */
-        post: operations["judge_positive_definite_api_v1_theory_positive_definite_post"];
+        post: operations["judge_positive_definite"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1560,7 +1562,7 @@ export interface paths {
          * Judge Persistency
          * @description Judge an input in its steady state.
          */
-        post: operations["judge_persistency_api_v1_theory_persistency_post"];
+        post: operations["judge_persistency"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1580,7 +1582,7 @@ export interface paths {
          * Map Aliases
          * @description Map the responses of hypotheses to tones, and name those with the same response.
          */
-        post: operations["map_aliases_api_v1_theory_aliases_post"];
+        post: operations["map_aliases"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1600,7 +1602,7 @@ export interface paths {
          * Map Instability
          * @description Map the region where a rule of appendix B is unstable under a sine.
          */
-        post: operations["map_instability_api_v1_theory_instability_map_post"];
+        post: operations["map_instability"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1618,13 +1620,13 @@ export interface paths {
          * List Links
          * @description List the links.
          */
-        get: operations["list_links_api_v1_links_get"];
+        get: operations["list_links"];
         put?: never;
         /**
          * Make Link
          * @description Keep an experiment or a layout; it stays when the bench goes.
          */
-        post: operations["make_link_api_v1_links_post"];
+        post: operations["make_link"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1642,21 +1644,21 @@ export interface paths {
          * Get Link
          * @description Return a link and what it leads to.
          */
-        get: operations["get_link_api_v1_links__link_id__get"];
+        get: operations["get_link"];
         put?: never;
         post?: never;
         /**
          * Delete Link
          * @description Delete a link; benches opened by it stay.
          */
-        delete: operations["delete_link_api_v1_links__link_id__delete"];
+        delete: operations["delete_link"];
         options?: never;
         head?: never;
         /**
          * Change Link
          * @description Change the title or the note of a link.
          */
-        patch: operations["change_link_api_v1_links__link_id__patch"];
+        patch: operations["change_link"];
         trace?: never;
     };
     "/api/v1/links/{link_id}/open": {
@@ -1674,7 +1676,7 @@ export interface paths {
          *
          *     `opened` says whether its bits are those of then.
          */
-        post: operations["open_link_api_v1_links__link_id__open_post"];
+        post: operations["open_link"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1692,7 +1694,7 @@ export interface paths {
          * List Lectures
          * @description List the lectures.
          */
-        get: operations["list_lectures_api_v1_lectures_get"];
+        get: operations["list_lectures"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1712,7 +1714,7 @@ export interface paths {
          * Get Lecture
          * @description Return a lecture: its cues with the notes of the speaker.
          */
-        get: operations["get_lecture_api_v1_lectures__lecture_id__get"];
+        get: operations["get_lecture"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1734,7 +1736,7 @@ export interface paths {
          * Put Cue
          * @description Put a bench into the exact state of a cue, counted from 1; a cue that has a length runs from there to its end.
          */
-        post: operations["put_cue_api_v1_lectures__lecture_id__cues__number__post"];
+        post: operations["put_cue"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1752,7 +1754,7 @@ export interface paths {
          * Get Me
          * @description Say who is asking; a student whose bench is not there gets it here.
          */
-        get: operations["get_me_api_v1_me_get"];
+        get: operations["get_me"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1773,7 +1775,7 @@ export interface paths {
          * Raise Hand
          * @description Raise a hand, or take it down; the teacher sees it.
          */
-        put: operations["raise_hand_api_v1_me_hand_put"];
+        put: operations["raise_hand"];
         post?: never;
         delete?: never;
         options?: never;
@@ -1792,13 +1794,13 @@ export interface paths {
          * List Classes
          * @description List the classes.
          */
-        get: operations["list_classes_api_v1_classes_get"];
+        get: operations["list_classes"];
         put?: never;
         /**
          * Open Class
          * @description Open a class; its code is in the answer.
          */
-        post: operations["open_class_api_v1_classes_post"];
+        post: operations["open_class"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1816,14 +1818,14 @@ export interface paths {
          * Get Class
          * @description Describe a class.
          */
-        get: operations["get_class_api_v1_classes__class_id__get"];
+        get: operations["get_class"];
         put?: never;
         post?: never;
         /**
          * End Class
          * @description End a class: close its benches and sessions, and delete the names of its students and the log.
          */
-        delete: operations["end_class_api_v1_classes__class_id__delete"];
+        delete: operations["end_class"];
         options?: never;
         head?: never;
         patch?: never;
@@ -1842,12 +1844,12 @@ export interface paths {
          * Make Code
          * @description Let students join by a new code; an earlier one ends.
          */
-        post: operations["make_code_api_v1_classes__class_id__code_post"];
+        post: operations["make_code"];
         /**
          * End Code
          * @description Let nobody else join; students who are there stay.
          */
-        delete: operations["end_code_api_v1_classes__class_id__code_delete"];
+        delete: operations["end_code"];
         options?: never;
         head?: never;
         patch?: never;
@@ -1866,7 +1868,7 @@ export interface paths {
          * Join Class
          * @description Join a class by its code.
          */
-        post: operations["join_class_api_v1_classes__class_id__join_post"];
+        post: operations["join_class"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1884,7 +1886,7 @@ export interface paths {
          * List Members
          * @description Show every student: name, bench, state, verdict beside truth, a small trace.
          */
-        get: operations["list_members_api_v1_classes__class_id__members_get"];
+        get: operations["list_members"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1907,7 +1909,7 @@ export interface paths {
          * Remove Member
          * @description Send a student away: the session ends at once, the bench is closed.
          */
-        delete: operations["remove_member_api_v1_classes__class_id__members__member_id__delete"];
+        delete: operations["remove_member"];
         options?: never;
         head?: never;
         patch?: never;
@@ -1926,7 +1928,7 @@ export interface paths {
          * Command All
          * @description Carry out a command on the benches of all students or some at their next tick edges, no matter who drives.
          */
-        post: operations["command_all_api_v1_classes__class_id__commands_post"];
+        post: operations["command_all"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1946,7 +1948,7 @@ export interface paths {
          * Begin Scenario
          * @description Begin a scenario on the benches of all students; students who join later begin with it too.
          */
-        post: operations["begin_scenario_api_v1_classes__class_id__scenario_post"];
+        post: operations["begin_scenario"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1965,13 +1967,13 @@ export interface paths {
          * Show Bench
          * @description Show a bench to all students of a class; they see it, change nothing, and keep their own benches.
          */
-        put: operations["show_bench_api_v1_classes__class_id__shown_put"];
+        put: operations["show_bench"];
         post?: never;
         /**
          * End Showing
          * @description Let the students of a class see their own benches again.
          */
-        delete: operations["end_showing_api_v1_classes__class_id__shown_delete"];
+        delete: operations["end_showing"];
         options?: never;
         head?: never;
         patch?: never;
@@ -1989,7 +1991,7 @@ export interface paths {
          * Give Layout
          * @description Arrange the panels of all students of a class; each can go back to the own layout.
          */
-        put: operations["give_layout_api_v1_classes__class_id__layout_put"];
+        put: operations["give_layout"];
         post?: never;
         delete?: never;
         options?: never;
@@ -2008,7 +2010,7 @@ export interface paths {
          * Get Layout
          * @description Return the layout that the class of a student was given last.
          */
-        get: operations["get_layout_api_v1_me_layout_get"];
+        get: operations["get_layout"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2031,7 +2033,7 @@ export interface paths {
          * Lower Hand
          * @description Take down the hand of a student.
          */
-        delete: operations["lower_hand_api_v1_classes__class_id__members__member_id__hand_delete"];
+        delete: operations["lower_hand"];
         options?: never;
         head?: never;
         patch?: never;
@@ -2053,7 +2055,7 @@ export interface paths {
          *     A bench that does not stand there already is reset. When all stand, they begin between the same two slices of the
          *     engine: those of the same time scale are at the same tick from then on.
          */
-        post: operations["start_all_api_v1_classes__class_id__start_post"];
+        post: operations["start_all"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2073,7 +2075,7 @@ export interface paths {
          * Change Driver
          * @description Change who drives a bench, or ask for it.
          */
-        post: operations["change_driver_api_v1_benches__bench_id__driving_post"];
+        post: operations["change_driver"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2091,18 +2093,18 @@ export interface paths {
          * Get Blind
          * @description Return the question of a bench, and the answers so far.
          */
-        get: operations["get_blind_api_v1_benches__bench_id__blind_get"];
+        get: operations["get_blind"];
         put?: never;
         /**
          * Hide Fault
          * @description Hide a fault on a bench, or none; until somebody answers, the bench serves nothing that tells it.
          */
-        post: operations["hide_fault_api_v1_benches__bench_id__blind_post"];
+        post: operations["hide_fault"];
         /**
          * Give Up
          * @description Reveal the fault without an answer.
          */
-        delete: operations["give_up_api_v1_benches__bench_id__blind_delete"];
+        delete: operations["give_up"];
         options?: never;
         head?: never;
         patch?: never;
@@ -2121,7 +2123,7 @@ export interface paths {
          * Answer
          * @description Answer what the device is; the reply tells the hidden fault, and the bench serves everything again.
          */
-        post: operations["answer_api_v1_benches__bench_id__blind_answer_post"];
+        post: operations["answer"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2139,18 +2141,18 @@ export interface paths {
          * Get Class Blind
          * @description List the hidden faults of a class and the answers, with the truth.
          */
-        get: operations["get_class_blind_api_v1_classes__class_id__blind_get"];
+        get: operations["get_class_blind"];
         put?: never;
         /**
          * Hide For Class
          * @description Give students a new bench each, with a device and a hidden fault of their own.
          */
-        post: operations["hide_for_class_api_v1_classes__class_id__blind_post"];
+        post: operations["hide_for_class"];
         /**
          * Reveal Class
          * @description Reveal their faults to all students of a class; those who have not answered get no points.
          */
-        delete: operations["reveal_class_api_v1_classes__class_id__blind_delete"];
+        delete: operations["reveal_class"];
         options?: never;
         head?: never;
         patch?: never;
@@ -2167,7 +2169,7 @@ export interface paths {
          * List Captures
          * @description List the captures of a bench; a trace of the signals, start_tick and end_tick of one has every sample of it.
          */
-        get: operations["list_captures_api_v1_benches__bench_id__captures_get"];
+        get: operations["list_captures"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2187,7 +2189,7 @@ export interface paths {
          * List Games
          * @description List the games with their rules.
          */
-        get: operations["list_games_api_v1_games_get"];
+        get: operations["list_games"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2207,7 +2209,7 @@ export interface paths {
          * Get Game
          * @description Show a game at a seed: own attempts, the table, and what is hidden once nothing can be handed in any more.
          */
-        get: operations["get_game_api_v1_games__game_id__get"];
+        get: operations["get_game"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2229,7 +2231,7 @@ export interface paths {
          * Begin Game
          * @description Begin the bench of a game, in place of the one before: it hides what the game hides.
          */
-        post: operations["begin_game_api_v1_games__game_id__begin_post"];
+        post: operations["begin_game"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2249,7 +2251,7 @@ export interface paths {
          * Hand In
          * @description Hand in: the server judges it by the rule, and the last attempt of the answer has the points.
          */
-        post: operations["hand_in_api_v1_games__game_id__attempts_post"];
+        post: operations["hand_in"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2269,7 +2271,7 @@ export interface paths {
          * Reveal Game
          * @description Show what a seed hides; the caller cannot hand in at it any more.
          */
-        post: operations["reveal_game_api_v1_games__game_id__reveal_post"];
+        post: operations["reveal_game"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2287,7 +2289,7 @@ export interface paths {
          * Get Class Game
          * @description Show the table of a class with all settings handed in, and the hidden facts of each student.
          */
-        get: operations["get_class_game_api_v1_classes__class_id__games__game_id__get"];
+        get: operations["get_class_game"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2307,13 +2309,13 @@ export interface paths {
          * List Votes
          * @description List the votes: one of each class, and one by hands.
          */
-        get: operations["list_votes_api_v1_votes_get"];
+        get: operations["list_votes"];
         put?: never;
         /**
          * Open Vote
          * @description Ask a class, or the room; one vote of a class is open at a time.
          */
-        post: operations["open_vote_api_v1_votes_post"];
+        post: operations["open_vote"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2331,14 +2333,14 @@ export interface paths {
          * Get Vote
          * @description Return a vote; until it is revealed only how many have voted.
          */
-        get: operations["get_vote_api_v1_votes__vote_id__get"];
+        get: operations["get_vote"];
         put?: never;
         post?: never;
         /**
          * Remove Vote
          * @description Take a vote back; its ballots are gone.
          */
-        delete: operations["remove_vote_api_v1_votes__vote_id__delete"];
+        delete: operations["remove_vote"];
         options?: never;
         head?: never;
         patch?: never;
@@ -2357,7 +2359,7 @@ export interface paths {
          * Close Vote
          * @description Take no more answers.
          */
-        post: operations["close_vote_api_v1_votes__vote_id__close_post"];
+        post: operations["close_vote"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2377,7 +2379,7 @@ export interface paths {
          * Reveal Vote
          * @description Close a vote and show the counts.
          */
-        post: operations["reveal_vote_api_v1_votes__vote_id__reveal_post"];
+        post: operations["reveal_vote"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2396,7 +2398,7 @@ export interface paths {
          * Count Hands
          * @description Take the hands that were counted in the room.
          */
-        put: operations["count_hands_api_v1_votes__vote_id__hands_put"];
+        put: operations["count_hands"];
         post?: never;
         delete?: never;
         options?: never;
@@ -2416,7 +2418,7 @@ export interface paths {
          * Cast
          * @description Answer the vote of one's class, or change one's answer.
          */
-        put: operations["cast_api_v1_me_vote_put"];
+        put: operations["cast"];
         post?: never;
         delete?: never;
         options?: never;
@@ -2435,13 +2437,13 @@ export interface paths {
          * List Watchers
          * @description List the links to watch the bench.
          */
-        get: operations["list_watchers_api_v1_benches__bench_id__watchers_get"];
+        get: operations["list_watchers"];
         put?: never;
         /**
          * Make Watcher
          * @description Make a link to watch the bench.
          */
-        post: operations["make_watcher_api_v1_benches__bench_id__watchers_post"];
+        post: operations["make_watcher"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2462,7 +2464,7 @@ export interface paths {
          * End Watcher
          * @description End a link to watch; pages that it opened are closed.
          */
-        delete: operations["end_watcher_api_v1_benches__bench_id__watchers__watcher_id__delete"];
+        delete: operations["end_watcher"];
         options?: never;
         head?: never;
         patch?: never;
@@ -2479,13 +2481,13 @@ export interface paths {
          * List Sheets
          * @description List the sheets.
          */
-        get: operations["list_sheets_api_v1_sheets_get"];
+        get: operations["list_sheets"];
         put?: never;
         /**
          * Open Sheet
          * @description Open a sheet of one's own; one that is not right is refused with its line and field.
          */
-        post: operations["open_sheet_api_v1_sheets_post"];
+        post: operations["open_sheet"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2503,14 +2505,14 @@ export interface paths {
          * Get Sheet
          * @description Show a sheet as far as the caller has come.
          */
-        get: operations["get_sheet_api_v1_sheets__sheet_id__get"];
+        get: operations["get_sheet"];
         put?: never;
         post?: never;
         /**
          * Delete Sheet
          * @description Delete a sheet that somebody opened, and what was done at it.
          */
-        delete: operations["delete_sheet_api_v1_sheets__sheet_id__delete"];
+        delete: operations["delete_sheet"];
         options?: never;
         head?: never;
         patch?: never;
@@ -2529,7 +2531,7 @@ export interface paths {
          * Begin Sheet
          * @description Begin a sheet, or go on with it on a new bench; answers stay.
          */
-        post: operations["begin_sheet_api_v1_sheets__sheet_id__begin_post"];
+        post: operations["begin_sheet"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2550,7 +2552,7 @@ export interface paths {
          * Start Over
          * @description Forget one's own answers at a sheet.
          */
-        delete: operations["start_over_api_v1_sheets__sheet_id__progress_delete"];
+        delete: operations["start_over"];
         options?: never;
         head?: never;
         patch?: never;
@@ -2569,7 +2571,7 @@ export interface paths {
          * Answer Step
          * @description Answer the step that is open.
          */
-        post: operations["answer_step_api_v1_sheets__sheet_id__steps__step_id__answer_post"];
+        post: operations["answer_step"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2589,7 +2591,7 @@ export interface paths {
          * Hide In Step
          * @description Hide the fault of the step that is open, on a new bench of the sheet; the answer to it closes the step.
          */
-        post: operations["hide_in_step_api_v1_sheets__sheet_id__steps__step_id__hide_post"];
+        post: operations["hide_in_step"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2609,7 +2611,7 @@ export interface paths {
          * Take Hint
          * @description Take the next hint, for the points that it costs.
          */
-        post: operations["take_hint_api_v1_sheets__sheet_id__steps__step_id__hint_post"];
+        post: operations["take_hint"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2629,7 +2631,7 @@ export interface paths {
          * Close Step
          * @description Close the step that is open with what it has earned; the right answer is told.
          */
-        post: operations["close_step_api_v1_sheets__sheet_id__steps__step_id__close_post"];
+        post: operations["close_step"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2648,7 +2650,7 @@ export interface paths {
          * Add Recording
          * @description Hand a recording of one's own in with the sheet.
          */
-        put: operations["add_recording_api_v1_sheets__sheet_id__recordings__recording_id__put"];
+        put: operations["add_recording"];
         post?: never;
         delete?: never;
         options?: never;
@@ -2667,7 +2669,7 @@ export interface paths {
          * Get Report
          * @description Return the sheet to hand in: text, answers, points and reasons in one HTML file.
          */
-        get: operations["get_report_api_v1_sheets__sheet_id__report_get"];
+        get: operations["get_report"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2689,7 +2691,7 @@ export interface paths {
          * Begin For All
          * @description Begin a sheet with all students of a class, also those who join later, or with some; each gets its bench.
          */
-        post: operations["begin_for_all_api_v1_classes__class_id__sheet_post"];
+        post: operations["begin_for_all"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2707,7 +2709,7 @@ export interface paths {
          * Get Grades
          * @description Return points, answers and reasons of all students, by student, sheet and step.
          */
-        get: operations["get_grades_api_v1_classes__class_id__grades_get"];
+        get: operations["get_grades"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2727,7 +2729,7 @@ export interface paths {
          * Get Report Of
          * @description Return the sheet of a student.
          */
-        get: operations["get_report_of_api_v1_classes__class_id__sheets__sheet_id___member_id__report_get"];
+        get: operations["get_report_of"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2747,7 +2749,7 @@ export interface paths {
          * Get Class Audit
          * @description List what people did in a class.
          */
-        get: operations["get_class_audit_api_v1_classes__class_id__audit_get"];
+        get: operations["get_class_audit"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2767,7 +2769,7 @@ export interface paths {
          * Get Bench Audit
          * @description List what people did to a bench, also to one that is gone.
          */
-        get: operations["get_bench_audit_api_v1_benches__bench_id__audit_get"];
+        get: operations["get_bench_audit"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2787,7 +2789,7 @@ export interface paths {
          * Live
          * @description Answer as long as the event loop turns.
          */
-        get: operations["live_health_live_get"];
+        get: operations["live"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2807,7 +2809,7 @@ export interface paths {
          * Ready
          * @description Answer 200 when the engine turns, the database can be written and the kernels of a bench are loaded.
          */
-        get: operations["ready_health_ready_get"];
+        get: operations["ready"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2827,7 +2829,7 @@ export interface paths {
          * Metrics
          * @description Return every metric in Prometheus' text format.
          */
-        get: operations["metrics_metrics_get"];
+        get: operations["metrics"];
         put?: never;
         post?: never;
         delete?: never;
@@ -3343,7 +3345,7 @@ export interface components {
             /** @description The experiment it was opened from, if it was */
             opened?: components["schemas"]["Opened"] | null;
             /** @description Asked while a fault is hidden here; little else is served then */
-            blind?: components["schemas"]["server__bench__blind__Question"] | null;
+            blind?: components["schemas"]["HiddenQuestion"] | null;
             /**
              * Name
              * @description What people call it beside the title, as a branch: with PID
@@ -3428,7 +3430,7 @@ export interface components {
              * Verdict
              * @description Null until the run has come to its end
              */
-            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
+            verdict: ("reproduced" | "reproduced by tuning" | "reproduced, by a PID too" | "reproduced by tuning, by a PID too" | "partly" | "not reproduced" | "ours") | null;
             /** Marks */
             marks: components["schemas"]["Mark"][];
             /** Knobs */
@@ -3569,7 +3571,7 @@ export interface components {
          */
         Blindness: {
             /** @description Null while nothing is hidden */
-            question: components["schemas"]["server__bench__blind__Question"] | null;
+            question: components["schemas"]["HiddenQuestion"] | null;
             /**
              * Rule
              * @description How points are counted
@@ -3816,7 +3818,7 @@ export interface components {
              * Verdict
              * @description Null until the run has come to its end
              */
-            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
+            verdict: ("reproduced" | "reproduced by tuning" | "reproduced, by a PID too" | "reproduced by tuning, by a PID too" | "partly" | "not reproduced" | "ours") | null;
             /** Claims */
             claims: components["schemas"]["BenchClaim"][];
         };
@@ -4073,7 +4075,7 @@ export interface components {
             signals: string[];
             /** Window Ms */
             window_ms: number | null;
-            vote: components["schemas"]["scenarios__lecture__Question"] | null;
+            vote: components["schemas"]["Question"] | null;
         };
         /**
          * Curve
@@ -4492,7 +4494,7 @@ export interface components {
              * Verdict
              * @description That of the measured value; until it is run, if the expectation holds
              */
-            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
+            verdict: ("reproduced" | "reproduced by tuning" | "reproduced, by a PID too" | "reproduced by tuning, by a PID too" | "partly" | "not reproduced" | "ours") | null;
             /**
              * Fitted
              * @description Fields of the scenario that were chosen so that it agrees
@@ -4514,9 +4516,21 @@ export interface components {
             open_loop?: number | null;
             /**
              * Pid
-             * @description With a PID in its place, where the claim is against one
+             * @description With the comparator in its place, where the claim is against a PID
              */
             pid?: number | null;
+            /**
+             * Comparator
+             * @description Name of that PID: the best of its family on the healthy device
+             * @default
+             */
+            comparator?: string;
+            /**
+             * Pid Too
+             * @description Whether that PID meets the claim too; until a run, as declared
+             * @default false
+             */
+            pid_too?: boolean;
             /**
              * Ok
              * @description Null until it has been run
@@ -4757,7 +4771,7 @@ export interface components {
             /** Claim */
             claim: string;
             /** Verdict */
-            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
+            verdict: ("reproduced" | "reproduced by tuning" | "reproduced, by a PID too" | "reproduced by tuning, by a PID too" | "partly" | "not reproduced" | "ours") | null;
             /**
              * Demo
              * @description Made for first visits and lectures
@@ -4948,6 +4962,40 @@ export interface components {
             checks: {
                 [key: string]: boolean;
             };
+        };
+        /**
+         * HiddenQuestion
+         * @description The words people get about a hidden fault, or about the game that is played.
+         */
+        HiddenQuestion: {
+            /** Id */
+            id: string;
+            /** @description Of a game, which has no answers; null for a hidden fault */
+            game?: components["schemas"]["Played"] | null;
+            /**
+             * Answers
+             * @description One of these is true, each as likely as the others
+             */
+            answers: string[];
+            /**
+             * Factors
+             * @description How each differs from the nominal device
+             */
+            factors: {
+                [key: string]: number;
+            }[];
+            /**
+             * Shows
+             * @description Diagnosers that may be looked at; none unless the exercise is about trust
+             */
+            shows: string[];
+            /** Began Tick */
+            began_tick: number;
+            /**
+             * By Tick
+             * @description The fault has come by then, if there is one
+             */
+            by_tick: number;
         };
         /**
          * Hide
@@ -6577,6 +6625,34 @@ export interface components {
             duty?: number;
         };
         /**
+         * Question
+         * @description A question to a class before the answer is shown: which lane of a diagnoser rises, or one of some answers.
+         */
+        Question: {
+            /** Text */
+            text: string;
+            /**
+             * Answers
+             * @description the options; none for a question about lanes
+             * @default []
+             */
+            answers?: string[];
+            /**
+             * Diagnoser
+             * @description whose lanes are the answers
+             * @default
+             */
+            diagnoser?: string;
+            /** @description device time within which a moment is guessed, too */
+            when?: components["schemas"]["Span"] | null;
+            /**
+             * Right
+             * @description the right answer, shown with the votes
+             * @default
+             */
+            right?: string;
+        };
+        /**
          * RateReadout
          * @description The Allan deviation of the rate so far, and the noises fitted to it.
          */
@@ -7037,7 +7113,7 @@ export interface components {
              * Verdict
              * @description If all expectations hold; it follows from what the rows state
              */
-            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
+            verdict: ("reproduced" | "reproduced by tuning" | "reproduced, by a PID too" | "reproduced by tuning, by a PID too" | "partly" | "not reproduced" | "ours") | null;
             /** Samples */
             samples: number | null;
             /**
@@ -7758,6 +7834,11 @@ export interface components {
              */
             found: number;
             /**
+             * Runs
+             * @description Runs in these results; until the campaign has ended, `sweep.done` may be ahead
+             */
+            runs: number;
+            /**
              * Figures
              * @description Figures that a run has
              */
@@ -8460,68 +8541,6 @@ export interface components {
             note?: string | null;
         };
         /**
-         * Question
-         * @description A question to a class before the answer is shown: which lane of a diagnoser rises, or one of some answers.
-         */
-        scenarios__lecture__Question: {
-            /** Text */
-            text: string;
-            /**
-             * Answers
-             * @description the options; none for a question about lanes
-             * @default []
-             */
-            answers?: string[];
-            /**
-             * Diagnoser
-             * @description whose lanes are the answers
-             * @default
-             */
-            diagnoser?: string;
-            /** @description device time within which a moment is guessed, too */
-            when?: components["schemas"]["Span"] | null;
-            /**
-             * Right
-             * @description the right answer, shown with the votes
-             * @default
-             */
-            right?: string;
-        };
-        /**
-         * Question
-         * @description The words people get about a hidden fault, or about the game that is played.
-         */
-        server__bench__blind__Question: {
-            /** Id */
-            id: string;
-            /** @description Of a game, which has no answers; null for a hidden fault */
-            game?: components["schemas"]["Played"] | null;
-            /**
-             * Answers
-             * @description One of these is true, each as likely as the others
-             */
-            answers: string[];
-            /**
-             * Factors
-             * @description How each differs from the nominal device
-             */
-            factors: {
-                [key: string]: number;
-            }[];
-            /**
-             * Shows
-             * @description Diagnosers that may be looked at; none unless the exercise is about trust
-             */
-            shows: string[];
-            /** Began Tick */
-            began_tick: number;
-            /**
-             * By Tick
-             * @description The fault has come by then, if there is one
-             */
-            by_tick: number;
-        };
-        /**
          * Ack
          * @description The client has drawn (or taken) every frame up to this one.
          */
@@ -8720,6 +8739,7 @@ export interface components {
              */
             panel: number;
         };
+        /** ClientMessage */
         ClientMessage: components["schemas"]["Subscribe"] | components["schemas"]["Rearm"] | components["schemas"]["Unsubscribe"] | components["schemas"]["Ack"] | components["schemas"]["Resume"] | components["schemas"]["Pong"] | components["schemas"]["CommandMessage"];
         /**
          * CaptureList
@@ -8868,43 +8888,6 @@ export interface components {
              * @constant
              */
             type?: "ping";
-        };
-        /**
-         * Question
-         * @description The words people get about a hidden fault, or about the game that is played.
-         */
-        Question: {
-            /** Id */
-            id: string;
-            /**
-             * @description Of a game, which has no answers; null for a hidden fault
-             * @default null
-             */
-            game?: components["schemas"]["Played"] | null;
-            /**
-             * Answers
-             * @description One of these is true, each as likely as the others
-             */
-            answers: string[];
-            /**
-             * Factors
-             * @description How each differs from the nominal device
-             */
-            factors: {
-                [key: string]: number;
-            }[];
-            /**
-             * Shows
-             * @description Diagnosers that may be looked at; none unless the exercise is about trust
-             */
-            shows: string[];
-            /** Began Tick */
-            began_tick: number;
-            /**
-             * By Tick
-             * @description The fault has come by then, if there is one
-             */
-            by_tick: number;
         };
         /**
          * Reply
@@ -9086,6 +9069,7 @@ export interface components {
              */
             dropped_frames: number;
         };
+        /** ServerMessage */
         ServerMessage: components["schemas"]["Hello"] | components["schemas"]["Status"] | components["schemas"]["Events"] | components["schemas"]["Narrated"] | components["schemas"]["CaptureList"] | components["schemas"]["Reply"] | components["schemas"]["ErrorMessage"] | components["schemas"]["Notice"] | components["schemas"]["Ping"];
         /**
          * ErrorReply
@@ -9103,9 +9087,10 @@ export interface components {
 }
 export type $defs = Record<string, never>;
 export interface operations {
-    get_catalog_api_v1_catalog_get: {
+    get_catalog: {
         parameters: {
             query?: {
+                /** @description Family of blocks, such as control or faults; all unless given */
                 family?: string | null;
             };
             header?: never;
@@ -9134,7 +9119,7 @@ export interface operations {
             };
         };
     };
-    get_devices_api_v1_devices_get: {
+    get_devices: {
         parameters: {
             query?: never;
             header?: never;
@@ -9163,7 +9148,7 @@ export interface operations {
             };
         };
     };
-    evaluate_api_v1_devices_evaluate_post: {
+    evaluate: {
         parameters: {
             query?: never;
             header?: never;
@@ -9196,7 +9181,7 @@ export interface operations {
             };
         };
     };
-    bode_api_v1_devices_bode_post: {
+    bode: {
         parameters: {
             query?: never;
             header?: never;
@@ -9229,7 +9214,7 @@ export interface operations {
             };
         };
     };
-    spread_api_v1_devices_spread_post: {
+    spread: {
         parameters: {
             query?: never;
             header?: never;
@@ -9262,7 +9247,7 @@ export interface operations {
             };
         };
     };
-    map_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_get: {
+    map_bench_aliases: {
         parameters: {
             query?: {
                 /** @description One tone as large as the reference; those it has unless given */
@@ -9270,7 +9255,9 @@ export interface operations {
             };
             header?: never;
             path: {
+                /** @description Id of a diagnoser or a read-out; of a twin's: <twin>:<id> */
                 name: string;
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -9297,13 +9284,14 @@ export interface operations {
             };
         };
     };
-    get_aliases_api_v1_benches__bench_id__diagnosers__name__aliases_post: {
+    get_aliases: {
         parameters: {
             query?: never;
             header?: never;
             path: {
                 /** @description Id of the diagnoser; of a twin's: <twin>:<id> */
                 name: string;
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -9334,7 +9322,7 @@ export interface operations {
             };
         };
     };
-    list_scenarios_api_v1_scenarios_get: {
+    list_scenarios: {
         parameters: {
             query?: never;
             header?: never;
@@ -9363,11 +9351,12 @@ export interface operations {
             };
         };
     };
-    get_scenario_api_v1_scenarios__scenario_id__get: {
+    get_scenario: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a scenario of the library */
                 scenario_id: string;
             };
             cookie?: never;
@@ -9394,7 +9383,7 @@ export interface operations {
             };
         };
     };
-    check_scenario_api_v1_scenarios_check_post: {
+    check_scenario: {
         parameters: {
             query?: never;
             header?: never;
@@ -9427,7 +9416,7 @@ export interface operations {
             };
         };
     };
-    list_units_api_v1_units_get: {
+    list_units: {
         parameters: {
             query?: never;
             header?: never;
@@ -9456,7 +9445,7 @@ export interface operations {
             };
         };
     };
-    check_unit_api_v1_units_post: {
+    check_unit: {
         parameters: {
             query?: never;
             header?: never;
@@ -9489,11 +9478,12 @@ export interface operations {
             };
         };
     };
-    get_unit_api_v1_units__name__get: {
+    get_unit: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Name of a unit */
                 name: string;
             };
             cookie?: never;
@@ -9520,11 +9510,12 @@ export interface operations {
             };
         };
     };
-    keep_unit_api_v1_units__name__put: {
+    keep_unit: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Name of a unit */
                 name: string;
             };
             cookie?: never;
@@ -9555,11 +9546,12 @@ export interface operations {
             };
         };
     };
-    delete_unit_api_v1_units__name__delete: {
+    delete_unit: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Name of a unit */
                 name: string;
             };
             cookie?: never;
@@ -9584,7 +9576,7 @@ export interface operations {
             };
         };
     };
-    list_benches_api_v1_benches_get: {
+    list_benches: {
         parameters: {
             query?: never;
             header?: never;
@@ -9613,7 +9605,7 @@ export interface operations {
             };
         };
     };
-    create_bench_api_v1_benches_post: {
+    create_bench: {
         parameters: {
             query?: never;
             header?: never;
@@ -9646,11 +9638,12 @@ export interface operations {
             };
         };
     };
-    get_bench_api_v1_benches__bench_id__get: {
+    get_bench: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -9677,11 +9670,12 @@ export interface operations {
             };
         };
     };
-    delete_bench_api_v1_benches__bench_id__delete: {
+    delete_bench: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -9706,11 +9700,12 @@ export interface operations {
             };
         };
     };
-    name_bench_api_v1_benches__bench_id__patch: {
+    name_bench: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -9741,11 +9736,12 @@ export interface operations {
             };
         };
     };
-    reopen_bench_api_v1_benches__bench_id__reopen_post: {
+    reopen_bench: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -9772,11 +9768,12 @@ export interface operations {
             };
         };
     };
-    command_api_v1_benches__bench_id__commands_post: {
+    command: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -9807,14 +9804,17 @@ export interface operations {
             };
         };
     };
-    list_events_api_v1_benches__bench_id__events_get: {
+    list_events: {
         parameters: {
             query?: {
+                /** @description Number of the last one that is known */
                 after?: number;
+                /** @description At most so many */
                 limit?: number | null;
             };
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -9841,11 +9841,12 @@ export interface operations {
             };
         };
     };
-    save_scenario_api_v1_benches__bench_id__scenario_get: {
+    save_scenario: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -9872,11 +9873,12 @@ export interface operations {
             };
         };
     };
-    get_digest_api_v1_benches__bench_id__digest_get: {
+    get_digest: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -9903,11 +9905,12 @@ export interface operations {
             };
         };
     };
-    fork_bench_api_v1_benches__bench_id__fork_post: {
+    fork_bench: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -9938,11 +9941,12 @@ export interface operations {
             };
         };
     };
-    vary_bench_api_v1_benches__bench_id__variant_post: {
+    vary_bench: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -9973,15 +9977,17 @@ export interface operations {
             };
         };
     };
-    list_narration_api_v1_benches__bench_id__narration_get: {
+    list_narration: {
         parameters: {
             query?: {
+                /** @description Number of the last one that is known */
                 after?: number;
                 /** @description Those of the answer before */
                 jumps?: number | null;
             };
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10008,11 +10014,12 @@ export interface operations {
             };
         };
     };
-    identification_api_v1_benches__bench_id__identification_post: {
+    identification: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10043,13 +10050,15 @@ export interface operations {
             };
         };
     };
-    region_api_v1_benches__bench_id__unstable_region_get: {
+    region: {
         parameters: {
             query?: {
+                /** @description Voltage that is held, V */
                 drive_v?: number;
             };
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10076,11 +10085,12 @@ export interface operations {
             };
         };
     };
-    plants_api_v1_benches__bench_id__plants_get: {
+    plants: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10107,7 +10117,7 @@ export interface operations {
             };
         };
     };
-    flops_api_v1_benches__bench_id__flops_get: {
+    flops: {
         parameters: {
             query?: {
                 /** @description Millions of operations per second */
@@ -10117,6 +10127,7 @@ export interface operations {
             };
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10143,7 +10154,7 @@ export interface operations {
             };
         };
     };
-    explain_sample_api_v1_benches__bench_id__diagnosers__name__explain_get: {
+    explain_sample: {
         parameters: {
             query?: {
                 /** @description The sample; the last one unless given */
@@ -10151,7 +10162,9 @@ export interface operations {
             };
             header?: never;
             path: {
+                /** @description Id of a diagnoser or a read-out; of a twin's: <twin>:<id> */
                 name: string;
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10178,7 +10191,7 @@ export interface operations {
             };
         };
     };
-    find_turn_api_v1_benches__bench_id__diagnosers__name__turn_get: {
+    find_turn: {
         parameters: {
             query?: {
                 /** @description The sample; the last one unless given */
@@ -10186,7 +10199,9 @@ export interface operations {
             };
             header?: never;
             path: {
+                /** @description Id of a diagnoser or a read-out; of a twin's: <twin>:<id> */
                 name: string;
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10213,12 +10228,14 @@ export interface operations {
             };
         };
     };
-    get_readout_api_v1_benches__bench_id__readouts__name__get: {
+    get_readout: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a diagnoser or a read-out; of a twin's: <twin>:<id> */
                 name: string;
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10245,11 +10262,12 @@ export interface operations {
             };
         };
     };
-    list_printed_api_v1_benches__bench_id__printed_get: {
+    list_printed: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10276,11 +10294,12 @@ export interface operations {
             };
         };
     };
-    list_claims_api_v1_benches__bench_id__claims_get: {
+    list_claims: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10307,11 +10326,12 @@ export interface operations {
             };
         };
     };
-    list_snapshots_api_v1_benches__bench_id__snapshots_get: {
+    list_snapshots: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10338,11 +10358,12 @@ export interface operations {
             };
         };
     };
-    take_snapshot_api_v1_benches__bench_id__snapshots_post: {
+    take_snapshot: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10373,12 +10394,14 @@ export interface operations {
             };
         };
     };
-    delete_snapshot_api_v1_benches__bench_id__snapshots__snapshot_id__delete: {
+    delete_snapshot: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a snapshot */
                 snapshot_id: string;
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10403,12 +10426,14 @@ export interface operations {
             };
         };
     };
-    restore_snapshot_api_v1_benches__bench_id__snapshots__snapshot_id__restore_post: {
+    restore_snapshot: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a snapshot */
                 snapshot_id: string;
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10435,11 +10460,12 @@ export interface operations {
             };
         };
     };
-    save_parameter_set_api_v1_benches__bench_id__parameter_sets_post: {
+    save_parameter_set: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10470,12 +10496,14 @@ export interface operations {
             };
         };
     };
-    apply_parameter_set_api_v1_benches__bench_id__parameter_sets__set_id__post: {
+    apply_parameter_set: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a parameter set */
                 set_id: string;
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10502,7 +10530,7 @@ export interface operations {
             };
         };
     };
-    list_parameter_sets_api_v1_parameter_sets_get: {
+    list_parameter_sets: {
         parameters: {
             query?: never;
             header?: never;
@@ -10531,11 +10559,12 @@ export interface operations {
             };
         };
     };
-    get_parameter_set_api_v1_parameter_sets__set_id__get: {
+    get_parameter_set: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a parameter set */
                 set_id: string;
             };
             cookie?: never;
@@ -10562,11 +10591,12 @@ export interface operations {
             };
         };
     };
-    delete_parameter_set_api_v1_parameter_sets__set_id__delete: {
+    delete_parameter_set: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a parameter set */
                 set_id: string;
             };
             cookie?: never;
@@ -10591,11 +10621,12 @@ export interface operations {
             };
         };
     };
-    rename_parameter_set_api_v1_parameter_sets__set_id__patch: {
+    rename_parameter_set: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a parameter set */
                 set_id: string;
             };
             cookie?: never;
@@ -10626,7 +10657,7 @@ export interface operations {
             };
         };
     };
-    compare_parameter_sets_api_v1_parameter_sets__set_id__difference_get: {
+    compare_parameter_sets: {
         parameters: {
             query?: {
                 /** @description Id of another set */
@@ -10636,6 +10667,7 @@ export interface operations {
             };
             header?: never;
             path: {
+                /** @description Id of a parameter set */
                 set_id: string;
             };
             cookie?: never;
@@ -10662,11 +10694,12 @@ export interface operations {
             };
         };
     };
-    list_bench_recordings_api_v1_benches__bench_id__recordings_get: {
+    list_bench_recordings: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10693,11 +10726,12 @@ export interface operations {
             };
         };
     };
-    start_recording_api_v1_benches__bench_id__recordings_post: {
+    start_recording: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10728,12 +10762,14 @@ export interface operations {
             };
         };
     };
-    stop_recording_api_v1_benches__bench_id__recordings__recording_id__stop_post: {
+    stop_recording: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a recording */
                 recording_id: string;
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -10760,7 +10796,7 @@ export interface operations {
             };
         };
     };
-    list_recordings_api_v1_recordings_get: {
+    list_recordings: {
         parameters: {
             query?: never;
             header?: never;
@@ -10789,11 +10825,12 @@ export interface operations {
             };
         };
     };
-    get_recording_api_v1_recordings__recording_id__get: {
+    get_recording: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a recording */
                 recording_id: string;
             };
             cookie?: never;
@@ -10820,11 +10857,12 @@ export interface operations {
             };
         };
     };
-    delete_recording_api_v1_recordings__recording_id__delete: {
+    delete_recording: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a recording */
                 recording_id: string;
             };
             cookie?: never;
@@ -10849,11 +10887,12 @@ export interface operations {
             };
         };
     };
-    replay_recording_api_v1_recordings__recording_id__replay_post: {
+    replay_recording: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a recording */
                 recording_id: string;
             };
             cookie?: never;
@@ -10884,11 +10923,12 @@ export interface operations {
             };
         };
     };
-    compare_recordings_api_v1_recordings__recording_id__compare_post: {
+    compare_recordings: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a recording */
                 recording_id: string;
             };
             cookie?: never;
@@ -10919,12 +10959,14 @@ export interface operations {
             };
         };
     };
-    get_recording_trace_api_v1_recordings__recording_id__trace_get: {
+    get_recording_trace: {
         parameters: {
             query?: {
+                /** @description Format of the answer */
                 format?: "csv" | "parquet" | "npz" | "mat";
-                /** @description Names, separated by commas; all when empty */
-                signals?: string;
+                /** @description Names, one each time, or several between commas; all unless given */
+                signals?: string[];
+                /** @description The first tick; the oldest unless given */
                 start_tick?: number | null;
                 /** @description The one behind the last */
                 end_tick?: number | null;
@@ -10933,6 +10975,7 @@ export interface operations {
             };
             header?: never;
             path: {
+                /** @description Id of a recording */
                 recording_id: string;
             };
             cookie?: never;
@@ -10961,19 +11004,23 @@ export interface operations {
             };
         };
     };
-    get_trace_api_v1_benches__bench_id__trace_get: {
+    get_trace: {
         parameters: {
             query?: {
-                /** @description Names, separated by commas; all when empty */
-                signals?: string;
+                /** @description Names, one each time, or several between commas; all unless given */
+                signals?: string[];
+                /** @description The first tick; the oldest unless given */
                 start_tick?: number | null;
+                /** @description The tick behind the last; to the newest unless given */
                 end_tick?: number | null;
+                /** @description Columns of the picture; each has its smallest and its largest value */
                 columns?: number;
                 /** @description A file with every sample */
                 format?: ("csv" | "parquet" | "npz" | "mat") | null;
             };
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -11003,7 +11050,7 @@ export interface operations {
             };
         };
     };
-    list_runs_api_v1_runs_get: {
+    list_runs: {
         parameters: {
             query?: {
                 /** @description Words in the name, the title or the id of the scenario */
@@ -11039,7 +11086,7 @@ export interface operations {
             };
         };
     };
-    start_run_api_v1_runs_post: {
+    start_run: {
         parameters: {
             query?: never;
             header?: never;
@@ -11081,7 +11128,7 @@ export interface operations {
             };
         };
     };
-    remove_runs_api_v1_runs_remove_post: {
+    remove_runs: {
         parameters: {
             query?: never;
             header?: never;
@@ -11114,7 +11161,7 @@ export interface operations {
             };
         };
     };
-    compare_finished_runs_api_v1_runs_compare_get: {
+    compare_finished_runs: {
         parameters: {
             query: {
                 /** @description Runs, the one to compare with first */
@@ -11146,12 +11193,14 @@ export interface operations {
             };
         };
     };
-    compare_traces_api_v1_runs_compare_trace_get: {
+    compare_traces: {
         parameters: {
             query: {
                 /** @description Runs, the one to compare with first */
                 ids: string[];
+                /** @description Name of a signal */
                 signal: string;
+                /** @description Columns of the picture; each has its smallest and its largest value */
                 columns?: number;
             };
             header?: never;
@@ -11180,11 +11229,12 @@ export interface operations {
             };
         };
     };
-    get_run_api_v1_runs__run_id__get: {
+    get_run: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a run */
                 run_id: string;
             };
             cookie?: never;
@@ -11211,11 +11261,12 @@ export interface operations {
             };
         };
     };
-    cancel_run_api_v1_runs__run_id__delete: {
+    cancel_run: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a run */
                 run_id: string;
             };
             cookie?: never;
@@ -11242,11 +11293,12 @@ export interface operations {
             };
         };
     };
-    rename_run_api_v1_runs__run_id__patch: {
+    rename_run: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a run */
                 run_id: string;
             };
             cookie?: never;
@@ -11277,12 +11329,14 @@ export interface operations {
             };
         };
     };
-    get_run_trace_api_v1_runs__run_id__trace_get: {
+    get_run_trace: {
         parameters: {
             query?: {
+                /** @description Format of the answer */
                 format?: "csv" | "parquet" | "npz" | "mat";
-                /** @description Names, separated by commas; all when empty */
-                signals?: string;
+                /** @description Names, one each time, or several between commas; all unless given */
+                signals?: string[];
+                /** @description The first tick; the oldest unless given */
                 start_tick?: number | null;
                 /** @description The one behind the last */
                 end_tick?: number | null;
@@ -11291,6 +11345,7 @@ export interface operations {
             };
             header?: never;
             path: {
+                /** @description Id of a run */
                 run_id: string;
             };
             cookie?: never;
@@ -11319,11 +11374,12 @@ export interface operations {
             };
         };
     };
-    get_run_report_api_v1_runs__run_id__report_get: {
+    get_run_report: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a run */
                 run_id: string;
             };
             cookie?: never;
@@ -11350,11 +11406,12 @@ export interface operations {
             };
         };
     };
-    get_run_thumbnail_api_v1_runs__run_id__thumbnail_get: {
+    get_run_thumbnail: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a run */
                 run_id: string;
             };
             cookie?: never;
@@ -11381,11 +11438,12 @@ export interface operations {
             };
         };
     };
-    get_run_scenario_api_v1_runs__run_id__scenario_get: {
+    get_run_scenario: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a run */
                 run_id: string;
             };
             cookie?: never;
@@ -11412,11 +11470,12 @@ export interface operations {
             };
         };
     };
-    get_run_script_api_v1_runs__run_id__script_get: {
+    get_run_script: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a run */
                 run_id: string;
             };
             cookie?: never;
@@ -11443,7 +11502,7 @@ export interface operations {
             };
         };
     };
-    list_sweeps_api_v1_sweeps_get: {
+    list_sweeps: {
         parameters: {
             query?: {
                 /** @description Words in the name, the title or the id of the scenario */
@@ -11479,7 +11538,7 @@ export interface operations {
             };
         };
     };
-    start_sweep_api_v1_sweeps_post: {
+    start_sweep: {
         parameters: {
             query?: never;
             header?: never;
@@ -11521,7 +11580,7 @@ export interface operations {
             };
         };
     };
-    remove_sweeps_api_v1_sweeps_remove_post: {
+    remove_sweeps: {
         parameters: {
             query?: never;
             header?: never;
@@ -11554,11 +11613,12 @@ export interface operations {
             };
         };
     };
-    get_sweep_api_v1_sweeps__sweep_id__get: {
+    get_sweep: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a campaign */
                 sweep_id: string;
             };
             cookie?: never;
@@ -11585,11 +11645,12 @@ export interface operations {
             };
         };
     };
-    cancel_sweep_api_v1_sweeps__sweep_id__delete: {
+    cancel_sweep: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a campaign */
                 sweep_id: string;
             };
             cookie?: never;
@@ -11616,11 +11677,12 @@ export interface operations {
             };
         };
     };
-    rename_sweep_api_v1_sweeps__sweep_id__patch: {
+    rename_sweep: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a campaign */
                 sweep_id: string;
             };
             cookie?: never;
@@ -11651,7 +11713,7 @@ export interface operations {
             };
         };
     };
-    get_sweep_points_api_v1_sweeps__sweep_id__points_get: {
+    get_sweep_points: {
         parameters: {
             query?: {
                 /** @description Points to pass over */
@@ -11660,10 +11722,12 @@ export interface operations {
                 limit?: number | null;
                 /** @description An axis, a figure, runs, ok or tripped */
                 sort?: string;
+                /** @description The largest first */
                 descending?: boolean;
             };
             header?: never;
             path: {
+                /** @description Id of a campaign */
                 sweep_id: string;
             };
             cookie?: never;
@@ -11690,7 +11754,7 @@ export interface operations {
             };
         };
     };
-    get_sweep_distribution_api_v1_sweeps__sweep_id__distribution_get: {
+    get_sweep_distribution: {
         parameters: {
             query: {
                 /** @description An axis that is a number, the seed, or a figure */
@@ -11700,6 +11764,7 @@ export interface operations {
             };
             header?: never;
             path: {
+                /** @description Id of a campaign */
                 sweep_id: string;
             };
             cookie?: never;
@@ -11726,13 +11791,15 @@ export interface operations {
             };
         };
     };
-    get_sweep_runs_api_v1_sweeps__sweep_id__runs_get: {
+    get_sweep_runs: {
         parameters: {
             query?: {
+                /** @description Format of the answer */
                 format?: "csv" | "parquet";
             };
             header?: never;
             path: {
+                /** @description Id of a campaign */
                 sweep_id: string;
             };
             cookie?: never;
@@ -11742,6 +11809,10 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Runs that the file has */
+                    "X-Runs"?: number;
+                    /** @description State of the campaign; until it has ended, more runs come */
+                    "X-State"?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -11760,11 +11831,12 @@ export interface operations {
             };
         };
     };
-    get_sweep_report_api_v1_sweeps__sweep_id__report_get: {
+    get_sweep_report: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a campaign */
                 sweep_id: string;
             };
             cookie?: never;
@@ -11791,11 +11863,12 @@ export interface operations {
             };
         };
     };
-    get_sweep_script_api_v1_sweeps__sweep_id__script_get: {
+    get_sweep_script: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a campaign */
                 sweep_id: string;
             };
             cookie?: never;
@@ -11822,7 +11895,7 @@ export interface operations {
             };
         };
     };
-    find_threshold_api_v1_thresholds_post: {
+    find_threshold: {
         parameters: {
             query?: never;
             header?: never;
@@ -11864,11 +11937,12 @@ export interface operations {
             };
         };
     };
-    get_threshold_api_v1_thresholds__threshold_id__get: {
+    get_threshold: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a search for a threshold */
                 threshold_id: string;
             };
             cookie?: never;
@@ -11895,11 +11969,12 @@ export interface operations {
             };
         };
     };
-    cancel_threshold_api_v1_thresholds__threshold_id__delete: {
+    cancel_threshold: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a search for a threshold */
                 threshold_id: string;
             };
             cookie?: never;
@@ -11926,7 +12001,7 @@ export interface operations {
             };
         };
     };
-    get_gallery_api_v1_gallery_get: {
+    get_gallery: {
         parameters: {
             query?: {
                 /** @description Ids of cards in sight: their figures come first */
@@ -11958,11 +12033,12 @@ export interface operations {
             };
         };
     };
-    get_figure_api_v1_gallery__scenario_id__figure_get: {
+    get_figure: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a scenario of the library */
                 scenario_id: string;
             };
             cookie?: never;
@@ -11989,7 +12065,7 @@ export interface operations {
             };
         };
     };
-    run_gallery_api_v1_gallery_run_post: {
+    run_gallery: {
         parameters: {
             query?: never;
             header?: never;
@@ -12022,7 +12098,7 @@ export interface operations {
             };
         };
     };
-    list_benchmarks_api_v1_benchmarks_get: {
+    list_benchmarks: {
         parameters: {
             query?: never;
             header?: never;
@@ -12051,11 +12127,12 @@ export interface operations {
             };
         };
     };
-    get_benchmark_api_v1_benchmarks__benchmark_id__get: {
+    get_benchmark: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a benchmark */
                 benchmark_id: string;
             };
             cookie?: never;
@@ -12082,7 +12159,7 @@ export interface operations {
             };
         };
     };
-    judge_positive_real_api_v1_theory_positive_real_post: {
+    judge_positive_real: {
         parameters: {
             query?: never;
             header?: never;
@@ -12115,7 +12192,7 @@ export interface operations {
             };
         };
     };
-    judge_positive_definite_api_v1_theory_positive_definite_post: {
+    judge_positive_definite: {
         parameters: {
             query?: never;
             header?: never;
@@ -12148,7 +12225,7 @@ export interface operations {
             };
         };
     };
-    judge_persistency_api_v1_theory_persistency_post: {
+    judge_persistency: {
         parameters: {
             query?: never;
             header?: never;
@@ -12181,7 +12258,7 @@ export interface operations {
             };
         };
     };
-    map_aliases_api_v1_theory_aliases_post: {
+    map_aliases: {
         parameters: {
             query?: never;
             header?: never;
@@ -12214,7 +12291,7 @@ export interface operations {
             };
         };
     };
-    map_instability_api_v1_theory_instability_map_post: {
+    map_instability: {
         parameters: {
             query?: never;
             header?: never;
@@ -12247,9 +12324,10 @@ export interface operations {
             };
         };
     };
-    list_links_api_v1_links_get: {
+    list_links: {
         parameters: {
             query?: {
+                /** @description Links of this kind alone */
                 kind?: ("experiment" | "layout") | null;
             };
             header?: never;
@@ -12278,7 +12356,7 @@ export interface operations {
             };
         };
     };
-    make_link_api_v1_links_post: {
+    make_link: {
         parameters: {
             query?: never;
             header?: never;
@@ -12311,11 +12389,12 @@ export interface operations {
             };
         };
     };
-    get_link_api_v1_links__link_id__get: {
+    get_link: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a link */
                 link_id: string;
             };
             cookie?: never;
@@ -12342,11 +12421,12 @@ export interface operations {
             };
         };
     };
-    delete_link_api_v1_links__link_id__delete: {
+    delete_link: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a link */
                 link_id: string;
             };
             cookie?: never;
@@ -12371,11 +12451,12 @@ export interface operations {
             };
         };
     };
-    change_link_api_v1_links__link_id__patch: {
+    change_link: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a link */
                 link_id: string;
             };
             cookie?: never;
@@ -12406,11 +12487,12 @@ export interface operations {
             };
         };
     };
-    open_link_api_v1_links__link_id__open_post: {
+    open_link: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a link */
                 link_id: string;
             };
             cookie?: never;
@@ -12437,7 +12519,7 @@ export interface operations {
             };
         };
     };
-    list_lectures_api_v1_lectures_get: {
+    list_lectures: {
         parameters: {
             query?: never;
             header?: never;
@@ -12466,11 +12548,12 @@ export interface operations {
             };
         };
     };
-    get_lecture_api_v1_lectures__lecture_id__get: {
+    get_lecture: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a lecture */
                 lecture_id: string;
             };
             cookie?: never;
@@ -12497,12 +12580,14 @@ export interface operations {
             };
         };
     };
-    put_cue_api_v1_lectures__lecture_id__cues__number__post: {
+    put_cue: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a lecture */
                 lecture_id: string;
+                /** @description Number of the cue, from 0 */
                 number: number;
             };
             cookie?: never;
@@ -12533,7 +12618,7 @@ export interface operations {
             };
         };
     };
-    get_me_api_v1_me_get: {
+    get_me: {
         parameters: {
             query?: never;
             header?: never;
@@ -12562,7 +12647,7 @@ export interface operations {
             };
         };
     };
-    raise_hand_api_v1_me_hand_put: {
+    raise_hand: {
         parameters: {
             query?: never;
             header?: never;
@@ -12595,7 +12680,7 @@ export interface operations {
             };
         };
     };
-    list_classes_api_v1_classes_get: {
+    list_classes: {
         parameters: {
             query?: never;
             header?: never;
@@ -12624,7 +12709,7 @@ export interface operations {
             };
         };
     };
-    open_class_api_v1_classes_post: {
+    open_class: {
         parameters: {
             query?: never;
             header?: never;
@@ -12657,11 +12742,12 @@ export interface operations {
             };
         };
     };
-    get_class_api_v1_classes__class_id__get: {
+    get_class: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -12688,11 +12774,12 @@ export interface operations {
             };
         };
     };
-    end_class_api_v1_classes__class_id__delete: {
+    end_class: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -12717,11 +12804,12 @@ export interface operations {
             };
         };
     };
-    make_code_api_v1_classes__class_id__code_post: {
+    make_code: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -12752,11 +12840,12 @@ export interface operations {
             };
         };
     };
-    end_code_api_v1_classes__class_id__code_delete: {
+    end_code: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -12783,11 +12872,12 @@ export interface operations {
             };
         };
     };
-    join_class_api_v1_classes__class_id__join_post: {
+    join_class: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -12818,11 +12908,12 @@ export interface operations {
             };
         };
     };
-    list_members_api_v1_classes__class_id__members_get: {
+    list_members: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -12849,12 +12940,14 @@ export interface operations {
             };
         };
     };
-    remove_member_api_v1_classes__class_id__members__member_id__delete: {
+    remove_member: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
+                /** @description Id of a student */
                 member_id: string;
             };
             cookie?: never;
@@ -12879,11 +12972,12 @@ export interface operations {
             };
         };
     };
-    command_all_api_v1_classes__class_id__commands_post: {
+    command_all: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -12914,11 +13008,12 @@ export interface operations {
             };
         };
     };
-    begin_scenario_api_v1_classes__class_id__scenario_post: {
+    begin_scenario: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -12949,11 +13044,12 @@ export interface operations {
             };
         };
     };
-    show_bench_api_v1_classes__class_id__shown_put: {
+    show_bench: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -12982,11 +13078,12 @@ export interface operations {
             };
         };
     };
-    end_showing_api_v1_classes__class_id__shown_delete: {
+    end_showing: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -13011,11 +13108,12 @@ export interface operations {
             };
         };
     };
-    give_layout_api_v1_classes__class_id__layout_put: {
+    give_layout: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -13044,7 +13142,7 @@ export interface operations {
             };
         };
     };
-    get_layout_api_v1_me_layout_get: {
+    get_layout: {
         parameters: {
             query?: never;
             header?: never;
@@ -13073,12 +13171,14 @@ export interface operations {
             };
         };
     };
-    lower_hand_api_v1_classes__class_id__members__member_id__hand_delete: {
+    lower_hand: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
+                /** @description Id of a student */
                 member_id: string;
             };
             cookie?: never;
@@ -13103,11 +13203,12 @@ export interface operations {
             };
         };
     };
-    start_all_api_v1_classes__class_id__start_post: {
+    start_all: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -13138,11 +13239,12 @@ export interface operations {
             };
         };
     };
-    change_driver_api_v1_benches__bench_id__driving_post: {
+    change_driver: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -13173,11 +13275,12 @@ export interface operations {
             };
         };
     };
-    get_blind_api_v1_benches__bench_id__blind_get: {
+    get_blind: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -13204,11 +13307,12 @@ export interface operations {
             };
         };
     };
-    hide_fault_api_v1_benches__bench_id__blind_post: {
+    hide_fault: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -13239,11 +13343,12 @@ export interface operations {
             };
         };
     };
-    give_up_api_v1_benches__bench_id__blind_delete: {
+    give_up: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -13270,11 +13375,12 @@ export interface operations {
             };
         };
     };
-    answer_api_v1_benches__bench_id__blind_answer_post: {
+    answer: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -13305,11 +13411,12 @@ export interface operations {
             };
         };
     };
-    get_class_blind_api_v1_classes__class_id__blind_get: {
+    get_class_blind: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -13336,11 +13443,12 @@ export interface operations {
             };
         };
     };
-    hide_for_class_api_v1_classes__class_id__blind_post: {
+    hide_for_class: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -13371,11 +13479,12 @@ export interface operations {
             };
         };
     };
-    reveal_class_api_v1_classes__class_id__blind_delete: {
+    reveal_class: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -13402,11 +13511,12 @@ export interface operations {
             };
         };
     };
-    list_captures_api_v1_benches__bench_id__captures_get: {
+    list_captures: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -13433,7 +13543,7 @@ export interface operations {
             };
         };
     };
-    list_games_api_v1_games_get: {
+    list_games: {
         parameters: {
             query?: never;
             header?: never;
@@ -13462,7 +13572,7 @@ export interface operations {
             };
         };
     };
-    get_game_api_v1_games__game_id__get: {
+    get_game: {
         parameters: {
             query?: {
                 /** @description Each student of a class has a game of their own at it */
@@ -13470,6 +13580,7 @@ export interface operations {
             };
             header?: never;
             path: {
+                /** @description Id of a game */
                 game_id: string;
             };
             cookie?: never;
@@ -13496,11 +13607,12 @@ export interface operations {
             };
         };
     };
-    begin_game_api_v1_games__game_id__begin_post: {
+    begin_game: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a game */
                 game_id: string;
             };
             cookie?: never;
@@ -13531,11 +13643,12 @@ export interface operations {
             };
         };
     };
-    hand_in_api_v1_games__game_id__attempts_post: {
+    hand_in: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a game */
                 game_id: string;
             };
             cookie?: never;
@@ -13566,11 +13679,12 @@ export interface operations {
             };
         };
     };
-    reveal_game_api_v1_games__game_id__reveal_post: {
+    reveal_game: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a game */
                 game_id: string;
             };
             cookie?: never;
@@ -13601,7 +13715,7 @@ export interface operations {
             };
         };
     };
-    get_class_game_api_v1_classes__class_id__games__game_id__get: {
+    get_class_game: {
         parameters: {
             query?: {
                 /** @description Each student of a class has a game of their own at it */
@@ -13609,7 +13723,9 @@ export interface operations {
             };
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
+                /** @description Id of a game */
                 game_id: string;
             };
             cookie?: never;
@@ -13636,7 +13752,7 @@ export interface operations {
             };
         };
     };
-    list_votes_api_v1_votes_get: {
+    list_votes: {
         parameters: {
             query?: never;
             header?: never;
@@ -13665,7 +13781,7 @@ export interface operations {
             };
         };
     };
-    open_vote_api_v1_votes_post: {
+    open_vote: {
         parameters: {
             query?: never;
             header?: never;
@@ -13698,11 +13814,12 @@ export interface operations {
             };
         };
     };
-    get_vote_api_v1_votes__vote_id__get: {
+    get_vote: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a vote */
                 vote_id: string;
             };
             cookie?: never;
@@ -13729,11 +13846,12 @@ export interface operations {
             };
         };
     };
-    remove_vote_api_v1_votes__vote_id__delete: {
+    remove_vote: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a vote */
                 vote_id: string;
             };
             cookie?: never;
@@ -13758,11 +13876,12 @@ export interface operations {
             };
         };
     };
-    close_vote_api_v1_votes__vote_id__close_post: {
+    close_vote: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a vote */
                 vote_id: string;
             };
             cookie?: never;
@@ -13789,11 +13908,12 @@ export interface operations {
             };
         };
     };
-    reveal_vote_api_v1_votes__vote_id__reveal_post: {
+    reveal_vote: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a vote */
                 vote_id: string;
             };
             cookie?: never;
@@ -13820,11 +13940,12 @@ export interface operations {
             };
         };
     };
-    count_hands_api_v1_votes__vote_id__hands_put: {
+    count_hands: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a vote */
                 vote_id: string;
             };
             cookie?: never;
@@ -13855,7 +13976,7 @@ export interface operations {
             };
         };
     };
-    cast_api_v1_me_vote_put: {
+    cast: {
         parameters: {
             query?: never;
             header?: never;
@@ -13888,11 +14009,12 @@ export interface operations {
             };
         };
     };
-    list_watchers_api_v1_benches__bench_id__watchers_get: {
+    list_watchers: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -13919,11 +14041,12 @@ export interface operations {
             };
         };
     };
-    make_watcher_api_v1_benches__bench_id__watchers_post: {
+    make_watcher: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -13954,12 +14077,14 @@ export interface operations {
             };
         };
     };
-    end_watcher_api_v1_benches__bench_id__watchers__watcher_id__delete: {
+    end_watcher: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a link to watch */
                 watcher_id: string;
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -13984,7 +14109,7 @@ export interface operations {
             };
         };
     };
-    list_sheets_api_v1_sheets_get: {
+    list_sheets: {
         parameters: {
             query?: never;
             header?: never;
@@ -14013,7 +14138,7 @@ export interface operations {
             };
         };
     };
-    open_sheet_api_v1_sheets_post: {
+    open_sheet: {
         parameters: {
             query?: never;
             header?: never;
@@ -14046,11 +14171,12 @@ export interface operations {
             };
         };
     };
-    get_sheet_api_v1_sheets__sheet_id__get: {
+    get_sheet: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a lab sheet */
                 sheet_id: string;
             };
             cookie?: never;
@@ -14077,11 +14203,12 @@ export interface operations {
             };
         };
     };
-    delete_sheet_api_v1_sheets__sheet_id__delete: {
+    delete_sheet: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a lab sheet */
                 sheet_id: string;
             };
             cookie?: never;
@@ -14106,11 +14233,12 @@ export interface operations {
             };
         };
     };
-    begin_sheet_api_v1_sheets__sheet_id__begin_post: {
+    begin_sheet: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a lab sheet */
                 sheet_id: string;
             };
             cookie?: never;
@@ -14137,11 +14265,12 @@ export interface operations {
             };
         };
     };
-    start_over_api_v1_sheets__sheet_id__progress_delete: {
+    start_over: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a lab sheet */
                 sheet_id: string;
             };
             cookie?: never;
@@ -14166,12 +14295,14 @@ export interface operations {
             };
         };
     };
-    answer_step_api_v1_sheets__sheet_id__steps__step_id__answer_post: {
+    answer_step: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a lab sheet */
                 sheet_id: string;
+                /** @description Id of a step of the sheet */
                 step_id: string;
             };
             cookie?: never;
@@ -14202,12 +14333,14 @@ export interface operations {
             };
         };
     };
-    hide_in_step_api_v1_sheets__sheet_id__steps__step_id__hide_post: {
+    hide_in_step: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a lab sheet */
                 sheet_id: string;
+                /** @description Id of a step of the sheet */
                 step_id: string;
             };
             cookie?: never;
@@ -14234,12 +14367,14 @@ export interface operations {
             };
         };
     };
-    take_hint_api_v1_sheets__sheet_id__steps__step_id__hint_post: {
+    take_hint: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a lab sheet */
                 sheet_id: string;
+                /** @description Id of a step of the sheet */
                 step_id: string;
             };
             cookie?: never;
@@ -14266,12 +14401,14 @@ export interface operations {
             };
         };
     };
-    close_step_api_v1_sheets__sheet_id__steps__step_id__close_post: {
+    close_step: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a lab sheet */
                 sheet_id: string;
+                /** @description Id of a step of the sheet */
                 step_id: string;
             };
             cookie?: never;
@@ -14298,12 +14435,14 @@ export interface operations {
             };
         };
     };
-    add_recording_api_v1_sheets__sheet_id__recordings__recording_id__put: {
+    add_recording: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a lab sheet */
                 sheet_id: string;
+                /** @description Id of a recording */
                 recording_id: string;
             };
             cookie?: never;
@@ -14330,11 +14469,12 @@ export interface operations {
             };
         };
     };
-    get_report_api_v1_sheets__sheet_id__report_get: {
+    get_report: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a lab sheet */
                 sheet_id: string;
             };
             cookie?: never;
@@ -14361,11 +14501,12 @@ export interface operations {
             };
         };
     };
-    begin_for_all_api_v1_classes__class_id__sheet_post: {
+    begin_for_all: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -14396,13 +14537,15 @@ export interface operations {
             };
         };
     };
-    get_grades_api_v1_classes__class_id__grades_get: {
+    get_grades: {
         parameters: {
             query?: {
+                /** @description Format of the answer */
                 format?: "json" | "csv";
             };
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -14430,13 +14573,16 @@ export interface operations {
             };
         };
     };
-    get_report_of_api_v1_classes__class_id__sheets__sheet_id___member_id__report_get: {
+    get_report_of: {
         parameters: {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
+                /** @description Id of a lab sheet */
                 sheet_id: string;
+                /** @description Id of a student */
                 member_id: string;
             };
             cookie?: never;
@@ -14463,13 +14609,15 @@ export interface operations {
             };
         };
     };
-    get_class_audit_api_v1_classes__class_id__audit_get: {
+    get_class_audit: {
         parameters: {
             query?: {
+                /** @description At most so many */
                 limit?: number;
             };
             header?: never;
             path: {
+                /** @description Id of a class */
                 class_id: string;
             };
             cookie?: never;
@@ -14496,13 +14644,15 @@ export interface operations {
             };
         };
     };
-    get_bench_audit_api_v1_benches__bench_id__audit_get: {
+    get_bench_audit: {
         parameters: {
             query?: {
+                /** @description At most so many */
                 limit?: number;
             };
             header?: never;
             path: {
+                /** @description Id of a bench */
                 bench_id: string;
             };
             cookie?: never;
@@ -14529,7 +14679,7 @@ export interface operations {
             };
         };
     };
-    live_health_live_get: {
+    live: {
         parameters: {
             query?: never;
             header?: never;
@@ -14558,7 +14708,7 @@ export interface operations {
             };
         };
     };
-    ready_health_ready_get: {
+    ready: {
         parameters: {
             query?: never;
             header?: never;
@@ -14596,7 +14746,7 @@ export interface operations {
             };
         };
     };
-    metrics_metrics_get: {
+    metrics: {
         parameters: {
             query?: never;
             header?: never;

@@ -72,9 +72,7 @@ export type Outcomes = Schemas["Outcomes"];
 export type Parameter = Schemas["ParameterCard"];
 export type ParameterSet = Schemas["ParameterSet"];
 /** Which points of a campaign are wanted, and in which order. */
-export type PointQuery = NonNullable<
-  operations["get_sweep_points_api_v1_sweeps__sweep_id__points_get"]["parameters"]["query"]
->;
+export type PointQuery = NonNullable<operations["get_sweep_points"]["parameters"]["query"]>;
 export type PointTally = Schemas["PointTally"];
 export type PositiveReal = Schemas["PositiveRealReport"];
 export type ProcessSpread = Schemas["ProcessSpread"];
@@ -87,7 +85,7 @@ export type NewVote = Schemas["NewVote"];
 export type OpenVote = Schemas["OpenVote"];
 export type RateReadout = Schemas["RateReadout"];
 /** What is told of a hidden fault. */
-export type Question = Schemas["Question"];
+export type Question = Schemas["HiddenQuestion"];
 export type Recording = Schemas["Recording"];
 export type Run = Schemas["Run"];
 export type ScenarioSummary = Schemas["ScenarioCard"];
@@ -112,7 +110,7 @@ export type UnitMistake = Schemas["UnitMistake"];
 export type UnstableRegion = Schemas["UnstableRegionMap"];
 
 /** Which runs and campaigns a list has. */
-export type RunFilter = NonNullable<operations["list_runs_api_v1_runs_get"]["parameters"]["query"]>;
+export type RunFilter = NonNullable<operations["list_runs"]["parameters"]["query"]>;
 
 /** A scenario document as plain values. */
 export type Document = Bench["parameters"];

@@ -21,7 +21,7 @@ export async function slideTraces(claim: Claim, { tick, bench_id }: ClaimList): 
   const marked = [...new Set(claim.marks.flatMap(({ signal, problem }) => (problem ? [] : [signal])))];
   const names = marked.length > 0 ? [...marked, ...partnersOf(marked)] : signalsOf(claim.metric, known);
   const span = { start: bench.first_tick, end: tick };
-  const found = await api.trace(bench_id, names.join(","), span.start, span.end, Math.min(COLUMNS, tick));
+  const found = await api.trace(bench_id, names, span.start, span.end, Math.min(COLUMNS, tick));
   const hypotheses = Object.values(bench.diagnosers)[0]?.names ?? [];
   const traces = names.map((name) => {
     const style = traceStyle(name, known, hypotheses);

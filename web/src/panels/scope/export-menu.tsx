@@ -25,12 +25,12 @@ export function ExportMenu({ plot, capture }: ExportMenuProps) {
     const { bench } = useBench.getState();
     const picture = plot.current?.picture();
     if (!picture || !bench) return;
-    const query = new URLSearchParams({
-      format,
-      signals: picture.traces.map((t) => t.name).join(","),
-      start_tick: String(Math.max(capture?.start_tick ?? bench.first_tick, Math.floor(picture.span.start))),
-      end_tick: String(Math.min(capture?.end_tick ?? Number.MAX_SAFE_INTEGER, Math.ceil(picture.span.end))),
-    });
+    const query = new URLSearchParams([
+      ["format", format],
+      ...picture.traces.map((t) => ["signals", t.name]),
+      ["start_tick", String(Math.max(capture?.start_tick ?? bench.first_tick, Math.floor(picture.span.start)))],
+      ["end_tick", String(Math.min(capture?.end_tick ?? Number.MAX_SAFE_INTEGER, Math.ceil(picture.span.end)))],
+    ]);
     ticketed(`./api/v1/benches/${bench.id}/trace?${query}`).then((address) => window.location.assign(address));
   };
   return (

@@ -43,7 +43,13 @@ export function MeasureStrip({ traces, plot, at }: MeasureStripProps) {
         const { frame, span } = shown;
         const [start, end] = [Math.floor(span.start), Math.ceil(span.end)];
         try {
-          const trace = await api.trace(id, traces.map((t) => t.name).join(","), start, end, MOST_COLUMNS);
+          const trace = await api.trace(
+            id,
+            traces.map((t) => t.name),
+            start,
+            end,
+            MOST_COLUMNS,
+          );
           const columns = traces.map(({ name }): Columns => numbers(trace.signals[name]));
           const width = ((trace.end_tick - trace.start_tick) * trace.dt_ms) / columns[0].low.length;
           const tick = (share: number) => span.start + share * (span.end - span.start);
