@@ -3408,7 +3408,7 @@ export interface components {
              * Verdict
              * @description Null until the run has come to its end
              */
-            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
+            verdict: ("reproduced" | "reproduced by tuning" | "reproduced, by a PID too" | "reproduced by tuning, by a PID too" | "partly" | "not reproduced" | "ours") | null;
             /** Marks */
             marks: components["schemas"]["Mark"][];
             /** Knobs */
@@ -3796,7 +3796,7 @@ export interface components {
              * Verdict
              * @description Null until the run has come to its end
              */
-            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
+            verdict: ("reproduced" | "reproduced by tuning" | "reproduced, by a PID too" | "reproduced by tuning, by a PID too" | "partly" | "not reproduced" | "ours") | null;
             /** Claims */
             claims: components["schemas"]["BenchClaim"][];
         };
@@ -4472,7 +4472,7 @@ export interface components {
              * Verdict
              * @description That of the measured value; until it is run, if the expectation holds
              */
-            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
+            verdict: ("reproduced" | "reproduced by tuning" | "reproduced, by a PID too" | "reproduced by tuning, by a PID too" | "partly" | "not reproduced" | "ours") | null;
             /**
              * Fitted
              * @description Fields of the scenario that were chosen so that it agrees
@@ -4494,9 +4494,21 @@ export interface components {
             open_loop?: number | null;
             /**
              * Pid
-             * @description With a PID in its place, where the claim is against one
+             * @description With the comparator in its place, where the claim is against a PID
              */
             pid?: number | null;
+            /**
+             * Comparator
+             * @description Name of that PID: the best of its family on the healthy device
+             * @default
+             */
+            comparator?: string;
+            /**
+             * Pid Too
+             * @description Whether that PID meets the claim too; until a run, as declared
+             * @default false
+             */
+            pid_too?: boolean;
             /**
              * Ok
              * @description Null until it has been run
@@ -4737,7 +4749,7 @@ export interface components {
             /** Claim */
             claim: string;
             /** Verdict */
-            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
+            verdict: ("reproduced" | "reproduced by tuning" | "reproduced, by a PID too" | "reproduced by tuning, by a PID too" | "partly" | "not reproduced" | "ours") | null;
             /**
              * Demo
              * @description Made for first visits and lectures
@@ -7017,7 +7029,7 @@ export interface components {
              * Verdict
              * @description If all expectations hold; it follows from what the rows state
              */
-            verdict: ("reproduced" | "reproduced by tuning" | "partly" | "not reproduced" | "ours") | null;
+            verdict: ("reproduced" | "reproduced by tuning" | "reproduced, by a PID too" | "reproduced by tuning, by a PID too" | "partly" | "not reproduced" | "ours") | null;
             /** Samples */
             samples: number | null;
             /**
