@@ -28,8 +28,8 @@ test("figures are made when the gallery is opened; it searches, runs an experime
     await page.getByRole("button", { name: "Show all" }).click();
     await expect(cards).toHaveCount(library.length);
     await page.getByRole("combobox", { name: "Chapter" }).selectOption("5");
-    await page.getByRole("combobox", { name: "Verdict" }).selectOption("reproduced");
-    const wanted = library.filter(({ id, verdict }) => id.startsWith("ch5-") && verdict === "reproduced");
+    await page.getByRole("combobox", { name: "Verdict" }).selectOption("reproduced by tuning");
+    const wanted = library.filter(({ id, verdict }) => id.startsWith("ch5-") && verdict === "reproduced by tuning");
     await expect(cards).toHaveCount(wanted.length);
     await search.fill("seven-step Kalman bank");
     const card = cards.filter({ hasText: "ch5-seven-step" });
