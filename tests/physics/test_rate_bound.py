@@ -90,6 +90,7 @@ def test_the_claim_is_withdrawn_when_the_rate_steps():
 
 
 @pytest.mark.long
+@pytest.mark.timeout(1800)
 @pytest.mark.parametrize("warm", [False, True])
 @pytest.mark.parametrize("kind", KINDS)
 def test_table_of_rates_devices_and_sample_rates(kind, warm):
