@@ -7,6 +7,7 @@ import math
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures.process import BrokenProcessPool
+from functools import partial
 from importlib import import_module
 from typing import Any, TypeVar
 from weakref import WeakValueDictionary
@@ -17,9 +18,10 @@ from scenarios.campaign.executor import Processes
 from server.computing.asker import asker
 from server.computing.limits import MOST_BYTES, Done, within
 from server.errors import ApiError
-from server.runs.worker import NICE
 from server.security.limits import Buckets
 
+NICE = 5
+"""Niceness of the processes: benches come before them, headless runs after."""
 WORKERS = 2
 """Processes that compute: while one is busy with something long, another is free."""
 MOST_S = 4.0
@@ -111,7 +113,11 @@ class Computing:
 
 async def _done(worker: Processes, most_s: float, function: Callable[..., Any], *arguments: Any) -> Done:
     """Have a function called in a process; end the process if the request is given up."""
-    future = await asyncio.to_thread(worker.submit, within, most_s, terms(), function, *arguments)
+    work = partial(worker.submit, within, most_s, terms(), function, *arguments)
+    try:
+        future = await asyncio.to_thread(work)
+    except BrokenProcessPool:  # the process has ended since the last request; this starts another
+        future = await asyncio.to_thread(work)
     try:
         async with asyncio.timeout(PATIENCE * most_s):
             return await asyncio.wrap_future(future)
