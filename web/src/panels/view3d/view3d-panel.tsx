@@ -17,7 +17,7 @@ export function View3dPanel() {
   const hosted = usePlaces((s) => s.hosted);
   if (path === undefined) return <EmptyState title="No bench yet">The device appears here in 3D.</EmptyState>;
   if (blind)
-    return <EmptyState title="Not shown while a fault is hidden">The device would tell which fault acts.</EmptyState>;
+    return <EmptyState title="Not shown while a fault is hidden">The picture would give the answer away.</EmptyState>;
   if (path === null) return <PlanView because="This server draws no 3D, so the device is drawn from above" />;
   if (!drawn) return <PlanView because="This browser has no WebGL, so the device is drawn from above" />;
   return hosted ? <Place /> : <Standing key={path} path={`.${path}`} />;
