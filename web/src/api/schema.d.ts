@@ -1312,7 +1312,7 @@ export interface paths {
         };
         /**
          * Get Sweep Runs
-         * @description Download one row for each run that is there: point, seed, digest and every figure.
+         * @description Download one row for each run: point, seed, digest and every figure.
          *
          *     While the campaign is under way, the file has the runs of its beginning, and its name ends in *so-far*.
          */
