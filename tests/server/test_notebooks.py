@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 from pathlib import Path
@@ -35,14 +36,19 @@ def errors_um(said: str) -> dict[str, float]:
 
 
 def test_there_are_five_and_none_has_outputs() -> None:
-    import nbformat
-
     assert [path.stem for path in NOTEBOOKS] == ["campaign", "first-run", "lqg", "own-controller", "own-diagnoser"]
     for path in NOTEBOOKS:
-        book = nbformat.read(path, as_version=4)
-        nbformat.validate(book)
-        code = [cell for cell in book.cells if cell.cell_type == "code"]
-        assert not [cell for cell in code if cell.outputs or cell.execution_count], path.name
+        cells = json.loads(path.read_text("utf-8"))["cells"]
+        code = [cell for cell in cells if cell["cell_type"] == "code"]
+        assert code and not [cell for cell in code if cell["outputs"] or cell["execution_count"]], path.name
+
+
+@pytest.mark.long
+def test_the_files_are_notebooks_of_version_4() -> None:
+    import nbformat
+
+    for path in NOTEBOOKS:
+        nbformat.validate(nbformat.read(path, as_version=4))
 
 
 @pytest.mark.long

@@ -28,7 +28,7 @@ def random_bench(seed: int) -> Scenario:
     drives, events = "open_loop", []
     for tick in sorted(rng.choice(np.arange(200, SAMPLES - 300), 7, replace=False).tolist()):
         choice = float(rng.random())
-        if there and choice < 0.3:
+        if there and (choice < 0.3 or len(there) == len(FAULTS)):
             name = one(sorted(there))
             there.discard(name)
             events.append({"at_sample": tick, "heal": [name]})

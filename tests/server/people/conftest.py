@@ -46,7 +46,7 @@ def servers(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[list[Any
 
     if request.param == "killed":
         with forks(tmp_path / "log") as loaded:
-            yield [loaded.serve(folder, figures=False) for _ in "12"]
+            yield [loaded.serve(folder, figures=False, clock="manual") for _ in "12"]
     elif request.param == "left":
         yield [copied(), serving(copy)]
     else:
