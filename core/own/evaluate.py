@@ -7,6 +7,7 @@ value to anything else.
 from __future__ import annotations
 
 import ast
+import inspect
 from collections.abc import Sequence
 from typing import Any, cast
 
@@ -259,6 +260,11 @@ class Evaluator:
         self._count(node, COST_OF_CALL)
         if is_kernel(function):
             return self._kernel(node, function, arguments, named)
+        if inspect.isfunction(function):
+            given = inspect.signature(function).bind(*arguments, **named).arguments
+            for name, value in given.items():
+                if function.__annotations__.get(name) in ("float", "int") and not isinstance(value, int | float):
+                    refuse(node, f"{name} must be a number")
         result = function(*arguments, **named)
         self._weigh(node, result)
         return whole(node, result) if isinstance(result, int) and not isinstance(result, bool) else result

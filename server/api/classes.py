@@ -86,6 +86,7 @@ class Outcomes(BaseModel):
 @router.post("", status_code=201, dependencies=[RateLimited])
 async def open_class(body: NewClass, service: ServiceDep, request: Request, response: Response) -> Class:
     """Open a class; its code is in the answer."""
+    await service.benches.check(body.bench.scenario, body.bench.set)
     made = await service.classes.open(body.name, body.bench.wanted(), body.hours, body.minutes)
     response.headers["Location"] = f"/api/v1/classes/{made.id}"
     return _addressed(made, service, request)
@@ -165,6 +166,7 @@ async def command_all(class_id: str, body: ForAll, service: ServiceDep) -> Outco
 @router.post("/{class_id}/scenario", dependencies=[RateLimited])
 async def begin_scenario(class_id: str, body: NewBench, service: ServiceDep) -> Outcomes:
     """Begin a scenario on the benches of all students; students who join later begin with it too."""
+    await service.benches.check(body.scenario, body.set)
     failed = await service.classes.begin_all(class_id, body.wanted())
     return Outcomes(done=len(service.people.students(class_id)) - len(failed), failed=failed)
 

@@ -59,6 +59,7 @@ async def make_link(body: NewLink, service: ServiceDep, person: PersonDep, respo
         experiment = await service.engine.call(experiment_of, session)
         title = title or session.scenario.head.title or session.scenario.id
     elif body.scenario is not None:
+        await service.benches.check(body.scenario, {})
         scenario, board = await asyncio.to_thread(prepare, body.scenario, {}, None)
         experiment = beginning_of(scenario, board, usual_scale(board))
         title = title or scenario.head.title or scenario.id

@@ -78,6 +78,7 @@ class RunList(BaseModel):
 )
 async def start_run(body: NewRun, service: ServiceDep, response: Response) -> Run:
     """Queue a headless run; it does not disturb the live benches."""
+    await service.benches.check(body.scenario, body.set)
     scenario, _ = await asyncio.to_thread(prepare, body.scenario, body.set, body.seed, service.units.named_in)
     seeds = [scenario.spec.seed if body.seed is None else body.seed]
     if body.seeds is not None:

@@ -43,6 +43,7 @@ async def find_threshold(
     if body.scenario is None:
         scenario = service.views.whole(body.bench, person).scenario
     else:
+        await service.benches.check(body.scenario, {})
         scenario, _ = await asyncio.to_thread(prepare, body.scenario, {}, None, service.units.named_in)
     wanted = Wanted.model_validate(body.model_dump(include=set(Wanted.model_fields)))
     await service.keeping.room()

@@ -32,6 +32,10 @@ from server.security.visitor import ELSEWHERE, STYLE, visitor_page
 CLOSE_ORIGIN, CLOSE_AUTH, CLOSE_ROLE, CLOSE_FULL = 4003, 4401, 4403, 1013
 REQUESTS_PER_S, REQUESTS_AT_ONCE = 40.0, 400
 """Requests of one student or link to watch; a page asks for some fifty when it opens, a link may be a whole room's."""
+BYTES_OF_REQUEST = 50_000
+"""So many bytes of a body count as one more request: reading them takes the server's loop as long."""
+LARGE = 1 << 20
+"""Bytes of the largest body that is counted as such."""
 MOST_SOCKETS = 8
 """Open streams and 3D views of one student."""
 
@@ -171,7 +175,7 @@ class Gate:
             await self._app(scope, receive, send)
         elif scope["type"] == "websocket":
             await self._pass_socket(scope, receive, send, person, need, bench_id)
-        elif self._requests.take(person.id):
+        elif self._requests.take(person.id, 1.0 + _length(scope) / BYTES_OF_REQUEST):
             await self._app(scope, receive, send)
         else:
             await self._refuse(scope, receive, send, 429, 0, "rate_limited", "too many requests; wait a second")
@@ -270,3 +274,10 @@ def page(status: int, title: str, text: str) -> str:
         f"<main><h1>{html.escape(title[:1].upper() + title[1:])}</h1>"
         f"<p>{html.escape(text)}</p><p><small>{status}</small></p></main>"
     )
+
+
+def _length(scope: Scope) -> int:
+    """Return how long a body says it is; one that comes in pieces without saying so counts as a large one."""
+    headers = dict(scope["headers"])
+    said = headers.get(b"content-length", b"")
+    return min(int(said), LARGE) if said.isdigit() else LARGE if b"transfer-encoding" in headers else 0
