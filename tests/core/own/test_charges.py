@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from contextlib import suppress
 from typing import Any
 
 import pytest
@@ -12,7 +13,7 @@ from core.control.controller import advance_lag, lag
 from core.elementary import exp
 from core.errors import InputError
 from core.own.evaluate import MOST_ITEMS, MOST_OPERATIONS, Evaluator
-from core.own.offered import BUILTINS, PYTHON
+from core.own.offered import BUILTINS, OFFERED, PYTHON
 from core.own.text import UnitError
 from core.own.unit import unit
 from core.record import Record, Vector, vector
@@ -110,14 +111,24 @@ def test_all_declarations_of_a_unit_share_one_count() -> None:
         ("p.gain = exp(p)", "is given something of another kind"),
         ("p.gain = exp()", "takes 1 arguments by their place"),
         ("p.gain = advance_lag(p, 1.0, 1.0, 0.0, 0.0)", "is given something of another kind"),
-        ("p.lag = lag([1.0], 0.1, False)", "cannot be worked out"),
-        ("p.lag = lag('1', 0.1, False)", "cannot be worked out"),
+        ("p.lag = lag([1.0], 0.1, False)", "pole must be a number"),
+        ("p.lag = lag(p.taps, 0.1, False)", "pole must be a number"),
     ],
 )
 def test_a_function_of_the_library_refuses_in_pack_what_it_does_not_take(text: str, said: str) -> None:
     block = unit("odd", odd("pack", text)).block
     with pytest.raises(InputError, match=said):
         block.packed(block.Params(), context())
+
+
+@pytest.mark.parametrize("given", ["p.taps", "p, p, p", "context", "'x', 'x'", "1, 1, True", "[1.0], 1.0"])
+def test_no_function_of_the_library_fails_in_pack_otherwise_than_in_one_line(given: str) -> None:
+    for module, names in OFFERED.items():
+        for name in names if module != "__future__" else ():
+            text = odd("pack", f"a = fun({given})", top=f"from {module} import {name} as fun")
+            with suppress(InputError):
+                block = unit("odd", text).block
+                block.packed(block.Params(), context())
 
 
 def test_kernels_of_the_library_run_in_pack_as_they_do_compiled() -> None:
