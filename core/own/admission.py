@@ -1,4 +1,4 @@
-"""What a document that arrives now may carry: units of its own, and how many events."""
+"""Terms on which a document is read: whether it may carry units of its own, and how many events."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from core.errors import InputError
 
 @dataclass(frozen=True)
 class Terms:
-    """What is admitted from whom the code at work belongs to.
+    """Terms on which documents of a person are read.
 
     Parameters
     ----------
@@ -32,12 +32,12 @@ _terms: ContextVar[Terms] = ContextVar("terms", default=ANYTHING)
 
 
 def admit(given: Terms) -> None:
-    """Say, for the request at work and all it begins, what is admitted."""
+    """Set the terms for the request at work and all it begins."""
     _terms.set(given)
 
 
 def terms() -> Terms:
-    """Return what is admitted from whom the code at work belongs to."""
+    """Return the terms of the request at work."""
     return _terms.get()
 
 
@@ -48,7 +48,7 @@ def refusal() -> str:
 
 @contextmanager
 def kept() -> Iterator[None]:
-    """Read what this server has kept: it was admitted when it came."""
+    """Read a document that this server has kept: it was admitted when it came."""
     token = _terms.set(ANYTHING)
     try:
         yield
@@ -57,7 +57,7 @@ def kept() -> Iterator[None]:
 
 
 def kept_with(values: Mapping[str, Any]) -> AbstractContextManager[None]:
-    """Read what this server has kept, with values written over; units and events among them must be admitted."""
+    """Read a document that this server has kept, with values written over; their units and events must be admitted."""
     check_admitted({"events": values.get("events")})
     return nullcontext() if any(path.split(".")[0] == "units" for path in values) else kept()
 

@@ -41,7 +41,7 @@ MOST_OPERATIONS = 100_000
 MOST_ITEMS = 10_000
 DEEPEST_CALLS = 10
 COST_OF_CALL = 30
-"""Operations that a call of a function of the library counts as; what it is given and makes counts beside."""
+"""Operations of a call of a library function; the items it is given and makes count beside."""
 COST_OF_BASE = 1_000
 """Operations that the ``pack`` or ``state`` of a base counts as."""
 
@@ -120,7 +120,7 @@ class Evaluator:
             refuse(node, f"takes more than {MOST_OPERATIONS} operations")
 
     def _weigh(self, node: ast.AST, *values: Any) -> None:
-        """Count the items of lists, those of lists in lists too: a list may be in another many times."""
+        """Count the items of lists, also of lists in lists: a list may be in another many times."""
         inside = [*values]
         while inside:
             one = inside.pop()

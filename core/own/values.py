@@ -58,7 +58,7 @@ class Above:
 
 @cache
 def public(kind: Any) -> frozenset[str]:
-    """Return what can be read of facts of the bench, by their class: fields and properties, no function."""
+    """Return the names of a class of facts that a unit may read: fields and properties, no function."""
     named = {entry.name for entry in fields(kind)} if is_dataclass(kind) else set()
     return frozenset(named | {name for name in dir(kind) if isinstance(getattr(kind, name), property)})
 

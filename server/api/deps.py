@@ -40,7 +40,7 @@ SessionDep = Annotated[Session, Depends(get_session)]
 
 
 def get_computing(service: ServiceDep) -> Computing:
-    """Return where the server computes what somebody asks for."""
+    """Return the processes that compute for requests."""
     return service.computing
 
 

@@ -158,7 +158,7 @@ async def _on_copy(session: Session, service: Service, work: Callable[..., T], *
 
 
 def _copied(session: Session) -> Stored:
-    """Return what the board of a bench is, as plain data (a job of the engine)."""
+    """Return the board of a bench as plain data (a job of the engine)."""
     if not isinstance(session.board, Board):
         raise InputError(REFUSAL, "bench", "run its scenario to branch off", "conflict")
     return stored(session.board)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import secrets
+import time
 from collections import Counter
 from collections.abc import Callable, Coroutine
 from concurrent.futures import Future
@@ -12,8 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from core.board.board import Board
+from core.board.document import Document
 from core.errors import InputError
 from core.own.admission import kept_with
+from scenarios.schema import Scenario
 from server.bench.blind import Blind
 from server.bench.checkpoints import Kept
 from server.bench.commands import Reset, Seek
@@ -91,7 +94,8 @@ class Benches:
         return session
 
     async def check(self, source: str | dict[str, Any], values: dict[str, Any]) -> None:
-        """Refuse a scenario of which no bench can be made, or which takes too much, before this process reads it."""
+        """Refuse a scenario that makes no bench, or takes too much, before this process reads it."""
+        self._computing.check_budget()
         if values or not is_id(source):
             units = {one.name: {"source": one.source} for one in self.maker.units.all()}
             await self._computing.call(check, source, values, units)
@@ -123,7 +127,7 @@ class Benches:
         """
 
         def made() -> Session:
-            scenario, board = prepare(source, values, seed, self.maker.units.beside)
+            scenario, board = self._prepared(source, values, seed, self.maker.units.beside)
             scale = usual_scale(board) if own_scale else time_scale
             session = self.maker.around(scenario, board, scale, class_id)
             session.running.fast_forward.leads = quiet_lead
@@ -255,10 +259,11 @@ class Benches:
             elif isinstance(command, Reset):
                 seed = session.board.spec.seed
                 values = {"seed": seed, **command.values}
+                self._computing.check_budget()
                 with kept_with(command.values):
                     if command.values:
                         await self.check(session.scenario.document, values)
-                    scenario, board = await asyncio.to_thread(prepare, session.scenario.document, values, None)
+                    scenario, board = await asyncio.to_thread(self._prepared, session.scenario.document, values)
                 event = await self._engine.call(session.reset, scenario, board, actor, command.before_tick)
             else:
                 event = await self._engine.call(session.execute, command, actor)
@@ -277,6 +282,20 @@ class Benches:
         states = Counter(session.status.state for session in self.all())
         for state in ("running", "paused", "tripped"):
             self._metrics.benches.labels(state).set(states[state])
+
+    def _prepared(
+        self,
+        source: str | dict[str, Any],
+        values: dict[str, Any],
+        seed: int | None = None,
+        units: Callable[[Document], Document] | None = None,
+    ) -> tuple[Scenario, Board]:
+        """Make the parts of a bench, at the expense of the person whose request is at work; called in a thread."""
+        begun = time.thread_time()
+        try:
+            return prepare(source, values, seed, units)
+        finally:
+            self._computing.spend(time.thread_time() - begun)
 
     def _open(self, session: Session, start: bool) -> None:
         """Give a bench to the engine (a job)."""

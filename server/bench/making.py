@@ -42,7 +42,7 @@ def prepare(
 
 
 def check(source: str | dict[str, Any], values: dict[str, Any], units: Document) -> None:
-    """Refuse a scenario of which no bench can be made; nothing is compiled.
+    """Refuse a scenario that makes no bench; nothing is compiled.
 
     Parameters
     ----------

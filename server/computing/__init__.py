@@ -1,1 +1,1 @@
-"""What people ask the server to compute, in processes of their own with limits."""
+"""Computations of requests, in processes of their own with limits."""

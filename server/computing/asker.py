@@ -1,4 +1,4 @@
-"""Who asks for what is computed now."""
+"""The person whose request is at work."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ _asker: ContextVar[str] = ContextVar("asker", default="")
 
 
 def asks(person: Person | None) -> None:
-    """Say who asks, for the request at work and all it begins."""
+    """Name the person, for the request at work and all it begins."""
     _asker.set("" if person is None or person.is_teacher else person.id)
 
 
 def asker() -> str:
-    """Return the id of the student or watcher who asks; empty for the teacher, and for the server itself."""
+    """Return the id of a student or watcher; empty for the teacher, and for work of the server's own."""
     return _asker.get()

@@ -1,4 +1,4 @@
-"""The one place where the server computes what somebody asks for: processes with limits, and a budget per person."""
+"""The one place that computes for requests: processes with limits, and a budget for each student."""
 
 from __future__ import annotations
 
@@ -23,13 +23,15 @@ from server.security.limits import Buckets
 WORKERS = 2
 """Processes that compute: while one is busy with something long, another is free."""
 MOST_S = 4.0
-"""Processor time of a request."""
+"""Processor time of a request of a student."""
 LONGEST_S = 30.0
-"""Processor time of an experiment on a copy of a bench, of which one runs at a time."""
+"""Processor time of a request of the teacher, and of an experiment on a copy of a bench, one at a time."""
 PATIENCE = 10.0
 """Times the processor time of a request that it may last: the machine has other work too."""
 BUDGET_S, EARNED = 10.0, 0.25
 """Processor time that a student may use at once, and that comes back each second."""
+MOST_SPENT_S = 1.0
+"""Processor time of a bench that counts: a kernel that is compiled meanwhile is not the student's to pay."""
 
 T = TypeVar("T")
 
@@ -50,8 +52,8 @@ class Computing:
         self._turns: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
         self._budgets = Buckets(EARNED, BUDGET_S, clock=clock)
 
-    async def call(self, function: Callable[..., T], *arguments: Any, most_s: float = MOST_S) -> T:
-        """Call a function of a module with what can be pickled, for whom the request at work belongs to.
+    async def call(self, function: Callable[..., T], *arguments: Any, most_s: float | None = None) -> T:
+        """Call a function of a module, for the person whose request is at work; arguments and result are pickled.
 
         Raises
         ------
@@ -62,17 +64,26 @@ class Computing:
         """
         person = asker()
         if not person:
-            return await self._call(person, most_s, function, *arguments)
+            return await self._call(person, most_s or LONGEST_S, function, *arguments)
         turn = self._turns.setdefault(person, asyncio.Lock())
         async with turn:
-            if not self._budgets.take(person, 0.0):
-                text = f"your requests have taken more than {BUDGET_S:g} s of processor time"
-                wait = math.ceil(1.0 / EARNED)
-                raise ApiError(429, "rate_limited", text, hint=f"wait {wait} s", headers={"Retry-After": str(wait)})
-            return await self._call(person, most_s, function, *arguments)
+            self.check_budget()
+            return await self._call(person, most_s or MOST_S, function, *arguments)
+
+    def check_budget(self) -> None:
+        """Refuse a request of a student without budget."""
+        if (person := asker()) and not self._budgets.take(person, 0.0):
+            text = f"your requests have taken more than {BUDGET_S:g} s of processor time"
+            wait = math.ceil(1.0 / EARNED)
+            raise ApiError(429, "rate_limited", text, hint=f"wait {wait} s", headers={"Retry-After": str(wait)})
+
+    def spend(self, seconds: float) -> None:
+        """Count processor time that the server itself has used for the request at work."""
+        if person := asker():
+            self._budgets.take(person, min(seconds, MOST_SPENT_S))
 
     async def warm(self, ready: Callable[[], Any]) -> None:
-        """Start the processes before somebody waits for them, once the kernels are compiled."""
+        """Start the processes before the first request, once the kernels are compiled."""
         await ready()
         for worker in self._all:
             await asyncio.to_thread(worker.submit, load)
@@ -99,7 +110,7 @@ class Computing:
 
 
 async def _done(worker: Processes, most_s: float, function: Callable[..., Any], *arguments: Any) -> Done:
-    """Have a function called in a process; end the process if nobody waits for it any more."""
+    """Have a function called in a process; end the process if the request is given up."""
     future = await asyncio.to_thread(worker.submit, within, most_s, terms(), function, *arguments)
     try:
         async with asyncio.timeout(PATIENCE * most_s):
@@ -108,12 +119,12 @@ async def _done(worker: Processes, most_s: float, function: Callable[..., Any], 
         text = f"takes more than {most_s:g} s of processor time or {MOST_BYTES >> 20} MB of memory"
         raise InputError(text, code="too_much") from None
     finally:
-        if not future.done():  # out of patience, or nobody waits any more
+        if not future.done():  # out of patience, or the request is given up
             worker.kill()
             await asyncio.wait([asyncio.wrap_future(future)])
 
 
 def load() -> None:
-    """Load what is computed here, in the process that computes it."""
+    """Load the code of all computations, in the process that computes."""
     for name in ("aliases", "devices", "experiments", "scenarios", "theory", "units"):
         import_module(f"server.api.{name}")

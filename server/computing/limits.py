@@ -15,7 +15,7 @@ from core.errors import InputError
 from core.own.admission import Terms, admit
 
 MOST_BYTES = 1 << 30
-"""Memory that a process may take beyond what it has when it begins."""
+"""Memory that a process may take beyond that of its beginning."""
 
 _limited: list[bool] = []
 
@@ -27,7 +27,7 @@ class Done:
     Parameters
     ----------
     value
-        What the function returned.
+        The result of the function.
     used_s : float
         Processor time.
     refusal : tuple of str, optional

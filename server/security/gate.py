@@ -35,7 +35,7 @@ REQUESTS_PER_S, REQUESTS_AT_ONCE = 40.0, 400
 BYTES_OF_REQUEST = 50_000
 """So many bytes of a body count as one more request: reading them takes the server's loop as long."""
 LARGE = 1 << 20
-"""Bytes of the largest body that is counted as such."""
+"""Most bytes that are counted of a body."""
 MOST_SOCKETS = 8
 """Open streams and 3D views of one student."""
 
@@ -146,7 +146,7 @@ class Gate:
         return self._people.by_secret(self._identity.session_of(connection))
 
     def _terms(self, person: Person | None) -> Terms:
-        """Return what a scenario of this person may carry."""
+        """Return the terms on which scenarios of this person are read."""
         is_teacher = person is not None and person.is_teacher
         return Terms(self._units_refused(person), None if is_teacher else self._student_events)
 
@@ -277,7 +277,7 @@ def page(status: int, title: str, text: str) -> str:
 
 
 def _length(scope: Scope) -> int:
-    """Return how long a body says it is; one that comes in pieces without saying so counts as a large one."""
+    """Return the length that a body declares; a body in pieces declares none, and counts as large."""
     headers = dict(scope["headers"])
     said = headers.get(b"content-length", b"")
     return min(int(said), LARGE) if said.isdigit() else LARGE if b"transfer-encoding" in headers else 0

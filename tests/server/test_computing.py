@@ -1,4 +1,4 @@
-"""What people ask the server to compute: limits of time and memory, budgets, one request of a student at a time."""
+"""Computations of requests: limits of time and memory, budgets, one request of a student at a time."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ async def as_person(person: Person | None, work: Callable[[], Awaitable[Any]]) -
     return await work()
 
 
-def test_what_takes_too_long_ends_alone_and_in_one_line(made: tuple[Computing, ManualClock]) -> None:
+def test_a_call_that_takes_too_long_ends_alone_and_in_one_line(made: tuple[Computing, ManualClock]) -> None:
     computing, _ = made
 
     async def both() -> tuple[Any, Any]:
@@ -70,7 +70,7 @@ def test_what_takes_too_long_ends_alone_and_in_one_line(made: tuple[Computing, M
     assert os.getpid() not in after
 
 
-def test_what_takes_too_much_memory_is_refused(made: tuple[Computing, ManualClock]) -> None:
+def test_a_call_that_takes_too_much_memory_is_refused(made: tuple[Computing, ManualClock]) -> None:
     computing, _ = made
     with pytest.raises(InputError, match="takes more than 1024 MB of memory"):
         asyncio.run(computing.call(bytes, 1 << 32))
@@ -132,6 +132,39 @@ def test_a_scenario_of_a_student_has_so_many_events_at_every_door(live: Live) ->
         assert (error["code"], error["message"]) == ("too_much", line), path
     assert ada.ask("POST", CHECK, json={"scenario": events(1000)}).status_code == 200
     assert live.http.post(CHECK, json={"scenario": events(1001)}).status_code == 200
+    live.http.delete(f"/api/v1/classes/{group['id']}")
+
+
+def test_a_student_without_budget_makes_no_bench_and_resets_none(live: Live) -> None:
+    group = open_class(live)
+    ada, bob = join(live, group, "Ada"), join(live, group, "Bob")
+    live.service.computing._budgets.take(ada.id, BUDGET_S)
+    doors = {
+        CHECK: {"scenario": events(1)},
+        "/api/v1/benches": {"scenario": "first-look"},
+        f"/api/v1/benches/{ada.bench}/commands": {"kind": "reset"},
+        "/api/v1/devices/evaluate": {"device": {"id": "lcr-350"}},
+        "/api/v1/theory/positive-definite": {"matrix": [[1.0]]},
+        f"/api/v1/benches/{ada.bench}/identification": {},
+    }
+    for path, body in doors.items():
+        answer = ada.ask("POST", path, json=body)
+        assert (answer.status_code, answer.json()["error"]["code"]) == (429, "rate_limited"), path
+        assert "s of processor time" in answer.json()["error"]["message"], path
+        other = bob.ask("POST", path.replace(ada.bench, bob.bench), json=body)
+        assert other.status_code in (200, 201), other.text
+        bob.bench = bob.me()["bench"] or bob.bench
+    assert ada.me()["bench"] == ada.bench
+    live.http.delete(f"/api/v1/classes/{group['id']}")
+
+
+def test_a_large_body_counts_as_many_requests(live: Live) -> None:
+    group = open_class(live)
+    ada, bob = join(live, group, "Ada"), join(live, group, "Bob")
+    path, large = "/api/v1/theory/positive-definite", {"matrix": [[1.0]], "other": "x" * 1_000_000}
+    answers = [ada.ask("POST", path, json=large).status_code for _ in range(25)]
+    assert answers == [422] * answers.index(429) + [429] * (25 - answers.index(429)), answers
+    assert bob.ask("POST", path, json=large).status_code == 422
     live.http.delete(f"/api/v1/classes/{group['id']}")
 
 

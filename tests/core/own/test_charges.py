@@ -1,4 +1,4 @@
-"""Whatever a declaration or a `pack` gives to a function is counted, by its length, before the function works on it."""
+"""The arguments of each function in declarations and in `pack` are counted, by their length, before the call."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def test_numbers_are_compared_and_nothing_that_takes_long(sign: str) -> None:
         "str([1.0])",
     ],
 )
-def test_what_may_take_long_or_is_of_no_numbers_is_refused(text: str) -> None:
+def test_calls_that_may_take_long_or_take_no_numbers_are_refused(text: str) -> None:
     with pytest.raises(UnitError):
         unit("odd", odd("top", f"K = {text}"))
 
