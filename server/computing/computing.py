@@ -17,9 +17,10 @@ from scenarios.campaign.executor import Processes
 from server.computing.asker import asker
 from server.computing.limits import MOST_BYTES, Done, within
 from server.errors import ApiError
-from server.runs.worker import NICE
 from server.security.limits import Buckets
 
+NICE = 5
+"""Niceness of the processes: benches come before them, headless runs after."""
 WORKERS = 2
 """Processes that compute: while one is busy with something long, another is free."""
 MOST_S = 4.0

@@ -32,7 +32,7 @@ from server.security.visitor import ELSEWHERE, STYLE, visitor_page
 CLOSE_ORIGIN, CLOSE_AUTH, CLOSE_ROLE, CLOSE_FULL = 4003, 4401, 4403, 1013
 REQUESTS_PER_S, REQUESTS_AT_ONCE = 40.0, 400
 """Requests of one student or link to watch; a page asks for some fifty when it opens, a link may be a whole room's."""
-BYTES_OF_REQUEST = 50_000
+BYTES_OF_REQUEST = 20_000
 """So many bytes of a body count as one more request: reading them takes the server's loop as long."""
 LARGE = 1 << 20
 """Most bytes that are counted of a body."""
