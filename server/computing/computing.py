@@ -7,6 +7,7 @@ import math
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures.process import BrokenProcessPool
+from functools import partial
 from importlib import import_module
 from typing import Any, TypeVar
 from weakref import WeakValueDictionary
@@ -112,7 +113,11 @@ class Computing:
 
 async def _done(worker: Processes, most_s: float, function: Callable[..., Any], *arguments: Any) -> Done:
     """Have a function called in a process; end the process if the request is given up."""
-    future = await asyncio.to_thread(worker.submit, within, most_s, terms(), function, *arguments)
+    work = partial(worker.submit, within, most_s, terms(), function, *arguments)
+    try:
+        future = await asyncio.to_thread(work)
+    except BrokenProcessPool:  # the process has ended since the last request; this starts another
+        future = await asyncio.to_thread(work)
     try:
         async with asyncio.timeout(PATIENCE * most_s):
             return await asyncio.wrap_future(future)

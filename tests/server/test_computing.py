@@ -7,6 +7,7 @@ import os
 import threading
 import time
 from collections.abc import Awaitable, Callable, Iterator
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
@@ -17,6 +18,7 @@ import pytest
 
 from core.errors import InputError
 from core.own.offered import PYTHON
+from scenarios.campaign.executor import Processes
 from scenarios.library import get
 from server.clock import ManualClock
 from server.computing.asker import asks
@@ -68,6 +70,22 @@ def test_a_call_that_takes_too_long_ends_alone_and_in_one_line(made: tuple[Compu
     before, after = asyncio.run(both())
     assert before in after and len({*after}) == 2, "the other process stays, and one takes the place of what ended"
     assert os.getpid() not in after
+
+
+def test_a_process_that_ended_between_two_requests_is_replaced(
+    made: tuple[Computing, ManualClock], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    computing, _ = made
+    submit, refused = Processes.submit, []
+
+    def gone_once(worker: Processes, *arguments: Any) -> Any:
+        if not refused:
+            refused.append(worker)
+            raise BrokenProcessPool("it has ended")
+        return submit(worker, *arguments)
+
+    monkeypatch.setattr(Processes, "submit", gone_once)
+    assert asyncio.run(computing.call(os.getpid)) != os.getpid() and refused
 
 
 def test_a_call_that_takes_too_much_memory_is_refused(made: tuple[Computing, ManualClock]) -> None:
