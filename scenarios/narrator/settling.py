@@ -17,7 +17,7 @@ from scenarios.narrator.words import figure, length, moment
 OVER, BACK = 0.05, 0.025
 """Shares of the motion of the model: over the first an error has left, under the second it is back.
 
-They lie apart, so that an error that stays at the edge is never told as back, as in open loop while the fault acts.
+They differ, so that an error at the edge never counts as back, as in open loop while the fault acts.
 """
 COUNT, ERROR, MOTION, WAS_OVER = range(4)
 """Samples of the block under way, the sums of its squares, and whether one was over the limit."""

@@ -43,7 +43,7 @@ def metric_scale(metric: str, values: Iterable[Any] = ()) -> MetricScale:
 
 
 def metric_limits(metric: str) -> tuple[float, float]:
-    """Return what a figure cannot pass: 0 for counts, times and sizes, 1 for shares too."""
+    """Return the limits of a figure: at least 0 for counts, times and sizes, at most 1 for shares."""
     if metric.endswith("_fraction"):
         return 0.0, 1.0
     return (0.0 if set(NAMES["counted"]) & set(re.split("[._]", metric)) else -math.inf), math.inf

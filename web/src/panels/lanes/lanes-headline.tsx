@@ -50,7 +50,7 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
   );
 }
 
-/** Whether a verdict is that of the truth; where no hypothesis is true, none is right. */
+/** Whether a verdict agrees with the truth; where no hypothesis is true, none is right. */
 export const isRight = ({ winner, truth, unexplained }: Score): boolean =>
   truth >= 0 && winner === truth && !unexplained;
 
