@@ -84,7 +84,8 @@ def test_a_run_in_a_file_has_the_bits_of_one_in_memory(name: str, monkeypatch: A
     for signal in inside.kept:
         assert np.array_equal(outside.signal(signal.name), inside.signal(signal.name), equal_nan=True)
     assert figure(outside) == figure(inside)
-    assert run_report(outside, inside.summary()) == run_report(inside, inside.summary())
+    reports = [run_report(found, inside.summary()) for found in (outside, inside)]
+    assert len({re.sub(r"\d{4}-\d\d-\d\d \d\d:\d\d UTC", "", text) for text in reports}) == 1
 
 
 def test_a_trace_is_there_whole_or_not_at_all(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ const recorded = await recordedBench("seven-steps");
 const catalog = await recordedAnswer("catalog");
 const bench = { ...recorded.bench, state: "running" as const, earliest_tick: 0 };
 
-const STALE = /stale since \d/;
+const STALE = /stale since \d/i;
 const WHERE = ["Notice", "Steps of the scenario", "Timeline"];
 const pass = (ms: number) => act(() => vi.advanceTimersByTimeAsync(ms));
 const stale = () => WHERE.filter((name) => STALE.test(screen.queryByRole("region", { name })?.textContent ?? ""));
