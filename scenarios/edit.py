@@ -43,7 +43,8 @@ def written(document: Document, values: dict[str, Any]) -> Document:
             changed.pop(other, None)
     if "events" in values and "printed" not in values:
         changed.pop("printed", None)
-    if "comparator" not in values and any(path.partition(".")[0] not in OF_NO_BENCH for path in values):
+    changes = {path.partition(".")[0] for path in values}
+    if "comparator" not in changes and changes - OF_NO_BENCH:
         changed.pop("comparator", None)
     rows = changed.get("expect")
     if isinstance(rows, list) and any(isinstance(row, dict) and row.keys() & {"fitted", "pid_too"} for row in rows):

@@ -174,8 +174,10 @@ def test_paths_that_lead_nowhere_are_refused():
 
 def test_a_condition_is_offered_no_signal_that_cannot_be_seen():
     with pytest.raises(InputError) as error:
-        build(Scenario.load(document({"events": [{"when": "nothing > 1", "heal": "all"}]})))
-    assert "plant.displacement" in error.value.message and "@" not in error.value.message
+        build(Scenario.load(document({"events": [{"when": "displacement@2 > 1", "heal": "all"}]})))
+    assert (
+        "plant.displacement" in error.value.hint and "@" not in error.value.message.partition(";")[2] + error.value.hint
+    )
 
 
 def test_no_diagnoser_or_identifier_has_the_name_of_another_part():

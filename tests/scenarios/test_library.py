@@ -59,7 +59,7 @@ def test_unknown_ids_are_refused_with_what_there_is(name: str):
     with pytest.raises(InputError) as refused:
         get(name)
     assert refused.value.field == "scenario" and refused.value.code == "unknown"
-    assert refused.value.message.endswith(f"allowed: {', '.join(ids())}")
+    assert f"allowed: {len(ids())} names" in refused.value.message
     if name == "ch5-seven-stepp":
         assert refused.value.hint == "did you mean ch5-seven-step?"
 

@@ -13,7 +13,7 @@ from scenarios.campaign.single import run_seeds
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.report.run import run_report
-from scenarios.run import build, run
+from scenarios.run import run
 from scenarios.schema import Scenario
 from server.cli import app
 from tests.lab import do, make, play
@@ -111,7 +111,6 @@ def test_feedback_is_refused_while_the_drive_is_analogue_and_the_board_runs_on()
 
 
 def test_an_event_that_would_close_the_loop_of_an_analogue_drive_is_refused_before_the_first_tick():
-    scenario = with_values(get(SEVEN), {"plant.drive": "analogue", "events": [{"at_sample": 9, "switch": "pid"}]})
     with pytest.raises(InputError) as caught:
-        build(scenario)
+        with_values(get(SEVEN), {"plant.drive": "analogue", "events": [{"at_sample": 9, "switch": "pid"}]})
     assert caught.value.field.startswith("events.0") and "pid" in caught.value.message

@@ -12,7 +12,6 @@ from typing import Any
 
 import pytest
 
-from scenarios.campaign.executor import Processes
 from server.people.access import DOORS, SOCKET
 from server.runs.queue import Queue
 from tests.server.conftest import Live
@@ -33,7 +32,7 @@ def world(live: Live, monkeypatch: pytest.MonkeyPatch) -> Iterator[World]:
 
     monkeypatch.setattr(Queue, "_carry_out", waits)
     with ThreadPoolExecutor(1) as thread:
-        monkeypatch.setattr(Processes, "submit", lambda _, *work: thread.submit(*work))
+        monkeypatch.setattr(live.service.queue.processes, "submit", thread.submit)
         made = World(live)
         yield made
         made.end()

@@ -94,6 +94,7 @@ class World:
         service = self.live.service
 
         async def memory() -> dict[str, Any]:
+            await service.database.run(lambda _: None)  # behind what is written later
             people, benches, works = service.people, service.benches.all(), service.sheets._works._all
             return {
                 "people": {one.id: one.name for one in people._by_hash.values()},

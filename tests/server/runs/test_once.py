@@ -25,7 +25,7 @@ from tests.server.runs.test_listing import refused
 from tests.server.runs.test_runs import until_running, wait
 
 RUNS, SWEEPS = "/api/v1/runs", "/api/v1/sweeps"
-NAME, VALUES = "ch3-mrac-spring-x2", {"duration_ms": 12.0}
+NAME, VALUES = "ch3-mrac-spring-x2", {"duration_ms": 12.0, "comparator": {"pole": 2.0, "feedforward": 1.0}}
 """A scenario with a controller: it is computed with the open loop and with a PID too."""
 
 
@@ -95,7 +95,9 @@ def test_one_summary_whoever_makes_it(live: Any) -> None:
     """REST, command line, in process; and the sums of a campaign."""
     found = ask(live, "3:5")["summary"]
     expected = run_seeds(with_values(get(NAME), VALUES), [3, 4, 5])
-    told = CliRunner().invoke(app, ["run", NAME, "--set", "duration_ms=12.0", "--seeds", "3:5", "--json"]).stdout
+    changes = ["duration_ms=12.0", "comparator.pole=2.0", "comparator.feedforward=1.0"]
+    arguments = [word for change in changes for word in ("--set", change)]
+    told = CliRunner().invoke(app, ["run", NAME, *arguments, "--seeds", "3:5", "--json"]).stdout
     same = ("digest", "digests", "metrics", "metrics_std", "seeds", "warnings", "verdict", "ok", "ticks", "trip")
     for one in (expected, json.loads(told)):
         assert {name: one[name] for name in same} == {name: found[name] for name in same}
