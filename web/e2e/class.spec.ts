@@ -125,7 +125,7 @@ test("a teacher shows one bench on all screens, arranges the panels and asks for
   await page.keyboard.press("a");
   await expect(page.getByText("0 of 2 have voted")).toBeVisible();
   const card = emmy.getByRole("region", { name: "Vote" });
-  await expect(card).toContainText("The plate gets 5 % heavier at 24 ms.");
+  await expect(card).toContainText("At 24 ms the device changes: it swings 8 % further.");
   await card.getByRole("button", { name: /^healthy/ }).click();
   await expect(card).toContainText("You can change it");
   await card.getByRole("button", { name: /^mass \+5/ }).click();

@@ -52,7 +52,7 @@ test("a resonator and a gyroscope are designed, and put on a bench", async ({ pa
   await enter(page, "Beam length along y, µm", "330");
   await expect(split).toContainText(/30\d\.\d\u00a0Hz/);
   await enter(page, "Fingers per side along y", "88");
-  await expect(page.getByRole("alert").filter({ hasText: "88 fingers along y take 698 um" })).toBeVisible();
+  await expect(page.getByRole("alert").filter({ hasText: "88 fingers along y take 698 µm" })).toBeVisible();
   await enter(page, "Fingers per side along y", "60");
   expect(await useOnBench(page, server, /^Designed: Gyroscope with the beams/)).toMatchObject({
     drawn_gyroscope: { sense_beam_length_um: 330, sense_fingers: 60 },
