@@ -25,9 +25,11 @@ from tests.server.runs.test_listing import refused
 from tests.server.runs.test_runs import until_running, wait
 
 RUNS, SWEEPS = "/api/v1/runs", "/api/v1/sweeps"
-NAME, SHORT = "ch3-mrac-spring-x2", {"duration_ms": 12.0}
-VALUES = {**SHORT, "comparator": {"pole": 2.0, "feedforward": 1.0}}
-"""A scenario with a controller: it is computed with the open loop and with a PID too."""
+NAME = "ch3-mrac-spring-x2"
+"""A scenario with a controller: it is computed with the open loop too."""
+SHORT: dict[str, Any] = {"duration_ms": 12.0}
+VALUES: dict[str, Any] = {**SHORT, "comparator": {"pole": 2.0, "feedforward": 1.0}}
+"""With a PID that is named, which the scenario is computed with as well."""
 
 
 @pytest.fixture
