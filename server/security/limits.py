@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import OrderedDict
 from collections.abc import Callable
+from threading import Lock
 
 
 class Bucket:
@@ -53,11 +54,13 @@ class Buckets:
     ) -> None:
         self._rate, self._burst, self._most, self._clock = rate, burst, most, clock
         self._buckets: OrderedDict[str, Bucket] = OrderedDict()
+        self._lock = Lock()
 
     def take(self, caller: str, cost: float = 1.0) -> bool:
-        """Take a token of ``caller``, or several."""
-        bucket = self._buckets.pop(caller, None) or Bucket(self._rate, self._burst, self._clock)
-        self._buckets[caller] = bucket
-        if len(self._buckets) > self._most:
-            self._buckets.popitem(last=False)
-        return bucket.take(cost)
+        """Take a token of ``caller``, or several; from any thread."""
+        with self._lock:
+            bucket = self._buckets.pop(caller, None) or Bucket(self._rate, self._burst, self._clock)
+            self._buckets[caller] = bucket
+            if len(self._buckets) > self._most:
+                self._buckets.popitem(last=False)
+            return bucket.take(cost)
