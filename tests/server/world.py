@@ -116,6 +116,7 @@ class World:
                 },
             }  # fmt: skip
 
+        known = self.live.on_loop(memory())
         folder = service.settings.data
         files = {
             str(path.relative_to(folder)): path.stat().st_size if path.suffix != ".npz" else 0
@@ -127,7 +128,7 @@ class World:
             if table.name not in ("results", "audit"):
                 query = table.select()
                 rows[table.name] = sorted(map(str, service.database.transact(lambda s, q=query: list(s.execute(q)))))
-        return {**self.live.on_loop(memory()), "files": files, **rows}
+        return {**known, "files": files, **rows}
 
 
 class Injector:
