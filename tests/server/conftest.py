@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import json
 import threading
+from collections import deque
 from collections.abc import Callable, Coroutine, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -16,7 +17,9 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
+from scenarios.campaign.executor import Processes
 from server.app import create_app
+from server.computing.computing import Computing
 from server.serve import bind, make_server
 from server.settings import Settings
 from server.stream.codec import Frame, decode
@@ -26,6 +29,7 @@ from tests.server.forks import Forks, forks
 TOKEN = "a-token-for-the-tests-only"
 HANGS_S = 60.0
 """A server that says nothing for so long hangs."""
+_computers: list[Processes] = []
 LOOK_S = 0.05
 """Time that passes between two looks at a bench, by the clock that tests advance."""
 
@@ -230,6 +234,7 @@ def serving(folder: Path, **fields: Any) -> Iterator[Live]:
     listener = bind(settings)
     server, started = make_server(settings, app), threading.Event()
     app.state.service.queue.warm = _wait_for_the_first_run
+    _share_processes(app.state.service.computing)
     start = server.startup
 
     async def startup(*arguments: Any, **named: Any) -> None:
@@ -259,6 +264,14 @@ def serving(folder: Path, **fields: Any) -> Iterator[Live]:
 
 async def _wait_for_the_first_run(_ready: Any) -> None:
     """Start no process before a run asks for it."""
+
+
+def _share_processes(computing: Computing) -> None:
+    """Let all servers of this process compute in the same processes: each takes a second to start."""
+    _computers.extend(computing._all if not _computers else [])
+    computing._free = deque(_computers)
+    computing.warm = _wait_for_the_first_run  # type: ignore[method-assign]
+    computing.close = lambda: None  # type: ignore[method-assign]
 
 
 @pytest.fixture(scope="session")

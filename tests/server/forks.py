@@ -83,16 +83,22 @@ def forks(log: Path) -> Iterator[Forks]:
             program.communicate(timeout=60)
 
 
+async def _wait(*_: Any) -> None:
+    """Start no process before a request asks for it."""
+
+
 def main() -> None:
     """Fork a server for each line."""
     from scenarios import kernels  # first: it gives compiled kernels their cache
     from server import app  # noqa: F401
+    from server.computing.computing import Computing
     from server.serve import serve
     from server.settings import Settings
 
     kernels.load()
     kernels.load = lambda: None  # every fork has the kernels of its parent
     kernels.complete = lambda: None  # no fork compiles the others
+    Computing.warm = _wait  # type: ignore[method-assign]
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)
     while line := sys.stdin.readline():
         if os.fork():
