@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import pytest
 from typer.testing import CliRunner
 
 from core.board import program
@@ -18,7 +19,9 @@ from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
 from scenarios.schema import Scenario
+from scenarios.speed import units
 from server.cli import app
+from tests.core.own.price import PRICE_NS, priced
 from tests.core.own.texts import PI, ROOT, odd
 from tests.server.people.group import join, open_class
 from tests.server.runs.test_runs import wait
@@ -166,14 +169,15 @@ def test_a_server_for_everyone_does_not_start_without_the_wall(tmp_path: Path) -
     assert "units" in ended.stderr and "no wasmtime here" in ended.stderr and "'.[wall]' in a checkout" in ended.stderr
 
 
-def test_check_says_what_is_wrong_and_what_it_costs(tmp_path: Path) -> None:
+def test_check_says_what_is_wrong_and_what_it_costs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(units, "block_costs", priced)
     good, bad = tmp_path / "pi.py", tmp_path / "bad.py"
     good.write_text(PI, "utf-8")
     bad.write_text(PI.replace("e = x.model - x.measured", "e = x.model - x.truth"), "utf-8")
     said = CliRunner().invoke(app, ["check", str(good)], catch_exceptions=False)
     assert said.exit_code == 0 and "control/pi" in said.stdout and "a sample" in said.stdout
     told = json.loads(CliRunner().invoke(app, ["check", str(good), "--json"], catch_exceptions=False).stdout)
-    assert told[0]["family"] == "control" and told[0]["ns_per_sample"] > 0.0
+    assert told[0]["family"] == "control" and told[0]["ns_per_sample"] == PRICE_NS
     said = CliRunner().invoke(app, ["check", str(bad)], catch_exceptions=False)
     line = 1 + bad.read_text("utf-8").split("\n").index("        e = x.model - x.truth")
     assert said.exit_code == 2 and f"line {line}, column 23: has no truth" in said.stdout

@@ -13,7 +13,8 @@ from scenarios.library import get
 from scenarios.report.figure import figure
 from scenarios.run import build, run
 from scenarios.schema import Scenario
-from scenarios.speed.units import cost_ns
+from scenarios.speed import units
+from tests.core.own.price import PRICE_NS, priced
 from tests.core.own.test_own_units import source_of, with_unit
 
 MEAN = '''from core.block import Block, BlockParams, parameter
@@ -111,8 +112,9 @@ def test_units_of_gyroscopes_stand_on_no_other_bench() -> None:
 
 
 @pytest.mark.parametrize("name", ["drive", "sense", "mean"])
-def test_its_cost_is_measured_on_a_gyroscope(name: str) -> None:
-    assert cost_ns(unit("own", {"drive": DRIVE, "sense": SENSE, "mean": MEAN}[name])) > 0.0
+def test_its_cost_is_measured_on_a_gyroscope(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(units, "block_costs", priced)
+    assert units.cost_ns(unit("own", {"drive": DRIVE, "sense": SENSE, "mean": MEAN}[name])) == PRICE_NS
 
 
 SENSE_READS = SENSE.replace("import output, tap", "import output, reads, tap")
