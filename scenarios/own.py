@@ -71,6 +71,12 @@ def with_units(document: Document, files: Iterable[Path], field: str = "--unit")
     return {**document, "units": units} if units else document
 
 
+def beside(units: Document, document: Document) -> Document:
+    """Return the units, of some tables by name, that a scenario does not carry itself."""
+    own = document.get("units", {})
+    return {name: table for name, table in units.items() if name not in own}
+
+
 @cache
 def copies() -> tuple[Unit, ...]:
     """Return the units of the library whose file is a unit of one's own as it stands: what one may begin with."""

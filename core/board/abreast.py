@@ -205,7 +205,7 @@ class Abreast:
                     board.carry_out_due()
                 self._link()
                 moments = [board.pending.next_tick for board in self._leaders]
-            look = self.tick - self.tick % lost.EVERY + lost.EVERY
+            look = lost.next_look(self.tick)
             end = min([samples, look, *(moment for moment in moments if moment is not None)])
             ran = self._run(end - self.tick)
             self.tick += ran

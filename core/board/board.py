@@ -17,7 +17,7 @@ from core.board.document import Document
 from core.board.fold import Words
 from core.board.instances import scored
 from core.board.log import Log, LogEntry
-from core.board.lost import EVERY, Lost, lost
+from core.board.lost import EVERY, Lost, lost, next_look
 from core.board.observer import Observer
 from core.board.parse import parse
 from core.board.pending import Pending, Queue
@@ -152,7 +152,7 @@ class Board:
             if self.trip is not None:
                 break
             end, upcoming = self.tick + n - done, self.pending.next_tick
-            stop = min(end, self.tick - self.tick % EVERY + EVERY)
+            stop = min(end, next_look(self.tick))
             stop = stop if upcoming is None else min(stop, upcoming)
             ran, why = self._run(stop - self.tick, done)
             rows = slice(done, done + ran)

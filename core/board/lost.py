@@ -25,6 +25,11 @@ class Lost(NamedTuple):
     tick: int
 
 
+def next_look(tick: int) -> int:
+    """Return the tick after this one at which all states are looked at."""
+    return tick - tick % EVERY + EVERY
+
+
 def lost(wiring: Wiring, spec: Spec) -> str:
     """Return the first block of a tick that has lost its state; nothing when none has."""
     finite = np.isfinite(wiring.s)

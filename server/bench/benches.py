@@ -97,8 +97,7 @@ class Benches:
         """Refuse a scenario that makes no bench, or takes too much, before this process reads it."""
         self._computing.check_budget()
         if values or not is_id(source):
-            units = {one.name: {"source": one.source} for one in self.maker.units.all()}
-            await self._computing.call(check, source, values, units)
+            await self._computing.call(check, source, values, self.maker.units.beside({}))
 
     async def create(
         self,

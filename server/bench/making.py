@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, TypeGuard
 
 from core.board.board import Board
@@ -11,6 +12,7 @@ from core.nesting import read_toml
 from core.own.admission import check_admitted, kept_with
 from scenarios.edit import with_values
 from scenarios.library import get
+from scenarios.own import beside
 from scenarios.run import build
 from scenarios.schema import Scenario
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE
@@ -53,12 +55,7 @@ def check(source: str | dict[str, Any], values: dict[str, Any], units: Document)
     units : dict
         Units of this server, which it has beside its own.
     """
-
-    def beside(document: Document) -> Document:
-        own = document.get("units", {})
-        return {name: table for name, table in units.items() if name not in own}
-
-    prepare(source, values, None, beside, compiled=False)
+    prepare(source, values, None, partial(beside, units), compiled=False)
 
 
 def read_scenario(source: str | dict[str, Any]) -> Scenario:

@@ -12,7 +12,7 @@ from core.board.document import Document
 from core.board.library import IDENTIFIER, MOST_UNITS, library_of
 from core.errors import InputError
 from core.own.unit import Unit, unit
-from scenarios.own import with_units
+from scenarios.own import beside, with_units
 from server.errors import ApiError, not_found
 from server.store.privacy import write_private
 
@@ -64,8 +64,7 @@ class Units:
 
     def beside(self, document: Document) -> Document:
         """Return the units that a scenario does not carry itself, as it would."""
-        own = document.get("units", {})
-        return {one.name: {"source": one.source} for one in self.all() if one.name not in own}
+        return beside({one.name: {"source": one.source} for one in self.all()}, document)
 
     def named_in(self, document: Document) -> Document:
         """Return those of them that it names."""

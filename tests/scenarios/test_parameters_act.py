@@ -16,17 +16,12 @@ from core.device.device import Device
 from core.device.gyroscope import GyroscopeTable
 from core.faults.fault import FaultParams
 from core.loop.environment import Environment
-from tests.lab import do, play
+from tests.lab import RICH, do, play
 from tests.scenarios.test_scenarios import TABLES_OF_A_DEVICE, other_value, own_tables, tables
 
 TICKS = 200
 PLAIN: dict[str, Any] = {
-    "sample_rate_khz": 100,
-    "seed": 3,
-    "device": {"id": "ch3"},
-    "plant": {"model": "linear", "drive_noise_v": 0.01},
-    "reference": {"kind": "sine", "amplitude_v": 8.0, "frequency_hz": 2000.0},
-    "controller": {"kind": "open_loop"},
+    **{key: RICH[key] for key in ("sample_rate_khz", "seed", "device", "plant", "reference", "controller")},
     "sensor": {"kind": "ideal", "noise_um": 0.02},
 }
 AXES: dict[str, Any] = {

@@ -24,7 +24,7 @@ from server.serve import bind, make_server
 from server.settings import Settings
 from server.stream.codec import Frame, decode
 from server.stream.wire import SUBPROTOCOL
-from tests.server.forks import Forks, forks
+from tests.server.forks import Forks, forks, start_none
 
 TOKEN = "a-token-for-the-tests-only"
 HANGS_S = 60.0
@@ -233,7 +233,7 @@ def serving(folder: Path, **fields: Any) -> Iterator[Live]:
     app = create_app(settings)
     listener = bind(settings)
     server, started = make_server(settings, app), threading.Event()
-    app.state.service.queue.warm = _wait_for_the_first_run
+    app.state.service.queue.warm = start_none
     _share_processes(app.state.service.computing)
     start = server.startup
 
@@ -262,15 +262,11 @@ def serving(folder: Path, **fields: Any) -> Iterator[Live]:
         assert not thread.is_alive(), "the server did not stop"
 
 
-async def _wait_for_the_first_run(_ready: Any) -> None:
-    """Start no process before a run asks for it."""
-
-
 def _share_processes(computing: Computing) -> None:
     """Let all servers of this process compute in the same processes: each takes a second to start."""
     _computers.extend(computing._all if not _computers else [])
     computing._free = deque(_computers)
-    computing.warm = _wait_for_the_first_run  # type: ignore[method-assign]
+    computing.warm = start_none  # type: ignore[method-assign]
     computing.close = lambda: None  # type: ignore[method-assign]
 
 

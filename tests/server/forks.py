@@ -83,7 +83,7 @@ def forks(log: Path) -> Iterator[Forks]:
             program.communicate(timeout=60)
 
 
-async def _wait(*_: Any) -> None:
+async def start_none(*_: Any) -> None:
     """Start no process before a request asks for it."""
 
 
@@ -98,7 +98,7 @@ def main() -> None:
     kernels.load()
     kernels.load = lambda: None  # every fork has the kernels of its parent
     kernels.complete = lambda: None  # no fork compiles the others
-    Computing.warm = _wait  # type: ignore[method-assign]
+    Computing.warm = start_none  # type: ignore[method-assign]
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)
     while line := sys.stdin.readline():
         if os.fork():
