@@ -6,7 +6,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from server.api.bodies import StrictRoute
-from server.api.deps import SeenDep
+from server.api.deps import SeenDep, ServiceDep
 from server.bench.captures import CaptureSet
 from server.stream.wire import CaptureMark
 
@@ -52,6 +52,7 @@ class BenchCaptures(BaseModel):
 
 
 @router.get("/{bench_id}/captures")
-async def list_captures(session: SeenDep) -> BenchCaptures:
+async def list_captures(session: SeenDep, service: ServiceDep) -> BenchCaptures:
     """List the captures of a bench; a trace of the signals, start_tick and end_tick of one has every sample of it."""
+    await service.hub.capture(session)
     return BenchCaptures(triggers=[TriggerCaptures.of(kept) for kept in session.captures.sets()])

@@ -184,14 +184,15 @@ class Captures:
         """Note a crossing whose window is complete; its samples are copied by `gather`."""
         kept.waiting.append(Crossing(tick, at, self._branch))
 
-    def gather(self) -> None:
-        """Copy the samples of crossings that wait, some at a time."""
+    def gather(self) -> bool:
+        """Copy the samples of crossings that wait, some at a time; return whether crossings still wait."""
         self.follow()
         room = AT_ONCE
         for key, one in list(self._sets.items()):
             if room > 0 and (one.waiting or one.coming is not None):
                 room = self._copy(one, room)
                 self._sets.move_to_end(key)
+        return any(one.waiting or one.coming for one in self._sets.values())
 
     def fold(self, columns: Float32Array, signals: list[int], start: int, stop: int) -> None:
         """Fold captures into columns of whole ticks, minima and maxima, where the history has gone on."""

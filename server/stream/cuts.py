@@ -74,12 +74,12 @@ class SharedCuts:
         key = f"{self.moment.dt_ms} {spec.model_copy(update={'panel': 0}).model_dump_json()}"
         return self._views.setdefault(key, fresh)
 
-    def gather(self) -> None:
-        """Find what is to be captured at this moment, whether or not pages take pictures, and copy some of it."""
+    def gather(self) -> bool:
+        """Find the crossings to capture at this moment and copy some of them; return whether others still wait."""
         captures = self._session.captures
         for view in [view for one in captures.sets() for view in one.views]:
             view.find(self)
-        captures.gather()
+        return captures.gather()
 
     def _captures(self, spec: Subscribe, indices: list[int]) -> CaptureSet | None:
         """Return the captures of a subscription; all that differ in width or sweep alone share them."""

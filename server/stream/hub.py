@@ -38,7 +38,7 @@ class Hub:
     lateness : callable
         Returns the fields of a status that say how late the service is.
     clock : callable
-        Seconds, by which a stream counts as stalled; pictures keep to those of the machine.
+        Seconds, by which a stream counts as stalled; pictures keep to the time of the event loop.
     """
 
     def __init__(
@@ -101,12 +101,13 @@ class Hub:
 
     def publish(self) -> None:
         """Send news if a picture is due; called on the event loop after every round of the engine."""
-        now = time.monotonic()
+        loop = asyncio.get_running_loop()
+        now = loop.time()
         if self._showing is not None or not self._pace.is_due(now):
             # A paused bench has no later round, so its last picture is sent by a timer.
             if self._later is None:
                 wait_s = self._pace.period_s if self._showing is not None else self._pace.wait_s(now)
-                self._later = asyncio.get_running_loop().call_later(wait_s, self._show)
+                self._later = loop.call_later(wait_s, self._show)
             return
         self._show()
 
@@ -116,7 +117,7 @@ class Hub:
             self._later.cancel()
             self._later = None
         if self._showing is None:
-            now = time.monotonic()
+            now = asyncio.get_running_loop().time()
             self._pace.begin(now)
             self._showing = chain.from_iterable(room.publish(now) for room in list(self._rooms.values()))
             self._go_on()
@@ -131,6 +132,14 @@ class Hub:
         except Exception:
             log.exception("pictures of a bench could not be sent")
         self._showing = None
+
+    async def capture(self, session: Seen) -> None:
+        """Capture all that triggers of a bench have met by now."""
+        room = self._rooms.get(session)
+        if room is not None:
+            room.cuts.refresh()
+            for _ in iter(room.cuts.gather, False):
+                await asyncio.sleep(0)
 
     def close_bench(self, bench_id: str) -> None:
         """Close the streams of a bench that is gone."""

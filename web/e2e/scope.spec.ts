@@ -103,8 +103,12 @@ test("the captures of a trigger outlive the history: previous, next, newest, by 
   const at = (index: number) =>
     `capture ${index + 1} of 50 at ${(captures[index].trigger_tick * dt).toFixed(3)}\u00a0ms`;
   const picture = () => pictureOf(page, SCOPE_CANVAS);
-  await older.click();
-  await expect(words).toHaveText(at(49));
+  // the page may not have been told of the newest yet
+  await expect(async () => {
+    await scope.getByRole("group", { name: /^Plot\./ }).press("l");
+    await older.click();
+    await expect(words).toHaveText(at(49), { timeout: 500 });
+  }).toPass();
   await expect(scope.getByRole("button", { name: "PAST → LIVE" })).toBeVisible();
   await expect(scope.getByRole("button", { name: "Next capture" })).toBeDisabled();
   await older.click();

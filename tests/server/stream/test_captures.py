@@ -68,6 +68,17 @@ def test_a_page_that_takes_no_pictures_misses_no_capture(small: Any) -> None:
     assert [mark["tick"] for mark in marks] == list(range(50, 8851, 200))
 
 
+def test_a_list_asked_for_behind_a_step_has_every_capture_of_it(live: Any) -> None:
+    bench = live.bench("first-look", paused=True)
+    others = [signal["name"] for signal in bench["signals"] if signal["name"] not in NAMES][:6]
+    with live.stream(bench["id"]) as stream:
+        stream.send(type="subscribe", panel=1, **{**ASK, "signals": NAMES + others})
+        stream.settle()
+        live.command(bench["id"], "step", ticks=9050)
+        (kept,) = live.http.get(f"/api/v1/benches/{bench['id']}/captures").json()["triggers"]
+    assert [mark["tick"] for mark in kept["captures"]] == list(range(50, 8851, 200))
+
+
 def test_captures_outlive_the_history_with_the_bits_of_a_headless_run(small: Any) -> None:
     bench = small.bench("first-look", paused=True)
     with small.stream(bench["id"]) as stream:

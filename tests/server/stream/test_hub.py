@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 import functools
 import json
+import selectors
 from collections.abc import Callable
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -19,7 +19,6 @@ from server.bench.status import Company, Somebody
 from server.metrics import Metrics
 from server.settings import Settings
 from server.stream import client as client_module
-from server.stream import hub as hub_module
 from server.stream.client import Client
 from server.stream.codec import Frame, decode
 from server.stream.hub import Hub
@@ -81,12 +80,34 @@ class Bench:
         return client, line
 
 
+class Time(selectors.SelectSelector):
+    """The time of a loop: it passes at once where the loop would wait."""
+
+    now = 100.0
+
+    def select(self, timeout: float | None = None) -> Any:
+        self.now += timeout or 0.0
+        return super().select(0.0)
+
+
+class QuickLoop(asyncio.SelectorEventLoop):
+    """A loop that waits for nothing."""
+
+    def __init__(self) -> None:
+        self.passing = Time()
+        super().__init__(self.passing)
+
+    def time(self) -> float:
+        return self.passing.now
+
+
 def on_loop(test: Callable[..., Any]) -> Callable[..., None]:
     """Run a test on a loop of its own."""
 
     @functools.wraps(test)
     def run(**given: Any) -> None:
-        asyncio.run(test(**given))
+        with asyncio.Runner(loop_factory=QuickLoop) as runner:
+            runner.run(test(**given))
 
     return run
 
@@ -98,8 +119,7 @@ async def turns(count: int = 5) -> None:
 
 
 @on_loop
-async def test_a_frame_comes_at_the_pace_of_frames_and_the_end_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(hub_module, "time", SimpleNamespace(monotonic=lambda: 100.0))
+async def test_a_frame_comes_at_the_pace_of_frames_and_the_end_all_the_same() -> None:
     bench = Bench(frame_rate_hz=50.0)
     _, line = bench.page()
     bench.session.slice(100)
@@ -236,30 +256,28 @@ async def test_words_are_not_taken_for_deeds() -> None:
 
 
 @on_loop
-async def test_a_loop_that_was_blocked_blames_no_page(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What a page acknowledged meanwhile waits to be read: it is let go only if it is still silent then."""
-    now, stood = [100.0], []
-
-    async def stand_still(_seconds: float) -> None:
-        now[0] += 2 * client_module.STALL_S
-        stood.append(client.closing)
-        if len(stood) == 1:
-            return
-        if len(stood) == 2:
-            client.acknowledge(1)
-            client.line.passed_on += 1
-            return
-        await asyncio.Event().wait()
-
-    monkeypatch.setattr(hub_module, "asyncio", SimpleNamespace(sleep=stand_still))
+async def test_a_loop_that_was_blocked_blames_no_page() -> None:
+    """Acknowledgements of that time wait to be read: a page is closed only if it is silent afterwards, too."""
+    loop: Any = asyncio.get_running_loop()
     bench = Bench()
-    bench.hub.clock = lambda: now[0]
-    client, _ = bench.page()
-
-    client._clock, client._taken_at, client._moved_at = bench.hub.clock, now[0], now[0]
+    bench.hub.clock = loop.time
+    client, line = bench.page()
+    client._clock, client._taken_at, client._moved_at = loop.time, loop.time(), loop.time()
+    bench.session.slice(100)
     client.offer(frame=True)
-    await asyncio.wait([asyncio.ensure_future(bench.hub.run())], timeout=0)
-    assert stood == [None, None, None]
+    watching = asyncio.ensure_future(bench.hub.run())
+    await asyncio.sleep(0)
+    loop.passing.now += 2 * client_module.STALL_S  # blocked
+    await turns()
+    closings = [client.closing]
+    client.acknowledge(1)
+    line.passed_on += 1
+    await asyncio.sleep(0.9 * client_module.STALL_S)
+    closings.append(client.closing)
+    line.waiting = 1
+    await asyncio.sleep(1.1 * client_module.STALL_S)
+    watching.cancel()
+    assert closings == [None, None] and client.closing is not None
 
 
 @pytest.mark.parametrize("hurt", ["_events", "_status", "_picture"])
