@@ -62,12 +62,19 @@ function refusals(page: Page): string[] {
   return refused;
 }
 
+/** The frame of the exercise, once it has gone through the pages of the launch: nothing is asked of a page that goes. */
+async function arrived(page: Page) {
+  const isThere = (url: string) => url.startsWith(`${bench}/`) && !/\/lti\/|launch=/.test(url);
+  await expect.poll(() => page.frames().some((one) => isThere(one.url()))).toBe(true);
+  return page.frameLocator("iframe[title='Exercise']");
+}
+
 test("a launch in a frame has bench, stream and 3D view without a cookie, a launch in a tab has the usual cookie", async ({
   page,
 }) => {
   const refused = refusals(page);
   await page.goto(`${course}/course`);
-  const frame = page.frameLocator("iframe[title='Exercise']");
+  const frame = await arrived(page);
   await expect(frame.getByTestId("bench-state")).toHaveText("running");
   await expect(frame.getByText("Ada Lovelace")).toBeVisible();
   await expect(frame.locator("section[aria-label='Lab sheet']")).toBeVisible();
