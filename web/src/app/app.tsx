@@ -15,6 +15,7 @@ import { Announcer } from "./announcer";
 import { Banner } from "./banner";
 import { Caption } from "./caption";
 import { ClassLines } from "./class-lines";
+import { EditorDrawer } from "./editor-drawer";
 import { Ended } from "./ended";
 import { comeBack, openFirstBench } from "./first-bench";
 import { follow } from "./follow";
@@ -126,6 +127,7 @@ export function App() {
       <MineSheet />
       <ShareSheet />
       <LayoutSheet />
+      <EditorDrawer />
       <Announcer />
     </div>
   );

@@ -1,4 +1,5 @@
 import type { AddPanelOptions, DockviewApi } from "dockview-react";
+import { panelOf, type ViewName } from "../bench/panel-views";
 import type { LayoutName } from "../bench/view-store";
 import { type ScopeConfig, scopeConfig } from "../stream/scope-config";
 
@@ -26,7 +27,7 @@ interface Where {
 export function addTo(
   api: DockviewApi,
   id: string,
-  kind: string,
+  view: ViewName,
   where: Where = {},
   scope?: ScopeConfig,
   title?: string,
@@ -43,9 +44,9 @@ export function addTo(
   const referencePanel = where.below ?? where.right ?? where.left ?? where.within;
   const options = {
     id,
-    component: kind,
+    component: panelOf(view),
     ...(title ? { title } : {}),
-    params: scope ? { scope } : {},
+    params: { view, ...(scope ? { scope } : {}) },
     inactive: where.inactive ?? false,
     ...(direction && referencePanel ? { position: { direction, referencePanel } } : {}),
   };
@@ -63,10 +64,16 @@ export function size(
     api.getPanel(id)?.api.setSize({ ...(w ? { width: w * width } : {}), ...(h ? { height: h * height } : {}) });
 }
 
-/** Where the shuttle is and should be; how far it is away stands behind. */
+/** Displacement and tracking error, one behind the other. */
 function addMotion(api: DockviewApi): void {
-  addTo(api, "motion", "scope", {}, MOTION, "Displacement");
-  addTo(api, "tracking", "scope", { within: "motion", inactive: true }, TRACKING, "Tracking error");
+  addTo(api, "motion", "time", {}, MOTION, "Displacement");
+  addTo(api, "tracking", "time", { within: "motion", inactive: true }, TRACKING, "Tracking error");
+  addTo(api, "voltage", "time", { within: "motion", inactive: true }, VOLTAGE, "Voltage");
+}
+
+/** Panels one behind the other, the first in front. */
+function addBehind(api: DockviewApi, front: string, views: ViewName[]): void {
+  for (const view of views) addTo(api, view, view, { within: front, inactive: true });
 }
 
 /** The layouts everybody has; sizes are shares of the page. */
@@ -75,43 +82,28 @@ export type Layouts = Record<LayoutName, (api: DockviewApi, width: number, heigh
 /** Those of a device with one displacement. */
 export const BUILT_IN: Layouts = {
   lecture(api, width, height) {
-    addMotion(api);
-    addTo(api, "faults", "faults", { right: "motion" });
-    addTo(api, "view3d", "view3d", { below: "faults" });
-    addTo(api, "why", "why", { within: "view3d", inactive: true });
-    addTo(api, "lanes", "lanes", { below: "motion" });
-    addTo(api, "claims", "claims", { within: "lanes", inactive: true });
-    size(api, width, height, { faults: { w: Math.max(0.3, LIST_PX / width), h: 0.42 }, lanes: { h: 0.55 } });
+    addTo(api, "motion", "time", {}, MOTION, "Displacement");
+    addTo(api, "lanes", "lanes", { right: "motion" });
+    addTo(api, "tracking", "time", { below: "motion" }, TRACKING, "Tracking error");
+    addTo(api, "faults", "faults", { below: "lanes" });
+    const wide = width >= THREE_COLUMNS_PX;
+    addTo(api, "view3d", "view3d", wide ? { right: "faults" } : { within: "faults", inactive: true });
+    size(api, width, height, {
+      lanes: { w: 0.52, h: 0.54 },
+      motion: { h: 0.5 },
+      ...(wide ? { faults: { w: Math.max(0.26, LIST_PX / width) } } : {}),
+    });
   },
   lab(api, width, height) {
     addMotion(api);
     addTo(api, "schematic", "schematic", { left: "motion" });
     addTo(api, "faults", "faults", { below: "schematic" });
-    addTo(api, "environment", "environment", { within: "faults", inactive: true });
-    addTo(api, "card", "card", { within: "faults", inactive: true });
-    addTo(api, "why", "why", { within: "faults", inactive: true });
-    addTo(api, "labs", "labs", { within: "faults", inactive: true });
-    addTo(api, "blind", "blind", { within: "faults", inactive: true });
-    addTo(api, "games", "games", { within: "faults", inactive: true });
-    addTo(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
-    addTo(api, "lanes", "lanes", { below: "voltage" });
-    addTo(api, "sheet", "sheet", { within: "lanes", inactive: true });
-    addTo(api, "events", "events", { within: "lanes", inactive: true });
-    addTo(api, "narrator", "narrator", { within: "lanes", inactive: true });
-    addTo(api, "claims", "claims", { within: "lanes", inactive: true });
-    addTo(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
-    addTo(api, "twins", "twins", { within: "lanes", inactive: true });
-    addTo(api, "hypotheses", "hypotheses", { within: "lanes", inactive: true });
-    addTo(api, "behaviour", "behaviour", { within: "lanes", inactive: true });
-    addTo(api, "phase", "phase", { within: "lanes", inactive: true });
-    addTo(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
-    addTo(api, "identify", "identify", { within: "lanes", inactive: true });
-    addTo(api, "recordings", "recordings", { within: "lanes", inactive: true });
+    addBehind(api, "faults", ["controllers", "device"]);
+    addTo(api, "lanes", "lanes", { below: "motion" });
+    addBehind(api, "lanes", ["sheet", "why", "identify", "twins", "narrator", "claims"]);
     size(api, width, height, {
       schematic: { w: Math.max(0.26, LOOP_PX.width / width), h: Math.max(0.34, LOOP_PX.height / height) },
-      motion: { h: 0.31 },
-      voltage: { h: 0.3 },
-      lanes: { h: 0.39 },
+      motion: { h: 0.48 },
     });
   },
   research(api, width, height) {
@@ -119,33 +111,16 @@ export const BUILT_IN: Layouts = {
     addMotion(api);
     addTo(api, "schematic", "schematic", { left: "motion" });
     addTo(api, "faults", "faults", { below: "schematic" });
+    addBehind(api, "faults", ["controllers", "device", "sheet"]);
     addTo(api, "view3d", "view3d", wide ? { right: "motion" } : { within: "schematic", inactive: true });
-    addTo(api, "card", "card", wide ? { below: "view3d" } : { within: "faults", inactive: true });
-    addTo(api, "why", "why", { within: "card", inactive: true });
-    addTo(api, "scores", "scores", { within: "card", inactive: true });
-    addTo(api, "events", "events", { within: "card", inactive: true });
-    addTo(api, "narrator", "narrator", { within: "card", inactive: true });
-    addTo(api, "environment", "environment", { within: "faults", inactive: true });
-    addTo(api, "labs", "labs", { within: "faults", inactive: true });
-    addTo(api, "blind", "blind", { within: "faults", inactive: true });
-    addTo(api, "games", "games", { within: "faults", inactive: true });
-    addTo(api, "voltage", "scope", { below: "motion" }, VOLTAGE, "Voltage");
-    addTo(api, "lanes", "lanes", { below: "voltage" });
-    addTo(api, "claims", "claims", { within: "lanes", inactive: true });
-    addTo(api, "adaptation", "adaptation", { within: "lanes", inactive: true });
-    addTo(api, "twins", "twins", { within: "lanes", inactive: true });
-    addTo(api, "hypotheses", "hypotheses", { within: "lanes", inactive: true });
-    addTo(api, "behaviour", "behaviour", { within: "lanes", inactive: true });
-    addTo(api, "phase", "phase", { within: "lanes", inactive: true });
-    addTo(api, "spectrum", "spectrum", { within: "lanes", inactive: true });
-    addTo(api, "identify", "identify", { within: "lanes", inactive: true });
-    addTo(api, "recordings", "recordings", { within: "lanes", inactive: true });
+    addTo(api, "why", "why", wide ? { below: "view3d" } : { within: "faults", inactive: true });
+    addBehind(api, "why", ["narrator", "claims"]);
+    addTo(api, "lanes", "lanes", { below: "motion" });
+    addBehind(api, "lanes", ["identify", "twins"]);
     size(api, width, height, {
       schematic: { w: Math.max(0.225, LOOP_PX.width / width), h: Math.max(0.32, LOOP_PX.height / height) },
-      ...(wide ? { view3d: { w: 0.25, h: 0.4 } } : {}),
-      motion: { h: 0.308 },
-      voltage: { h: 0.294 },
-      lanes: { h: 0.398 },
+      ...(wide ? { view3d: { w: 0.25, h: 0.45 } } : {}),
+      motion: { h: 0.48 },
     });
   },
 };

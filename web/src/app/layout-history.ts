@@ -14,7 +14,7 @@ const MOST = 50;
 const SETTLES_MS = 250;
 
 /** Parts of a stored layout that only say what is in front: looking at another tab changes nothing. */
-const IN_FRONT = new Set(["activeView", "activeGroup"]);
+const IN_FRONT = new Set(["activeView", "activeGroup", "view"]);
 
 /** What a layout consists of, as text to compare. */
 export const shapeOf = ({ name, layout }: Pick<Kept, "name" | "layout">): string =>

@@ -2,10 +2,12 @@ import { useMay } from "../api/me";
 import { useBench } from "../stream/bench-store";
 import { EmptyState } from "../ui/empty-state";
 import { ErrorFence } from "../ui/error-fence";
-import { type PanelKind, type PanelProps, suits } from "./panels";
+import { type PanelProps, suits, VIEW } from "./panels";
+import type { ViewName } from "../bench/panel-views";
 
-/** A panel of a kind, fenced; what changes a bench has no place on one that plays a recording, what needs more than is served none while a fault is to be found. */
-export function PanelBody({ kind, params, setParams }: PanelProps & { kind: PanelKind }) {
+/** A view, fenced; what changes a bench has no place on a recording that is played, what needs more than is served none while a fault is hidden. */
+export function PanelBody({ view, params, setParams }: PanelProps & { view: ViewName }) {
+  const kind = VIEW[view];
   const fitting = useBench((s) => suits(kind, s.bench));
   const replay = useBench((s) => s.bench?.replay_of);
   const blind = useBench((s) => s.blind);
@@ -21,18 +23,18 @@ export function PanelBody({ kind, params, setParams }: PanelProps & { kind: Pane
         </EmptyState>
       ) : playing && !kind.whileBlind ? (
         <EmptyState title="Hidden while the game is played">
-          The server hides what this panel shows until you have handed in for the last time under Games.
+          The server hides what this panel shows until you have handed in for the last time in Lesson, Games.
         </EmptyState>
       ) : blind && !kind.whileBlind ? (
         <EmptyState title="Hidden while you look for the fault">
-          The server hides what this panel shows until you answer under Blind diagnosis.
+          The server hides what this panel shows until you answer in Lesson, Hidden fault.
         </EmptyState>
       ) : replay && kind.changes ? (
         <EmptyState title="The past cannot be changed">
-          A recording is played here; what was done then stands under Events. Leave the replay to go on.
+          A recording is played here; what was done then is listed in Log. Leave the replay to go on.
         </EmptyState>
       ) : !drives && kind.changes ? (
-        <EmptyState title="You watch this bench">What is done on it stands under Events.</EmptyState>
+        <EmptyState title="You watch this bench">The commands of its driver are listed in Log.</EmptyState>
       ) : (
         <kind.component params={params} setParams={setParams} />
       )}

@@ -1,15 +1,17 @@
 import type { ComponentType } from "react";
 import { hasAxes } from "../api/fits";
 import type { Bench } from "../api/types";
+import { type PanelName, panelOf, type ViewName, VIEWS } from "../bench/panel-views";
 import { AdaptationPanel } from "../panels/adaptation/adaptation-panel";
 import { AllanPanel } from "../panels/allan/allan-panel";
 import { BehaviourPanel } from "../panels/behaviour/behaviour-panel";
 import { BlindPanel } from "../panels/blind/blind-panel";
 import { CardPanel } from "../panels/card/card-panel";
+import { ParametersView } from "../panels/card/parameters-view";
 import { ClaimsPanel } from "../panels/claims/claims-panel";
+import { BehindView } from "../panels/compare/behind-view";
 import { ControllersPanel } from "../panels/controllers/controllers-panel";
-import { EditorPanel } from "../panels/editor/editor-panel";
-import { EnvironmentPanel } from "../panels/environment/environment-panel";
+import { BoardView, DeviceView, EnvironmentView, SensorView } from "../panels/device/device-panel";
 import { EventsPanel } from "../panels/events/events-panel";
 import { FaultsPanel } from "../panels/faults/faults-panel";
 import { GamesPanel } from "../panels/games/games-panel";
@@ -33,12 +35,18 @@ import { VotePanel } from "../panels/vote/vote-panel";
 import { WhyPanel } from "../panels/why/why-panel";
 import { type ScopeConfig, scopeConfig } from "../stream/scope-config";
 
-export interface PanelProps {
-  params: { scope?: ScopeConfig };
-  setParams(params: { scope?: ScopeConfig }): void;
+export interface PanelParams {
+  view?: string;
+  scope?: ScopeConfig;
 }
 
-export interface PanelKind {
+export interface PanelProps {
+  params: PanelParams;
+  setParams(params: PanelParams): void;
+}
+
+/** One view of a panel. */
+export interface View {
   title: string;
   /** It does something to the bench, which a recording that is played does not allow. */
   changes?: boolean;
@@ -49,44 +57,87 @@ export interface PanelKind {
   component: ComponentType<PanelProps>;
 }
 
-/** Every kind of panel; a new one is its folder and a line here. */
-export const PANELS: Record<string, PanelKind> = {
-  scope: { title: "Scope", whileBlind: true, component: Scope },
-  lanes: { title: "Diagnosis", whileBlind: true, component: LanesPanel },
-  adaptation: { title: "Adaptation", only: "displacement", component: AdaptationPanel },
-  behaviour: { title: "Behaviour", only: "displacement", component: BehaviourPanel },
-  hypotheses: { title: "Hypotheses", only: "displacement", changes: true, component: HypothesesPanel },
-  labs: { title: "Noise and memory", only: "displacement", changes: true, component: LabsPanel },
-  blind: { title: "Blind diagnosis", whileBlind: true, changes: true, component: BlindPanel },
-  games: { title: "Games", whileBlind: true, changes: true, component: GamesPanel },
-  sheet: { title: "Lab sheet", whileBlind: true, changes: true, component: SheetPanel },
-  twins: { title: "Twins", changes: true, component: TwinsPanel },
-  why: { title: "Why", component: WhyPanel },
-  schematic: { title: "Bench", component: SchematicPanel },
-  controllers: { title: "Controllers", whileBlind: true, changes: true, component: ControllersPanel },
-  locus: { title: "Locus", only: "axes", component: LocusPanel },
-  allan: { title: "Allan deviation", only: "axes", component: AllanPanel },
-  faults: { title: "Faults", changes: true, component: FaultsPanel },
-  card: { title: "Block", component: CardPanel },
-  editor: { title: "Editor", changes: true, component: EditorPanel },
-  sets: { title: "Parameter sets", changes: true, component: SetsPanel },
-  environment: { title: "Environment", changes: true, component: EnvironmentPanel },
-  phase: { title: "Phase plane", component: PhasePanel },
-  spectrum: { title: "Spectrum", whileBlind: true, component: SpectrumPanel },
-  identify: { title: "Swept sine", only: "displacement", changes: true, component: IdentifyPanel },
-  recordings: { title: "Recordings", component: RecordingsPanel },
-  events: { title: "Events", whileBlind: true, component: EventsPanel },
-  narrator: { title: "Narrator", whileBlind: true, component: NarratorPanel },
-  claims: { title: "Claims", component: ClaimsPanel },
-  scores: { title: "Scoreboard", component: ScoreboardPanel },
-  vote: { title: "Vote", whileBlind: true, component: VotePanel },
-  view3d: { title: "3D", component: View3dPanel },
+export interface Panel {
+  title: string;
+  /** A line for the menu. */
+  about: string;
+}
+
+/** The panels, in the words of the menu; their views are in `VIEWS`. */
+export const PANELS: Record<PanelName, Panel> = {
+  device: { title: "Device", about: "Choose the device, its sensor and its surroundings" },
+  loop: { title: "Loop", about: "The control loop as a diagram; equations and values of each block" },
+  controller: { title: "Controller", about: "Choose a controller, tune it, watch it adapt" },
+  faults: { title: "Faults", about: "Inject faults and remove them" },
+  scope: { title: "Scope", about: "Signals over time, as a spectrum or in the phase plane" },
+  response: { title: "Frequency response", about: "Sweep the device with a sine and fit mass, spring and damping" },
+  view3d: { title: "3D", about: "The moving device in three dimensions" },
+  diagnosis: { title: "Diagnosis", about: "Probability of each hypothesis, and how often the verdict is right" },
+  why: { title: "Why", about: "The numbers behind one verdict" },
+  compare: { title: "Compare", about: "Twins, branches, recordings and past runs beside the bench" },
+  log: { title: "Log", about: "Events in sentences, with the commands behind them" },
+  published: { title: "Published", about: "Printed claims beside our figures" },
+  lesson: { title: "Lesson", about: "Lab sheet, vote, hidden fault and games" },
+  motion: { title: "Motion", about: "The path of the mass in its plane" },
+  rate: { title: "Rate", about: "Allan deviation of the estimated rate" },
 };
 
-/** Whether a panel has something to show on a bench; before there is one, all may. */
-export const suits = ({ only }: Pick<PanelKind, "only">, bench: Pick<Bench, "axes"> | undefined): boolean =>
+/** Every view; a new one is its folder, its name in `VIEWS` and a line here. */
+export const VIEW: Record<ViewName, View> = {
+  device: { title: "Device", changes: true, component: DeviceView },
+  sensor: { title: "Sensor", changes: true, component: SensorView },
+  environment: { title: "Environment", changes: true, component: EnvironmentView },
+  board: { title: "Board", changes: true, component: BoardView },
+  schematic: { title: "Diagram", component: SchematicPanel },
+  card: { title: "Block", component: CardPanel },
+  controllers: { title: "Choice", whileBlind: true, changes: true, component: ControllersPanel },
+  parameters: { title: "Parameters", changes: true, component: ParametersView },
+  sets: { title: "Sets", changes: true, component: SetsPanel },
+  adaptation: { title: "Adaptation", only: "displacement", component: AdaptationPanel },
+  behaviour: { title: "Behaviour", only: "displacement", component: BehaviourPanel },
+  faults: { title: "Faults", changes: true, component: FaultsPanel },
+  time: { title: "Time", whileBlind: true, component: Scope },
+  spectrum: { title: "Spectrum", whileBlind: true, component: SpectrumPanel },
+  phase: { title: "Phase plane", component: PhasePanel },
+  identify: { title: "Frequency response", only: "displacement", changes: true, component: IdentifyPanel },
+  view3d: { title: "3D", component: View3dPanel },
+  lanes: { title: "Lanes", whileBlind: true, component: LanesPanel },
+  hypotheses: { title: "Hypotheses", only: "displacement", changes: true, component: HypothesesPanel },
+  labs: { title: "Noise and memory", only: "displacement", changes: true, component: LabsPanel },
+  scores: { title: "Scoreboard", component: ScoreboardPanel },
+  why: { title: "Why", component: WhyPanel },
+  twins: { title: "Twins", changes: true, component: TwinsPanel },
+  behind: { title: "Branches and runs", component: BehindView },
+  recordings: { title: "Recordings", component: RecordingsPanel },
+  narrator: { title: "Narrator", whileBlind: true, component: NarratorPanel },
+  events: { title: "Events", whileBlind: true, component: EventsPanel },
+  claims: { title: "Claims", component: ClaimsPanel },
+  sheet: { title: "Lab sheet", whileBlind: true, changes: true, component: SheetPanel },
+  vote: { title: "Vote", whileBlind: true, component: VotePanel },
+  blind: { title: "Hidden fault", whileBlind: true, changes: true, component: BlindPanel },
+  games: { title: "Games", whileBlind: true, changes: true, component: GamesPanel },
+  locus: { title: "Motion", only: "axes", component: LocusPanel },
+  allan: { title: "Allan deviation", only: "axes", component: AllanPanel },
+};
+
+type Benchlike = Pick<Bench, "axes"> | undefined;
+
+/** Whether a view has something to show on a bench; before there is one, all may. */
+export const suits = ({ only }: Pick<View, "only">, bench: Benchlike): boolean =>
   only === undefined || bench === undefined || (only === "axes") === hasAxes(bench);
 
+/** The views of a panel that suit a bench. */
+export const viewsOn = (panel: PanelName, bench: Benchlike): ViewName[] =>
+  VIEWS[panel].filter((view) => suits(VIEW[view], bench));
+
+/** The panels that suit a bench. */
+export const panelsOn = (bench: Benchlike): PanelName[] =>
+  (Object.keys(VIEWS) as PanelName[]).filter((panel) => viewsOn(panel, bench).length > 0);
+
+/** The view that a panel shows: the chosen one if it is a view of the panel, else its first. */
+export const viewShown = (panel: PanelName, chosen: string | undefined): ViewName =>
+  chosen !== undefined && panelOf(chosen) === panel ? (chosen as ViewName) : VIEWS[panel][0];
+
 function Scope({ params, setParams }: PanelProps) {
-  return <ScopePanel config={params.scope ?? scopeConfig([])} onChange={(scope) => setParams({ scope })} />;
+  return <ScopePanel config={params.scope ?? scopeConfig([])} onChange={(scope) => setParams({ ...params, scope })} />;
 }

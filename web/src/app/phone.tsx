@@ -6,6 +6,7 @@ import { useMay } from "../api/me";
 import { PanelVisible } from "../api/panel-visible";
 import type { Bench } from "../api/types";
 import { actions } from "../bench/actions";
+import { panelOf, type ViewName } from "../bench/panel-views";
 import { useView } from "../bench/view-store";
 import { ScopePanel } from "../panels/scope/scope-panel";
 import { useBench } from "../stream/bench-store";
@@ -18,7 +19,7 @@ import { DeviceClock } from "./header/device-clock";
 import { StateBadge } from "./header/state-badge";
 import { Visitor } from "./header/visitor";
 import { PanelBody } from "./panel-body";
-import { PANELS, suits } from "./panels";
+import { PANELS, panelsOn, VIEW, viewsOn } from "./panels";
 import styles from "./phone.module.css";
 
 const MOTION = scopeConfig(["plant.displacement", "model.displacement"]);
@@ -61,7 +62,7 @@ export function Phone() {
         <Tabs />
         {sheet ? (
           <main className={styles.sheet}>
-            <PanelBody kind={PANELS.sheet} params={{}} setParams={() => undefined} />
+            <PanelBody view="sheet" params={{}} setParams={() => undefined} />
           </main>
         ) : (
           <main className={styles.panels}>
@@ -71,11 +72,11 @@ export function Phone() {
               </ErrorFence>
             </div>
             <div className={styles.lanes}>
-              <PanelBody kind={isFlat ? PANELS.lanes : PANELS.locus} params={{}} setParams={() => undefined} />
+              <PanelBody view={isFlat ? "lanes" : "locus"} params={{}} setParams={() => undefined} />
             </div>
             {isFlat && <Why />}
             <div className={styles.view}>
-              <PanelBody kind={PANELS.view3d} params={{}} setParams={() => undefined} />
+              <PanelBody view="view3d" params={{}} setParams={() => undefined} />
             </div>
             <Extra />
             {!isFlat && <Why />}
@@ -141,7 +142,7 @@ function Why() {
       >
         <IconX size={16} />
       </ActionIcon>
-      <PanelBody kind={PANELS.why} params={{}} setParams={() => undefined} />
+      <PanelBody view="why" params={{}} setParams={() => undefined} />
     </section>
   );
 }
@@ -151,7 +152,7 @@ function Extra() {
   const kind = useView((s) => s.extra);
   const bench = useBench((s) => s.bench);
   const place = useRef<HTMLDivElement>(null);
-  const panel = PANELS[kind];
+  const view = panelOf(kind) ? (kind as ViewName) : undefined;
   useEffect(() => {
     if (kind) place.current?.scrollIntoView({ block: "start" });
   }, [kind]);
@@ -163,15 +164,18 @@ function Extra() {
         value={kind}
         data={[
           { value: "", label: "Another panel…" },
-          ...Object.entries(PANELS)
-            .filter(([name, panel]) => !always(bench).includes(name) && suits(panel, bench))
-            .map(([value, { title }]) => ({ value, label: title })),
+          ...panelsOn(bench).map((panel) => ({
+            group: PANELS[panel].title,
+            items: viewsOn(panel, bench)
+              .filter((name) => !always(bench).includes(name))
+              .map((value) => ({ value, label: VIEW[value].title })),
+          })),
         ]}
         onChange={(e) => useView.setState({ extra: e.currentTarget.value })}
       />
-      {panel && (
+      {view && (
         <div className={styles.panel}>
-          <PanelBody key={kind} kind={panel} params={{}} setParams={() => undefined} />
+          <PanelBody key={view} view={view} params={{}} setParams={() => undefined} />
         </div>
       )}
     </div>
@@ -179,4 +183,4 @@ function Extra() {
 }
 
 /** What a phone shows anyway. */
-const always = (bench: Bench | undefined) => ["scope", "view3d", "why", "sheet", hasAxes(bench) ? "locus" : "lanes"];
+const always = (bench: Bench | undefined) => ["time", "view3d", "why", "sheet", hasAxes(bench) ? "locus" : "lanes"];

@@ -1,8 +1,10 @@
 import { Button } from "@mantine/core";
-import { IconGitBranch, IconPlayerTrackNextFilled } from "@tabler/icons-react";
+import { IconArrowsDiff, IconGitBranch, IconPlayerTrackNextFilled } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { useMay } from "../api/me";
 import type { Bench } from "../api/types";
+import { useBehind } from "../bench/behind";
+import { showPanel } from "../bench/dock";
 import { eventTone } from "../bench/flag-words";
 import { backToNow, lookBack } from "../bench/past";
 import { useBench } from "../stream/bench-store";
@@ -11,7 +13,6 @@ import { staleWords, useStaleSince } from "../stream/freshness";
 import { formatMoment, formatPercent } from "../ui/format";
 import { Slider } from "../ui/slider";
 import { BranchMenu } from "./branch-menu";
-import { Compare } from "./compare";
 import styles from "./time-bar.module.css";
 
 const MOST_MARKS = 200;
@@ -112,6 +113,21 @@ function Other() {
       onClick={() => void backToNow()}
     >
       The other future
+    </Button>
+  );
+}
+
+/** What lies behind the traces is chosen in the panel Compare. */
+function Compare() {
+  const count = useBehind((s) => s.behind.length);
+  return (
+    <Button
+      size="compact-sm"
+      variant={count > 0 ? "light" : "default"}
+      leftSection={<IconArrowsDiff size={16} />}
+      onClick={() => showPanel("behind", "lanes")}
+    >
+      {count > 0 ? `Compared with ${count}` : "Compare"}
     </Button>
   );
 }

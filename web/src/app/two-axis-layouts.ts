@@ -7,78 +7,60 @@ const MOTION = scopeConfig(["plant.x", "plant.y"], { windowMs: 2 });
 const FORCES = scopeConfig(["drive.x.force", "drive.y.force"], { windowMs: 2 });
 const QUADRATURE = scopeConfig(["@active.quadrature"], { windowMs: 500 });
 
-/** Below the rate: what moves and what pushes, and beside it, or behind, the path in its plane. */
+/** Below the rate: the path of the mass, and the forces that move it. */
 function addBelow(api: DockviewApi, beside: boolean): void {
-  addTo(api, "forces", "scope", { below: "rate" }, FORCES, "Forces");
+  addTo(api, "forces", "time", { below: "rate" }, FORCES, "Forces");
   addTo(api, "locus", "locus", beside ? { right: "forces" } : { within: "forces", inactive: true });
-  addTo(api, "phase", "phase", { within: "locus", inactive: true });
-  addTo(api, "motion", "scope", { within: "forces", inactive: true }, MOTION, "Motion");
-  addTo(api, "quadrature", "scope", { within: "forces", inactive: true }, QUADRATURE, "Quadrature");
-  addTo(api, "allan", "allan", { within: "rate", inactive: true });
-  addTo(api, "lanes", "lanes", { within: "rate", inactive: true });
-  addTo(api, "twins", "twins", { within: "forces", inactive: true });
-  addTo(api, "spectrum", "spectrum", { within: "forces", inactive: true });
-  addTo(api, "claims", "claims", { within: "forces", inactive: true });
-  addTo(api, "recordings", "recordings", { within: "forces", inactive: true });
+  addTo(api, "motion", "time", { within: "forces", inactive: true }, MOTION, "Motion along x and y");
+  addTo(api, "quadrature", "time", { within: "forces", inactive: true }, QUADRATURE, "Quadrature");
+  for (const view of ["lanes", "allan"] as const) addTo(api, view, view, { within: "rate", inactive: true });
+  for (const view of ["twins", "claims"] as const) addTo(api, view, view, { within: "forces", inactive: true });
 }
 
-/** The same layouts for a device with axes, which has a rate; what a bank says of it stands behind. */
+/** The same layouts for a device with axes, which has a rate. */
 export const BUILT_IN_AXES: Layouts = {
   lecture(api, width, height) {
-    addTo(api, "rate", "scope", {}, RATE, "Angular rate");
+    const wide = width >= THREE_COLUMNS_PX;
+    addTo(api, "rate", "time", {}, RATE, "Angular rate");
     addTo(api, "controllers", "controllers", { right: "rate" });
     addTo(api, "faults", "faults", { within: "controllers", inactive: true });
-    addTo(api, "why", "why", { within: "controllers", inactive: true });
-    addTo(api, "allan", "allan", { within: "rate", inactive: true });
     addTo(api, "lanes", "lanes", { within: "rate", inactive: true });
     addTo(api, "locus", "locus", { below: "rate" });
-    addTo(api, "claims", "claims", { within: "rate", inactive: true });
-    addTo(
-      api,
-      "view3d",
-      "view3d",
-      width >= THREE_COLUMNS_PX ? { right: "locus" } : { within: "locus", inactive: true },
-    );
+    addTo(api, "view3d", "view3d", wide ? { right: "locus" } : { within: "locus", inactive: true });
     const list = Math.max(0.36, LIST_PX / width);
-    size(api, width, height, { controllers: { w: list }, locus: { h: 0.56 } });
-    if (width >= THREE_COLUMNS_PX) size(api, width, height, { locus: { w: 0.32 } });
+    size(api, width, height, { controllers: { w: list }, locus: { h: 0.52 } });
+    if (wide) size(api, width, height, { locus: { w: 0.32 } });
   },
   lab(api, width, height) {
-    addTo(api, "rate", "scope", {}, RATE, "Angular rate");
+    addTo(api, "rate", "time", {}, RATE, "Angular rate");
     addTo(api, "schematic", "schematic", { left: "rate" });
     addTo(api, "controllers", "controllers", { below: "schematic" });
-    addTo(api, "faults", "faults", { within: "controllers", inactive: true });
-    addTo(api, "environment", "environment", { within: "controllers", inactive: true });
-    addTo(api, "card", "card", { within: "controllers", inactive: true });
-    addTo(api, "why", "why", { within: "controllers", inactive: true });
+    for (const view of ["faults", "device"] as const) addTo(api, view, view, { within: "controllers", inactive: true });
     const wide = width >= THREE_COLUMNS_PX;
     addBelow(api, wide);
-    addTo(api, "sheet", "sheet", { within: "forces", inactive: true });
-    addTo(api, "events", "events", { within: "forces", inactive: true });
+    for (const view of ["sheet", "why", "narrator"] as const)
+      addTo(api, view, view, { within: "forces", inactive: true });
     const loops = Math.max(0.28, LOOP_PX.width / width);
     size(api, width, height, {
       schematic: { w: loops, h: Math.max(0.4, LOOP_PX.height / height) },
-      rate: { h: 0.44 },
+      rate: { h: 0.48 },
       ...(wide ? { forces: { w: 0.58 * (1 - loops) } } : {}),
     });
   },
   research(api, width, height) {
     const wide = width >= THREE_COLUMNS_PX;
-    addTo(api, "rate", "scope", {}, RATE, "Angular rate");
+    addTo(api, "rate", "time", {}, RATE, "Angular rate");
     addTo(api, "schematic", "schematic", { left: "rate" });
     addTo(api, "controllers", "controllers", { below: "schematic" });
+    for (const view of ["faults", "device"] as const) addTo(api, view, view, { within: "controllers", inactive: true });
     addTo(api, "view3d", "view3d", wide ? { right: "rate" } : { within: "schematic", inactive: true });
-    addTo(api, "card", "card", wide ? { below: "view3d" } : { within: "controllers", inactive: true });
-    addTo(api, "why", "why", { within: "card", inactive: true });
-    addTo(api, "scores", "scores", { within: "card", inactive: true });
-    addTo(api, "events", "events", { within: "card", inactive: true });
-    addTo(api, "faults", "faults", { within: "controllers", inactive: true });
-    addTo(api, "environment", "environment", { within: "controllers", inactive: true });
+    addTo(api, "why", "why", wide ? { below: "view3d" } : { within: "controllers", inactive: true });
+    addTo(api, "narrator", "narrator", { within: "why", inactive: true });
     addBelow(api, wide);
     size(api, width, height, {
       schematic: { w: Math.max(0.25, LOOP_PX.width / width), h: Math.max(0.36, LOOP_PX.height / height) },
       ...(wide ? { view3d: { w: 0.25, h: 0.4 }, forces: { w: 0.27 } } : {}),
-      rate: { h: 0.46 },
+      rate: { h: 0.48 },
     });
   },
 };

@@ -1,7 +1,6 @@
 import "dockview-react/dist/styles/dockview.css";
 import "./dock.css";
-import { Menu } from "@mantine/core";
-import { IconMaximize, IconMinimize, IconPlus, IconX } from "@tabler/icons-react";
+import { IconMaximize, IconMinimize, IconX } from "@tabler/icons-react";
 import {
   DockviewDefaultTab,
   DockviewReact,
@@ -12,16 +11,24 @@ import {
 import { type FunctionComponent, type KeyboardEvent, useEffect, useState } from "react";
 import { hasAxes } from "../api/fits";
 import { PanelVisible } from "../api/panel-visible";
-import { addPanel, addScope, closePanel, DOCK_GAP, dockNow } from "../bench/dock";
+import { closePanel, DOCK_GAP, dockNow } from "../bench/dock";
+import { type PanelName, VIEWS } from "../bench/panel-views";
 import { useBench } from "../stream/bench-store";
 import { usePageVisible } from "../ui/on-screen";
 import { attachDock, keepLayout, layOutFor } from "./layouts";
 import { PanelBody } from "./panel-body";
-import { PANELS, type PanelKind, suits } from "./panels";
+import { PanelMenu } from "./panel-menu";
+import { viewShown } from "./panels";
+import { ViewChoice } from "./view-choice";
 
 const THEME = { name: "combbench", className: "dockview-theme-combbench", gap: DOCK_GAP };
 
-const components = Object.fromEntries(Object.entries(PANELS).map(([name, kind]) => [name, dockPanel(kind)]));
+/** What a tab takes beside the letters of its title, a letter, and the two buttons of a group, px. */
+const TAB_PX = 36;
+const LETTER_PX = 7.5;
+const BUTTONS_PX = 64;
+
+const components = Object.fromEntries((Object.keys(VIEWS) as PanelName[]).map((name) => [name, dockPanel(name)]));
 
 /** The panels, docked; they keep their places in this browser. */
 export function Workspace() {
@@ -43,7 +50,7 @@ export function Workspace() {
   );
 }
 
-function dockPanel(kind: PanelKind): FunctionComponent<IDockviewPanelProps> {
+function dockPanel(name: PanelName): FunctionComponent<IDockviewPanelProps> {
   return function DockPanel({ api, params }: IDockviewPanelProps) {
     const [shown, setShown] = useState(api.isVisible);
     const page = usePageVisible();
@@ -54,7 +61,7 @@ function dockPanel(kind: PanelKind): FunctionComponent<IDockviewPanelProps> {
     return (
       <PanelVisible value={shown && page}>
         <PanelBody
-          kind={kind}
+          view={viewShown(name, params.view)}
           params={params}
           setParams={(next) => {
             api.updateParameters(next);
@@ -107,49 +114,16 @@ function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActio
     const subscription = containerApi.onDidMaximizedGroupChange(() => setMaximised(containerApi.hasMaximizedGroup()));
     return () => subscription.dispose();
   }, [containerApi]);
-  const all = useBench((s) => s.bench?.signals);
-  const axes = useBench((s) => s.bench?.axes);
-  const scopes = SCOPE_PRESETS.map(({ title, pick }) => ({
-    title,
-    signals: (all ?? []).map((s) => s.name).filter((name) => pick.test(name)),
-  })).filter((preset) => preset.signals.length > 0);
+  const [width, setWidth] = useState(group.api.width);
+  useEffect(() => {
+    const subscription = group.api.onDidDimensionsChange(() => setWidth(group.api.width));
+    return () => subscription.dispose();
+  }, [group]);
+  const tabs = group.panels.reduce((sum, panel) => sum + TAB_PX + LETTER_PX * (panel.title?.length ?? 0), 0);
   return (
     <div className="dock-actions">
-      <Menu position="bottom-end" shadow="md">
-        <Menu.Target>
-          <button
-            type="button"
-            aria-label="Add or close panels"
-            title="Add or close panels"
-            onPointerDown={() => group.api.setActive()}
-          >
-            <IconPlus size={14} />
-          </button>
-        </Menu.Target>
-        <Menu.Dropdown>
-          <Menu.Label>Scopes</Menu.Label>
-          {scopes.map(({ title, signals }) => (
-            <Menu.Item key={title} onClick={() => addScope(title, signals)}>
-              {title}
-            </Menu.Item>
-          ))}
-          <Menu.Item onClick={() => addScope("Scope", [])}>Empty scope</Menu.Item>
-          <Menu.Divider />
-          {Object.entries(PANELS)
-            .filter(([kind, panel]) => kind !== "scope" && suits(panel, axes && { axes }))
-            .map(([kind, { title }]) => (
-              <Menu.Item key={kind} onClick={() => addPanel(kind)}>
-                {title}
-              </Menu.Item>
-            ))}
-          {activePanel && (
-            <>
-              <Menu.Divider />
-              <Menu.Item onClick={() => closePanel(activePanel)}>Close {activePanel.title}</Menu.Item>
-            </>
-          )}
-        </Menu.Dropdown>
-      </Menu>
+      {activePanel && <ViewChoice panel={activePanel} room={width - tabs - BUTTONS_PX} />}
+      <PanelMenu group={group} activePanel={activePanel} />
       <button
         type="button"
         aria-label={maximised ? "Back to all panels" : "Fill the page with this panel"}
@@ -163,22 +137,3 @@ function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActio
     </div>
   );
 }
-
-/** Scopes worth opening, by the signals they show; what a bench does not have is left out. */
-export const SCOPE_PRESETS: { title: string; pick: RegExp }[] = [
-  { title: "Displacement", pick: /^(model|plant|sensor)\.displacement$/ },
-  { title: "Tracking error", pick: /^model\.tracking_error$/ },
-  { title: "Rate, and every estimate of it", pick: /^[a-z_]+\.rate$/ },
-  { title: "Motion", pick: /^plant\.(partner_)?[xy]$/ },
-  { title: "Forces", pick: /^drive\.(partner_)?[xy]\.force$/ },
-  { title: "Quadrature", pick: /^[a-z_]+\.quadrature$/ },
-  { title: "What adaptive control learns", pick: /^(adaptive_rate|mimo_adaptive)\.[kd](xx|xy|yy)$/ },
-  { title: "Voltage", pick: /^(reference|drive)\.voltage$/ },
-  { title: "What each controller would do", pick: /^(?!reference|drive).+\.voltage$/ },
-  { title: "Adaptation", pick: /^mrac[^.]*\.gain(_ideal)?\./ },
-  { title: "Adaptation error", pick: /^mrac[^.]*\.(error|augmented_error|auxiliary_error)$/ },
-  { title: "Residuals", pick: /\.residual\./ },
-  { title: "Residuals along x", pick: /\.residual_x\./ },
-  { title: "Residuals along y", pick: /\.residual_y\./ },
-  { title: "Fault severity", pick: /^faults\./ },
-];

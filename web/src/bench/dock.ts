@@ -5,6 +5,7 @@ import { createElement } from "react";
 import { create } from "zustand";
 import type { Document } from "../api/types";
 import { scopeConfig } from "../stream/scope-config";
+import { firstView, folded, hasSeveral, panelOf } from "./panel-views";
 import { useView } from "./view-store";
 
 /** A layout as it is passed on: the panels, whether they are in large type, and for which kind of bench. */
@@ -48,7 +49,7 @@ export const layoutNow = () => current?.toJSON() as Document | undefined;
 export function restoreLayout(layout: Document | SerializedDockview): boolean {
   try {
     forgetClosed();
-    current?.fromJSON(withGaps(layout as unknown as SerializedDockview));
+    current?.fromJSON(withGaps(folded(layout as unknown as SerializedDockview)));
     requestAnimationFrame(revealActiveTabs);
     return true;
   } catch (error) {
@@ -105,20 +106,38 @@ export function reopenClosed(): boolean {
   return true;
 }
 
-/** Open another panel of a kind, among the panels of one of another kind if there is one, else beside the active one. */
-export function addPanel(kind: string, among?: string): void {
-  current?.addPanel({ id: `${kind}-${Date.now()}`, component: kind, params: {}, position: within(among) });
+/** Open another panel with a view, among the panels that have one of another view if there is one, else beside the active panel. */
+export function addPanel(view: string, among?: string): IDockviewPanel | undefined {
+  const component = panelOf(view);
+  if (!current || !component) return undefined;
+  return current.addPanel({ id: `${component}-${Date.now()}`, component, params: { view }, position: within(among) });
 }
 
-/** Open a scope on some signals, among the panels of a kind if there is one, else beside the active panel. */
+/** Open a scope on some signals, among the panels that have a view if there is one, else beside the active panel. */
 export function addScope(title: string, signals: string[], among?: string): void {
   const params = { scope: scopeConfig(signals) };
   current?.addPanel({ id: `scope-${Date.now()}`, component: "scope", title, params, position: within(among) });
 }
 
 function within(among: string | undefined) {
-  const near = current?.panels.find((p) => p.view.contentComponent === among);
+  const near = among && panelWith(among);
   return near && { referencePanel: near.id, direction: "within" as const };
+}
+
+/** The view a docked panel shows. */
+export const viewOf = ({ params, view }: IDockviewPanel): string =>
+  (params as { view?: string } | undefined)?.view ?? firstView(view.contentComponent);
+
+/** The panel that shows a view, else the panel that has it among others. */
+export function panelWith(view: string): IDockviewPanel | undefined {
+  const owner = panelOf(view);
+  const all = current?.panels.filter((panel) => panel.view.contentComponent === owner) ?? [];
+  return all.find((panel) => viewOf(panel) === view) ?? (owner && hasSeveral(owner) ? undefined : all[0]);
+}
+
+/** Turn a docked panel to one of its views. */
+export function turnTo(panel: IDockviewPanel, view: string): void {
+  panel.api.updateParameters({ ...panel.params, view });
 }
 
 /** Move the keyboard to the next group of panels. */
@@ -130,47 +149,52 @@ export function focusNextGroup(): void {
   next?.element.querySelector<HTMLElement>("[role=tab][aria-selected=true], [role=tab], button")?.focus();
 }
 
-/** Bring the panel of a kind to the front, opening one if there is none; without a dock it takes the place for one. */
-export function showPanel(kind: string, among?: string): void {
-  useView.setState({ extra: kind });
-  const panel = current?.panels.find((p) => p.view.contentComponent === kind);
-  if (panel) panel.api.setActive();
-  else addPanel(kind, among);
+/** Bring a view to the front, opening a panel if none has it; without a dock it takes the place for one. */
+export function showPanel(view: string, among?: string): void {
+  useView.setState({ extra: view });
+  const panel = panelWith(view);
+  if (!panel) {
+    addPanel(view, among);
+    return;
+  }
+  turnTo(panel, view);
+  panel.api.setActive();
 }
 
-/** Bring the panel of a kind to the front in a column of its own at the right edge; without a dock nothing happens. */
-export function showAtEdge(kind: string, width: number): void {
+/** Bring a view to the front in a column of its own at the right edge; without a dock nothing happens. */
+export function showAtEdge(view: string, width: number): void {
   if (!current) return;
   if (current.hasMaximizedGroup()) current.exitMaximizedGroup();
-  const panel = current.panels.find((p) => p.view.contentComponent === kind);
+  const panel = panelWith(view);
+  if (panel) turnTo(panel, view);
   if (panel && panel.group.panels.length === 1) {
     panel.api.setActive();
     return;
   }
   const group = current.addGroup({ direction: "right" });
   if (panel) panel.api.moveTo({ group });
-  else
-    current.addPanel({ id: `${kind}-${Date.now()}`, component: kind, params: {}, position: { referenceGroup: group } });
+  else addPanel(view)?.api.moveTo({ group });
   group.api.setSize({ width: Math.min(width, current.width / 2) });
 }
 
 /**
- * Bring the panel of a kind to the front beside that of another kind, so that both are seen.
+ * Bring a view to the front beside another view, so that both are seen.
  *
  * A page without a dock has its own place for it.
  */
-export function showBeside(kind: string, anchor: string): void {
+export function showBeside(view: string, anchor: string): void {
   if (!current) return;
   if (current.hasMaximizedGroup()) current.exitMaximizedGroup();
-  const find = (wanted: string) => current?.panels.find((p) => p.view.contentComponent === wanted);
-  const beside = find(anchor);
-  let panel = find(kind);
+  const beside = panelWith(anchor);
+  if (beside) turnTo(beside, anchor);
+  let panel = panelWith(view);
+  if (panel) turnTo(panel, view);
   if (!panel) {
-    const position = beside && { referencePanel: beside.id, direction: "right" as const };
-    panel = current.addPanel({ id: `${kind}-${Date.now()}`, component: kind, params: {}, position });
+    panel = addPanel(view);
+    if (panel && beside) panel.api.moveTo({ group: beside.group, position: "right" });
   } else if (beside && panel.group === beside.group) panel.api.moveTo({ group: beside.group, position: "right" });
   beside?.api.setActive();
-  panel.api.setActive();
+  panel?.api.setActive();
   revealActiveTabs();
 }
 

@@ -1,18 +1,14 @@
 import { units } from "../api/units";
 import { useBench } from "../stream/bench-store";
-import { showAtEdge, showPanel, useDock } from "./dock";
 import { showError } from "./send";
 import { beginWith } from "./unit-draft";
 import { sourceOnBench } from "./unit-values";
-import { setPage } from "./view-store";
+import { setPage, useView } from "./view-store";
 
-const WIDTH = 820;
-
-/** Bring the editor to the front, in a column wide enough for a text. */
+/** Open the editor, a drawer over the bench. */
 export function openEditor(): void {
   setPage("bench");
-  if (useDock.getState().dock) showAtEdge("editor", WIDTH);
-  else showPanel("editor");
+  useView.setState({ dialog: "editor" });
 }
 
 /** Begin with a copy of a unit of the library, under a name of its own, or with one this server keeps. */

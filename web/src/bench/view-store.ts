@@ -21,7 +21,7 @@ interface ViewStore {
   card: CardId;
   /** The sample of a diagnoser that was clicked, to be explained. */
   sample: { diagnoser: string; tick: number } | undefined;
-  dialog: "none" | "keys" | "bench" | "mine" | "share" | "layouts";
+  dialog: "none" | "keys" | "bench" | "mine" | "share" | "layouts" | "editor";
   /** On a phone: the panel shown beside those it always has. */
   extra: string;
   /** On a phone: the lab sheet is in front, the bench a tab away. */

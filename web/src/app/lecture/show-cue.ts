@@ -1,5 +1,5 @@
 import type { Cue } from "../../api/types";
-import { dockNow, showPanel } from "../../bench/dock";
+import { panelWith, showPanel } from "../../bench/dock";
 import { layoutAt } from "../../bench/lecture";
 import { scopeConfig } from "../../stream/scope-config";
 import { layOutForScript } from "../layouts";
@@ -8,15 +8,12 @@ import { layOutForScript } from "../layouts";
 export function showCue(script: readonly Cue[], at: number, diagnoses: boolean): void {
   const { panels, signals, window_ms } = script[at];
   layOutForScript(layoutAt(script, at));
-  const scope = dockNow()?.panels.find((panel) => panel.view.contentComponent === "scope");
+  const scope = panelWith("time");
   if (scope && signals.length > 0) {
-    scope.api.updateParameters({ scope: scopeConfig(signals, window_ms ? { windowMs: window_ms } : {}) });
+    scope.api.updateParameters({ view: "time", scope: scopeConfig(signals, window_ms ? { windowMs: window_ms } : {}) });
     scope.api.setTitle("Scope");
   }
   scope?.api.setActive();
-  if (!diagnoses)
-    dockNow()
-      ?.panels.find((panel) => panel.view.contentComponent === "lanes")
-      ?.api.close();
-  for (const panel of panels) showPanel(panel, "card");
+  if (!diagnoses) panelWith("lanes")?.api.close();
+  for (const panel of panels) showPanel(panel, diagnoses ? "lanes" : "faults");
 }

@@ -1,7 +1,7 @@
 import { api } from "../../api/api";
 import { unless } from "../../api/client";
 import type { Command } from "../../api/types";
-import { addPanel, dockNow, showPanel } from "../../bench/dock";
+import { dockNow, panelWith, showPanel } from "../../bench/dock";
 import { send } from "../../bench/send";
 import { type LayoutName, setPage } from "../../bench/view-store";
 import { askLatest } from "../../bench/why";
@@ -27,13 +27,9 @@ export interface Tour {
 }
 
 const find = (selector: string) => () => document.querySelector(selector) ?? undefined;
-/** The group of panels that shows a panel of a kind. */
-const panel = (kind: string) => () =>
-  dockNow()?.panels.find((one) => one.view.contentComponent === kind)?.group.element;
-const show = (kind: string) => () => {
-  if (dockNow()?.panels.some((one) => one.view.contentComponent === kind)) showPanel(kind);
-  else addPanel(kind, "faults");
-};
+/** The group of panels that has a view. */
+const panel = (view: string) => () => panelWith(view)?.group.element;
+const show = (view: string) => () => showPanel(view, "faults");
 const command = (one: Command) => () => send(one);
 const found = (name: string) => () =>
   currentEvents(useBench.getState().events).some(({ kind, new: value }) => kind === "recognised" && value === name);
@@ -80,7 +76,7 @@ export const TOURS: Tour[] = [
       {
         title: "The motion",
         text: "The plate, what the sensor says, and the model. Drag to look at the past; LIVE comes back to now.",
-        at: panel("scope"),
+        at: panel("time"),
       },
       {
         title: "A fault",
@@ -114,7 +110,7 @@ export const TOURS: Tour[] = [
       {
         title: "Damping +30 %",
         text: "The air has become thicker. The red band says since when; the swing is a little smaller.",
-        at: panel("scope"),
+        at: panel("time"),
         does: command({ fault: "damping", severity: 0.3 } as Command),
       },
       {
@@ -147,7 +143,7 @@ export const TOURS: Tour[] = [
       {
         title: "A device that has changed",
         text: "The spring has become 50 % stiffer. Without a controller the plate moves less than the model says.",
-        at: panel("scope"),
+        at: panel("time"),
         does: command({ fault: "stiffness", severity: 0.5 } as Command),
       },
       {
@@ -158,7 +154,7 @@ export const TOURS: Tour[] = [
       {
         title: "MRAC drives",
         text: "Adaptive control has taken over without a jump. It learns the gains that bring the plate back to the model.",
-        at: panel("scope"),
+        at: panel("time"),
         does: command({ switch: "mrac" } as Command),
         until: drives("mrac"),
       },
@@ -251,7 +247,7 @@ export const TOURS: Tour[] = [
       {
         title: "Back to the bench",
         text: "The run of the tour is removed, and your bench goes on as it was.",
-        at: panel("scope"),
+        at: panel("time"),
         does: () => setPage("bench"),
         until: () => dockNow() !== undefined,
       },

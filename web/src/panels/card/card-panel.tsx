@@ -6,16 +6,12 @@ import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { Prose } from "../../ui/prose";
 import { Weaknesses } from "../../ui/weaknesses";
-import { KindChoice } from "../controllers/generator-form";
 import { BlockEquation } from "./block-equation";
+import { Values } from "./block-values";
 import styles from "./card.module.css";
 import { EditUnit } from "./edit-unit";
 import { useInstances } from "./instances";
 import { LiveValues } from "./live-values";
-import { ParameterList } from "./parameter-list";
-
-/** Families of what comes from outside: its kind is changed while the bench runs. */
-const GENERATORS = ["reference", "rate"];
 
 /** What was last clicked: what the block does, its equations and its parameters. */
 export function CardPanel() {
@@ -62,15 +58,7 @@ export function CardPanel() {
           )}
           <LiveValues key={`live ${instance.id} ${instance.name}`} instance={instance} />
           {!drives && <p className={styles.summary}>You watch this bench; its values cannot be changed here.</p>}
-          <fieldset className={styles.values} disabled={!drives}>
-            {GENERATORS.includes(instance.family) && <KindChoice instance={instance} />}
-            <ParameterList
-              key={`${instance.id} ${instance.name}`}
-              instance={instance}
-              parameters={found.parameters}
-              document={parameters}
-            />
-          </fieldset>
+          <Values instance={instance} />
         </>
       ) : (
         <EmptyState

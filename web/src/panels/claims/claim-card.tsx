@@ -95,7 +95,7 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
               size="compact-sm"
               variant="default"
               title={`Open a scope on ${drawn.join(", ")}`}
-              onClick={() => addScope("Printed", [...drawn, ...partnersOf(drawn)], "scope")}
+              onClick={() => addScope("Printed", [...drawn, ...partnersOf(drawn)], "time")}
             >
               Show on a scope
             </Button>

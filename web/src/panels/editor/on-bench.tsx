@@ -59,7 +59,7 @@ export function OnBench({ card }: { card: BlockCard }) {
         <Button
           size="compact-sm"
           variant="default"
-          onClick={() => addScope(card.title, own.slice(0, MOST_TRACES), "scope")}
+          onClick={() => addScope(card.title, own.slice(0, MOST_TRACES), "time")}
         >
           Show its signals
         </Button>

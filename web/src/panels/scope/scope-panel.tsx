@@ -16,6 +16,7 @@ import { CaptureStrip } from "./capture-strip";
 import { EnvelopeNote } from "./envelope-note";
 import { ExportMenu } from "./export-menu";
 import { MeasureStrip } from "./measure-strip";
+import { PresetButtons } from "./preset-buttons";
 import { PrintedLine } from "./printed-line";
 import styles from "./scope.module.css";
 import { type CursorPair, type PlotArea, ScopeCursors } from "./scope-cursors";
@@ -156,8 +157,11 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
         </ScopeToolbar>
       </RearmContext>
       {traces.length === 0 ? (
-        <EmptyState title="Nothing on this scope">
-          Pick signals with +. Every signal of the bench can be shown, taps inside the blocks included.
+        <EmptyState
+          title="Nothing on this scope"
+          action={<PresetButtons onChoose={(chosen) => onChange({ ...config, signals: chosen })} />}
+        >
+          Pick signals with +, or begin with a set. Every signal of the bench can be shown, taps inside the blocks included.
         </EmptyState>
       ) : (
         <>

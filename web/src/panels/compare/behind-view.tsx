@@ -1,9 +1,8 @@
-import { ActionIcon, Button, Checkbox, NativeSelect, Popover, TextInput } from "@mantine/core";
-import { useWindowEvent } from "@mantine/hooks";
-import { IconArrowsDiff, IconTrash, IconX } from "@tabler/icons-react";
+import { ActionIcon, Button, Checkbox, NativeSelect, TextInput } from "@mantine/core";
+import { IconTrash, IconX } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
-import { api } from "../api/api";
-import type { Bench } from "../api/types";
+import { api } from "../../api/api";
+import type { Bench } from "../../api/types";
 import {
   type Alignment,
   addBehind,
@@ -13,13 +12,14 @@ import {
   renameBehind,
   useBehind,
   wordsOf,
-} from "../bench/behind";
-import { showRecording, showRun } from "../bench/behind-sources";
-import { openBench } from "../bench/open-bench";
-import { showError } from "../bench/send";
-import { useBench } from "../stream/bench-store";
-import { formatMoment, formatSi } from "../ui/format";
-import styles from "./compare.module.css";
+} from "../../bench/behind";
+import { showRecording, showRun } from "../../bench/behind-sources";
+import { openBench } from "../../bench/open-bench";
+import { showError } from "../../bench/send";
+import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
+import { formatMoment, formatSi } from "../../ui/format";
+import styles from "./behind.module.css";
 
 const ALIGNMENTS: { value: Alignment; label: string }[] = [
   { value: "time", label: "the same time" },
@@ -29,52 +29,26 @@ const ALIGNMENTS: { value: Alignment; label: string }[] = [
   { value: "tripped", label: "the last trip of each" },
 ];
 
-interface Sources {
+interface Candidates {
   benches: Bench[];
   recordings: { id: string; name: string }[];
   runs: { id: string; label?: string; title: string }[];
 }
 
-/** What lies behind the traces: other benches, branches, recordings and runs, and at what they are aligned. */
-export function Compare() {
+/** Other benches, branches, recordings and runs behind the traces, and the event at which they are aligned. */
+export function BehindView() {
   const bench = useBench((s) => s.bench);
-  const { behind } = useBehind();
-  const [opened, setOpened] = useState(false);
-  // the list has no focus any more when what was chosen last has gone from it
-  useWindowEvent("keydown", (e) => e.key === "Escape" && setOpened(false));
-  if (!bench) return null;
+  if (!bench) return <EmptyState title="No bench yet">Traces of other benches are laid behind those of this bench.</EmptyState>;
   return (
-    <Popover
-      opened={opened}
-      onChange={setOpened}
-      position="top-end"
-      shadow="md"
-      trapFocus
-      returnFocus
-      withRoles={false}
-    >
-      <Popover.Target>
-        <Button
-          size="compact-sm"
-          variant={behind.length > 0 ? "light" : "default"}
-          leftSection={<IconArrowsDiff size={16} />}
-          aria-haspopup="dialog"
-          aria-expanded={opened}
-          onClick={() => setOpened(!opened)}
-        >
-          {behind.length > 0 ? `Compared with ${behind.length}` : "Compare"}
-        </Button>
-      </Popover.Target>
-      <Popover.Dropdown className={styles.sheet} role="dialog" aria-label="Compare with other benches">
-        {opened && <Sheet bench={bench} />}
-      </Popover.Dropdown>
-    </Popover>
+    <section className={styles.sheet} aria-label="Branches and runs">
+      <Sources bench={bench} />
+    </section>
   );
 }
 
-function Sheet({ bench }: { bench: Bench }) {
+function Sources({ bench }: { bench: Bench }) {
   const { behind, alignment, shaded, difference } = useBehind();
-  const [sources, setSources] = useState<Sources>({ benches: [], recordings: [], runs: [] });
+  const [sources, setSources] = useState<Candidates>({ benches: [], recordings: [], runs: [] });
   const [edition, setEdition] = useState(0);
   // biome-ignore lint/correctness/useExhaustiveDependencies: the list is asked for again after a change
   useEffect(() => {

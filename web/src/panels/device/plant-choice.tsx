@@ -8,7 +8,7 @@ import { send } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { formatSi } from "../../ui/format";
 import { Weaknesses } from "../../ui/weaknesses";
-import styles from "./environment.module.css";
+import styles from "./device.module.css";
 
 /** How much of the physics is computed, live, and what a tick of this bench costs with it. */
 export function PlantChoice() {

@@ -2,22 +2,51 @@ import { hasAxes } from "../../api/fits";
 import { send } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
+import { formatSi } from "../../ui/format";
 import { Knob } from "../../ui/knob";
 import { AIR, AROUND_A_PACKAGE, ENVIRONMENT } from "../../ui/surroundings";
-import styles from "./environment.module.css";
+import { BlockValues } from "../card/block-values";
+import styles from "./device.module.css";
 import { PlantChoice } from "./plant-choice";
 import { SensorChoice } from "./sensor-choice";
 
 const FRICTION = { label: "Friction dead band", unit: "nN", low: 0, high: 500, step: 1 };
+/** Blocks of the board beside device and sensor. */
+const BOARD_BLOCKS = ["drive", "guard", "model"];
 
-/** What is around the device and how it is modelled and seen: air, friction, sensor, plant. All of it live. */
-export function EnvironmentPanel() {
+/** The model of the device and its values. */
+export function DeviceView() {
+  const title = useBench((s) => s.bench?.title);
+  if (title === undefined)
+    return <EmptyState title="No bench yet">The device of the bench and its model are chosen here.</EmptyState>;
+  return (
+    <section className={styles.panel} aria-label="Device">
+      <h2>Model</h2>
+      <PlantChoice />
+      <BlockValues id="plant" />
+    </section>
+  );
+}
+
+/** The sensor that feeds the controllers and its values. */
+export function SensorView() {
+  const id = useBench((s) => s.bench?.id);
+  if (!id) return <EmptyState title="No bench yet">The sensor of the bench is chosen here.</EmptyState>;
+  return (
+    <section className={styles.panel} aria-label="Sensor">
+      <SensorChoice />
+      <BlockValues id="sensor" />
+    </section>
+  );
+}
+
+/** Air and friction around the device. */
+export function EnvironmentView() {
   const environment = useBench((s) => s.bench?.parameters.environment) as Record<string, number> | undefined;
   const faults = useBench((s) => s.bench?.faults);
   const id = useBench((s) => s.bench?.id);
   const isFlat = useBench((s) => !hasAxes(s.bench));
-  if (!id)
-    return <EmptyState title="No bench yet">Air, friction, sensor and plant of the bench are set here.</EmptyState>;
+  if (!id) return <EmptyState title="No bench yet">Air and friction around the device are set here.</EmptyState>;
 
   const friction = faults?.find((f) => f.name === "stiction")?.severity ?? 0;
   const rub = (value: number) =>
@@ -51,10 +80,23 @@ export function EnvironmentPanel() {
           The device is sealed: air outside does not reach it. The fault Leak of the package raises the pressure inside.
         </p>
       )}
-      <h2>Sensor</h2>
-      <SensorChoice />
-      <h2>Plant</h2>
-      <PlantChoice />
+    </section>
+  );
+}
+
+/** The rate of the board, and the values of its drive, its guard and its reference model. */
+export function BoardView() {
+  const rate = useBench((s) => s.bench?.sample_rate_khz);
+  const dtMs = useBench((s) => s.bench?.dt_ms);
+  if (!rate || !dtMs) return <EmptyState title="No bench yet">Rate, drive and guard of the board are here.</EmptyState>;
+  return (
+    <section className={styles.panel} aria-label="Board">
+      <p className={styles.note}>
+        {formatSi(rate, "kHz")}, one tick each {formatSi(dtMs, "ms")}.
+      </p>
+      {BOARD_BLOCKS.map((id) => (
+        <BlockValues key={id} id={id} isTitled />
+      ))}
     </section>
   );
 }

@@ -7,7 +7,7 @@ import { send } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { Prose } from "../../ui/prose";
 import { Weaknesses } from "../../ui/weaknesses";
-import styles from "./environment.module.css";
+import styles from "./device.module.css";
 
 const BYPASS = "ideal";
 

@@ -1,0 +1,44 @@
+import { useMay } from "../../api/me";
+import { useCatalog } from "../../api/use-catalog";
+import { useBench } from "../../stream/bench-store";
+import { KindChoice } from "../controllers/generator-form";
+import styles from "./card.module.css";
+import { type Instance, useInstances } from "./instances";
+import { ParameterList } from "./parameter-list";
+
+/** Families whose kind is changed while the bench runs. */
+const GENERATORS = ["reference", "rate"];
+
+/** The parameters of the block with an id, if the bench has it. */
+export function BlockValues({ id, isTitled = false }: { id: string; isTitled?: boolean }) {
+  const { block } = useCatalog();
+  const instance = useInstances().find((one) => one.id === id);
+  const found = instance && block(instance.family, instance.name);
+  if (!instance || !found || (isTitled && found.parameters.length === 0)) return null;
+  return (
+    <>
+      {isTitled && <h2>{found.title}</h2>}
+      <Values instance={instance} />
+    </>
+  );
+}
+
+/** The parameters of a block on the bench, for those who drive it. */
+export function Values({ instance }: { instance: Instance }) {
+  const parameters = useBench((s) => s.bench?.parameters);
+  const drives = useMay("drive");
+  const { block } = useCatalog();
+  const found = block(instance.family, instance.name);
+  if (!parameters || !found) return null;
+  return (
+    <fieldset className={styles.values} disabled={!drives}>
+      {GENERATORS.includes(instance.family) && <KindChoice instance={instance} />}
+      <ParameterList
+        key={`${instance.id} ${instance.name}`}
+        instance={instance}
+        parameters={found.parameters}
+        document={parameters}
+      />
+    </fieldset>
+  );
+}

@@ -1,0 +1,30 @@
+/** Scopes worth opening, by the signals they show. */
+const PRESETS: { title: string; pick: RegExp }[] = [
+  { title: "Displacement", pick: /^(model|plant|sensor)\.displacement$/ },
+  { title: "Tracking error", pick: /^model\.tracking_error$/ },
+  { title: "Rate and its estimates", pick: /^[a-z_]+\.rate$/ },
+  { title: "Motion along x and y", pick: /^plant\.(partner_)?[xy]$/ },
+  { title: "Forces", pick: /^drive\.(partner_)?[xy]\.force$/ },
+  { title: "Quadrature", pick: /^[a-z_]+\.quadrature$/ },
+  { title: "Identified stiffness and damping", pick: /^(adaptive_rate|mimo_adaptive)\.[kd](xx|xy|yy)$/ },
+  { title: "Voltage", pick: /^(reference|drive)\.voltage$/ },
+  { title: "Voltage of each controller", pick: /^(?!reference|drive).+\.voltage$/ },
+  { title: "Adaptive gains", pick: /^mrac[^.]*\.gain(_ideal)?\./ },
+  { title: "Adaptation error", pick: /^mrac[^.]*\.(error|augmented_error|auxiliary_error)$/ },
+  { title: "Residuals", pick: /\.residual\./ },
+  { title: "Residuals along x", pick: /\.residual_x\./ },
+  { title: "Residuals along y", pick: /\.residual_y\./ },
+  { title: "Fault severity", pick: /^faults\./ },
+];
+
+export interface Preset {
+  title: string;
+  signals: string[];
+}
+
+/** The presets of a bench, without those of which it has no signal. */
+export const presetsOn = (signals: readonly { name: string }[]): Preset[] =>
+  PRESETS.map(({ title, pick }) => ({
+    title,
+    signals: signals.map((s) => s.name).filter((name) => pick.test(name)),
+  })).filter((preset) => preset.signals.length > 0);
