@@ -2,8 +2,8 @@ import type { DockviewApi, SerializedDockview } from "dockview-react";
 import { api } from "../api/api";
 import { hasAxes } from "../api/fits";
 import { dockNow, forgetClosed, holdDock, restoreLayout, type SharedLayout } from "../bench/dock";
-import type { PanelName } from "../bench/panel-views";
 import { inAddress } from "../bench/open-bench";
+import type { PanelName } from "../bench/panel-views";
 import { showError } from "../bench/send";
 import { chooseLayout, type LayoutName, useView } from "../bench/view-store";
 import { useBench } from "../stream/bench-store";
@@ -63,7 +63,8 @@ export function attachDock(api: DockviewApi): void {
   holdDock(api);
   api.onDidAddGroup((group) => group.api.setConstraints({ minimumWidth: LEAST_PX }));
   api.onDidAddPanel((panel) => {
-    if (!panel.title || panel.title === panel.id) panel.api.setTitle(PANELS[panel.view.contentComponent as PanelName].title);
+    if (!panel.title || panel.title === panel.id)
+      panel.api.setTitle(PANELS[panel.view.contentComponent as PanelName].title);
   });
   axes = hasAxes(useBench.getState().bench);
   const asked = inAddress("layout");

@@ -1,9 +1,9 @@
 import { useMay } from "../api/me";
+import type { ViewName } from "../bench/panel-views";
 import { useBench } from "../stream/bench-store";
 import { EmptyState } from "../ui/empty-state";
 import { ErrorFence } from "../ui/error-fence";
 import { type PanelProps, suits, VIEW } from "./panels";
-import type { ViewName } from "../bench/panel-views";
 
 /** A view, fenced; what changes a bench has no place on a recording that is played, what needs more than is served none while a fault is hidden. */
 export function PanelBody({ view, params, setParams }: PanelProps & { view: ViewName }) {

@@ -18,7 +18,13 @@ interface Entry {
 }
 
 /** Every panel with a line of words; a search finds views and scopes as well. */
-export function PanelMenu({ group, activePanel }: { group: DockviewGroupPanel; activePanel: IDockviewPanel | undefined }) {
+export function PanelMenu({
+  group,
+  activePanel,
+}: {
+  group: DockviewGroupPanel;
+  activePanel: IDockviewPanel | undefined;
+}) {
   const [query, setQuery] = useState("");
   const search = useRef<HTMLInputElement>(null);
   const entries = useEntries(query);

@@ -1,7 +1,7 @@
 import type { ComponentType } from "react";
 import { hasAxes } from "../api/fits";
 import type { Bench } from "../api/types";
-import { type PanelName, panelOf, type ViewName, VIEWS } from "../bench/panel-views";
+import { type PanelName, panelOf, VIEWS, type ViewName } from "../bench/panel-views";
 import { AdaptationPanel } from "../panels/adaptation/adaptation-panel";
 import { AllanPanel } from "../panels/allan/allan-panel";
 import { BehaviourPanel } from "../panels/behaviour/behaviour-panel";

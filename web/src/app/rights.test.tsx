@@ -1,6 +1,7 @@
 import { act, screen, waitFor } from "@testing-library/react";
 import { beforeEach, expect, it } from "vitest";
 import { useMe } from "../api/me";
+import type { ViewName } from "../bench/panel-views";
 import { server } from "../testing/fake-server";
 import { connect } from "../testing/fake-transport";
 import { resize } from "../testing/jsdom-gaps";
@@ -8,7 +9,7 @@ import { recordedAnswer, recordedBench } from "../testing/recorded";
 import { be, mount } from "../testing/render";
 import { Header } from "./header/header";
 import { PanelBody } from "./panel-body";
-import { PANELS } from "./panels";
+import { VIEW } from "./panels";
 import { Rail } from "./rail";
 
 const { bench } = await recordedBench("first-look");
@@ -87,42 +88,42 @@ it("goes to a page that is pressed", async () => {
   expect(screen.getByRole("button", { current: "page" })).toHaveTextContent("Runs");
 });
 
-/** Kinds of panels that change the bench. */
-const changing = Object.entries(PANELS).filter(([, kind]) => kind.changes);
+/** Views that change the bench. */
+const changing = Object.entries(VIEW).filter(([, kind]) => kind.changes);
 
-it("has these panels that change the bench, and these that show no more than is served while a fault is hidden", () => {
+it("has these views that change the bench, and these that show no more than is served while a fault is hidden", () => {
   expect(changing.map(([name]) => name).join(" ")).toBe(
-    "hypotheses labs blind games sheet twins controllers faults editor sets environment identify",
+    "device sensor environment board controllers parameters sets faults identify hypotheses labs twins sheet blind games",
   );
-  const served = Object.entries(PANELS).filter(([, kind]) => kind.whileBlind);
+  const served = Object.entries(VIEW).filter(([, kind]) => kind.whileBlind);
   expect(served.map(([name]) => name).join(" ")).toBe(
-    "scope lanes blind games sheet controllers spectrum events narrator vote",
+    "controllers time spectrum lanes narrator events sheet vote blind games",
   );
 });
 
-it.each(changing)("has no panel of %s for a watcher", (_, kind) => {
+it.each(changing)("has no view %s for a watcher", (view, kind) => {
   be("watcher");
   connect(kind.only === "axes" ? ({ ...bench, axes: ["x", "y"] } as typeof bench) : bench);
-  mount(<PanelBody kind={kind} params={{}} setParams={() => undefined} />);
+  mount(<PanelBody view={view as ViewName} params={{}} setParams={() => undefined} />);
   expect(screen.getByText(/You watch this bench/)).toBeVisible();
   expect(screen.queryByRole("button")).not.toBeInTheDocument();
 });
 
 it.each(
-  Object.entries(PANELS).filter(([, kind]) => !kind.whileBlind),
-)("hides the panel of %s while a fault is hidden, and while a game is played", (_, kind) => {
+  Object.entries(VIEW).filter(([, kind]) => !kind.whileBlind),
+)("hides the view %s while a fault is hidden, and while a game is played", (view, kind) => {
   const shown = { ...bench, axes: kind.only === "axes" ? ["x", "y"] : [], diagnosers: {}, faults: [], events: [] };
   const question = { id: "q", answers: ["healthy", "m+5"], factors: [], shows: [], began_tick: 0, by_tick: 100 };
   const board = connect({ ...shown, blind: question } as never);
-  mount(<PanelBody kind={kind} params={{}} setParams={() => undefined} />);
+  mount(<PanelBody view={view as ViewName} params={{}} setParams={() => undefined} />);
   expect(screen.getByText("Hidden while you look for the fault")).toBeVisible();
   board.status({ blind: { ...question, game: { game: "g", seed: 1 } } } as never);
   expect(screen.getByText("Hidden while the game is played")).toBeVisible();
   expect(server.requests).toEqual([]);
 });
 
-it.each(changing)("has no panel of %s on a bench that plays a recording", (_, kind) => {
+it.each(changing)("has no view %s on a bench that plays a recording", (view, kind) => {
   connect({ ...bench, replay_of: "rec", axes: kind.only === "axes" ? ["x", "y"] : [] } as typeof bench);
-  mount(<PanelBody kind={kind} params={{}} setParams={() => undefined} />);
+  mount(<PanelBody view={view as ViewName} params={{}} setParams={() => undefined} />);
   expect(screen.getByText("The past cannot be changed")).toBeVisible();
 });

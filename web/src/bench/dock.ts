@@ -120,7 +120,7 @@ export function addScope(title: string, signals: string[], among?: string): void
 }
 
 function within(among: string | undefined) {
-  const near = among && panelWith(among);
+  const near = among ? panelWith(among) : undefined;
   return near && { referencePanel: near.id, direction: "within" as const };
 }
 

@@ -50,7 +50,9 @@ export function folded(layout: SerializedDockview): SerializedDockview {
   for (const [id, panel] of Object.entries(layout.panels)) {
     const name = panel.contentComponent ?? "";
     const owner = isPanel(name) ? name : panelOf(name);
-    if (owner) panels[id] = owner === name ? panel : { ...panel, contentComponent: owner, params: { ...panel.params, view: name } };
+    if (owner)
+      panels[id] =
+        owner === name ? panel : { ...panel, contentComponent: owner, params: { ...panel.params, view: name } };
   }
   const root = keptNode(layout.grid.root, panels);
   const left = new Set(leaves(root).flatMap(({ views }) => views));

@@ -1,12 +1,12 @@
 import { act, screen, waitFor, within } from "@testing-library/react";
 import { beforeEach, expect, it } from "vitest";
-import type { Bench } from "../api/types";
-import { useBehind } from "../bench/behind";
-import { Refusal, server } from "../testing/fake-server";
-import { connect } from "../testing/fake-transport";
-import { recordedBench } from "../testing/recorded";
-import { mount } from "../testing/render";
-import { Compare } from "./compare";
+import type { Bench } from "../../api/types";
+import { useBehind } from "../../bench/behind";
+import { Refusal, server } from "../../testing/fake-server";
+import { connect } from "../../testing/fake-transport";
+import { recordedBench } from "../../testing/recorded";
+import { mount } from "../../testing/render";
+import { BehindView } from "./behind-view";
 
 const { bench, events } = await recordedBench("first-look");
 const other: Bench = { ...bench, id: "other", name: "Heavier", title: "Other" };
@@ -31,9 +31,8 @@ beforeEach(() => {
 async function open() {
   const board = connect(bench);
   await board.events(events);
-  const shown = mount(<Compare />);
-  await shown.user.click(screen.getByRole("button", { name: "Compare" }));
-  const sheet = within(await screen.findByRole("dialog", { name: "Compare with other benches" }));
+  const shown = mount(<BehindView />);
+  const sheet = within(await screen.findByRole("region", { name: "Branches and runs" }));
   await sheet.findByRole("option", { name: /^Heavier/ });
   return { board, ...shown, sheet };
 }
@@ -62,7 +61,6 @@ it("puts a bench behind the traces, at the same time, and takes it away", async 
   const row = await add(opened);
   expect(row).toHaveTextContent("same time");
   expect(useBehind.getState().behind).toEqual([{ bench: "other", words: "Heavier", shift: 0 }]);
-  expect(screen.getByRole("button", { name: "Compared with 1" })).toBeVisible();
   await opened.user.click(within(row).getByRole("button", { name: "Take Heavier away" }));
   expect(useBehind.getState().behind).toEqual([]);
 });
@@ -140,15 +138,4 @@ it("takes no more than eight", async () => {
   act(() => useBehind.setState({ behind }));
   expect(sheet.queryByLabelText("Add")).not.toBeInTheDocument();
   expect(sheet.getByText("8 are shown, which is the most.")).toBeVisible();
-});
-
-it.each(["at once", "after what was chosen last has gone from the list"])("closes by Escape, %s", async (when) => {
-  const opened = await open();
-  if (when !== "at once") {
-    const row = await add(opened);
-    await opened.user.click(within(row).getByRole("button", { name: "Take Heavier away" }));
-    (document.activeElement as HTMLElement | null)?.blur();
-  }
-  await opened.user.keyboard("{Escape}");
-  await waitFor(() => expect(screen.queryByRole("dialog")).not.toBeInTheDocument());
 });

@@ -38,7 +38,8 @@ interface Candidates {
 /** Other benches, branches, recordings and runs behind the traces, and the event at which they are aligned. */
 export function BehindView() {
   const bench = useBench((s) => s.bench);
-  if (!bench) return <EmptyState title="No bench yet">Traces of other benches are laid behind those of this bench.</EmptyState>;
+  if (!bench)
+    return <EmptyState title="No bench yet">Traces of other benches are laid behind those of this bench.</EmptyState>;
   return (
     <section className={styles.sheet} aria-label="Branches and runs">
       <Sources bench={bench} />

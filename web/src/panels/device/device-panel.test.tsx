@@ -4,7 +4,7 @@ import { Refusal, server } from "../../testing/fake-server";
 import { connect } from "../../testing/fake-transport";
 import { recordedAnswer, recordedBench } from "../../testing/recorded";
 import { mount } from "../../testing/render";
-import { EnvironmentPanel } from "./environment-panel";
+import { DeviceView, EnvironmentView } from "./device-panel";
 
 const { bench } = await recordedBench("first-look");
 const gyroscope = await recordedBench("gyroscope");
@@ -19,9 +19,9 @@ beforeEach(() => {
   server.on("GET", "/benches/:id/plants", { plants });
 });
 
-function mountPanel(of = bench) {
+function mountPanel(of = bench, view = <EnvironmentView />) {
   const board = connect(of);
-  const { user } = mount(<EnvironmentPanel />);
+  const { user } = mount(view);
   const enter = async (label: string, value: string) => {
     await user.clear(screen.getByRole("textbox", { name: label }));
     await user.type(screen.getByRole("textbox", { name: label }), `${value}{Enter}`);
@@ -66,14 +66,14 @@ it("refuses a negative friction in words, and sends nothing", async () => {
 });
 
 it("lists the plants with the cost of a tick, and says why one is not offered", async () => {
-  mountPanel();
+  mountPanel(bench, <DeviceView />);
   expect(await screen.findByText(/^2\.00\sµs per tick of the whole bench, 5\.00 times/)).toBeVisible();
   expect(screen.getByText("not on this bench: the device has no beams")).toBeVisible();
   expect(screen.getByRole("radio", { checked: true })).toHaveAttribute("value", "linear");
 });
 
 it("sends the plant that is chosen, and shows the words of a refusal", async () => {
-  const { board, user } = mountPanel();
+  const { board, user } = mountPanel(bench, <DeviceView />);
   const planar = (await screen.findAllByRole("radio")).find((one) => one.getAttribute("value") === "planar");
   await user.click(planar as HTMLElement);
   expect(board.commands).toEqual([{ set: { "plant.model": "planar" } }]);
@@ -84,13 +84,13 @@ it("sends the plant that is chosen, and shows the words of a refusal", async () 
 
 it("says that the cost is being measured while the server has not answered", async () => {
   server.on("GET", "/benches/:id/plants", new Refusal(503, "busy"));
-  mountPanel();
+  mountPanel(bench, <DeviceView />);
   expect((await screen.findAllByText("measuring its cost")).length).toBeGreaterThan(1);
 });
 
 it("says the known weaknesses of the plant in use", async () => {
   const weak = catalog.blocks.find((b) => b.family === "plant" && b.weaknesses.length > 0 && b.axes?.length === 0);
-  mountPanel({ ...bench, parameters: { ...bench.parameters, plant: { model: weak?.name } } });
+  mountPanel({ ...bench, parameters: { ...bench.parameters, plant: { model: weak?.name } } }, <DeviceView />);
   const notes = await screen.findAllByRole("note");
   expect(notes).toHaveLength(weak?.weaknesses.length as number);
   expect(notes[0]).toHaveTextContent(/^Known weakness/);

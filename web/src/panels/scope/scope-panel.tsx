@@ -161,7 +161,8 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
           title="Nothing on this scope"
           action={<PresetButtons onChoose={(chosen) => onChange({ ...config, signals: chosen })} />}
         >
-          Pick signals with +, or begin with a set. Every signal of the bench can be shown, taps inside the blocks included.
+          Pick signals with +, or begin with a set. Every signal of the bench can be shown, taps inside the blocks
+          included.
         </EmptyState>
       ) : (
         <>
