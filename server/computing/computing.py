@@ -113,21 +113,36 @@ class Computing:
 
 async def _done(worker: Processes, most_s: float, function: Callable[..., Any], *arguments: Any) -> Done:
     """Have a function called in a process; end the process if the request is given up."""
+    too_much = InputError(
+        f"takes more than {most_s:g} s of processor time or {MOST_BYTES >> 20} MB of memory", code="too_much"
+    )
     work = partial(worker.submit, within, most_s, terms(), function, *arguments)
     try:
         future = await asyncio.to_thread(work)
-    except BrokenProcessPool:  # the process has ended since the last request; this starts another
+    except BrokenProcessPool:  # the process has ended since the last request
+        await _start(worker)
         future = await asyncio.to_thread(work)
     try:
         async with asyncio.timeout(PATIENCE * most_s):
             return await asyncio.wrap_future(future)
-    except (BrokenProcessPool, TimeoutError):
-        text = f"takes more than {most_s:g} s of processor time or {MOST_BYTES >> 20} MB of memory"
-        raise InputError(text, code="too_much") from None
+    except BrokenProcessPool:
+        await _start(worker)
+        raise too_much from None
+    except TimeoutError:
+        raise too_much from None
     finally:
         if not future.done():  # out of patience, or the request is given up
             worker.kill()
             await asyncio.wait([asyncio.wrap_future(future)])
+
+
+async def _start(worker: Processes) -> None:
+    """Start a process in place of the ended one: a machine on which none starts is at fault, not the request."""
+    try:
+        await asyncio.wrap_future(await asyncio.to_thread(worker.submit, load))
+    except BrokenProcessPool:
+        text = "the process that computes for requests does not start; the log of the server says why"
+        raise ApiError(503, "unavailable", text) from None
 
 
 def load() -> None:

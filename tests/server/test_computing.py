@@ -7,6 +7,7 @@ import os
 import threading
 import time
 from collections.abc import Awaitable, Callable, Iterator
+from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager
 from functools import partial
@@ -86,6 +87,23 @@ def test_a_process_that_ended_between_two_requests_is_replaced(
 
     monkeypatch.setattr(Processes, "submit", gone_once)
     assert asyncio.run(computing.call(os.getpid)) != os.getpid() and refused
+
+
+@pytest.mark.parametrize("breaks", ["at once", "later"])
+def test_a_machine_on_which_no_process_starts_is_at_fault_and_not_the_request(
+    breaks: str, made: tuple[Computing, ManualClock], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def submit(_worker: Processes, *_arguments: Any) -> Any:
+        if breaks == "at once":
+            raise BrokenProcessPool("none starts")
+        future: Future[Any] = Future()
+        future.set_exception(BrokenProcessPool("none starts"))
+        return future
+
+    monkeypatch.setattr(Processes, "submit", submit)
+    with pytest.raises(ApiError) as refused:
+        asyncio.run(made[0].call(os.getpid))
+    assert refused.value.status_code == 503 and "does not start" in refused.value.body.message
 
 
 def test_a_call_that_takes_too_much_memory_is_refused(made: tuple[Computing, ManualClock]) -> None:

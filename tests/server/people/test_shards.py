@@ -16,6 +16,7 @@ import psycopg
 import pytest
 from websockets.sync.client import connect
 
+from server.people.code import CLASS_LETTERS, CODE_LETTERS
 from server.stream.wire import SUBPROTOCOL
 from tests.server.forks import TOKEN, Served, forks
 from tests.server.nginx import NAME, nginx, sharded_site
@@ -150,7 +151,7 @@ def ended(client: httpx.Client, run_id: str) -> dict[str, Any]:
 def test_each_has_classes_of_its_own(lab: Lab) -> None:
     for letter, group in lab.groups.items():
         code = group["code"].replace(" ", "").lower()
-        assert code.startswith(letter) and len(code) == 10
+        assert code.startswith(letter) and len(code) == CLASS_LETTERS + CODE_LETTERS
         assert group["addresses"] == [f"{lab.origin}/join?code={code}"]
         assert form_of(lab.browser().get(f"/join?code={code}")) == f"/join?shard={letter}"  # by the QR code
         assert [one["id"] for one in lab.teachers[letter].get("/api/v1/classes").json()["classes"]] == [group["id"]]

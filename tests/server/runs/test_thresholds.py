@@ -9,7 +9,7 @@ from scenarios.campaign.threshold import Memory, Search
 from scenarios.library import get
 
 NAME = "ch3-case1-aged-mass"
-ASKED = {"metric": "control.effort_ratio", "path": "events.1.severity", "low": 0.0, "high": 8.0}
+ASKED = {"metric": "control.effort_ratio", "path": "events.1.severity", "low": 0.0, "high": 7.5}
 PATH = "/api/v1/thresholds"
 
 

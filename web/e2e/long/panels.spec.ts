@@ -21,6 +21,7 @@ for (const [device, scenario] of Object.entries({ resonator: "first-look", gyros
     await page.goto(`${server.origin}/?bench=${id}&layout=lab`);
     await showOn(page, SCREENS[3]);
     await server.advance(2);
+    await expect(page.getByTestId("bench-state")).toHaveText("running"); // the choice depends on the bench
     const choice = page.getByRole("combobox", { name: "Another panel" });
     for (const kind of await choice
       .locator("option")

@@ -79,7 +79,7 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
                 )}
                 {all && remarks(entry).map((text) => <small key={text}>{micro(text)}</small>)}
               </th>
-              <td className={styles.expected}>{typeset(entry.expected)}</td>
+              <td>{typeset(entry.expected)}</td>
               <td className={styles.measured} data-ok={entry.ok}>
                 {formatFigure(entry.metric, entry.measured)}
                 {entry.ok === false && " ✗"}
