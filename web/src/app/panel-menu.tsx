@@ -57,7 +57,8 @@ export function PanelMenu({
           value={query}
           onChange={(event) => setQuery(event.currentTarget.value)}
           onKeyDown={(event) => {
-            if (event.key === "Enter") entries[0]?.run();
+            if (event.key === "Enter")
+              event.currentTarget.closest("[role=menu]")?.querySelector<HTMLElement>("[role=menuitem]")?.click();
           }}
         />
         {entries.map(({ key, title, about, run }) => (

@@ -1,8 +1,18 @@
 import { act, screen } from "@testing-library/react";
 import type { DockviewApi, SerializedDockview } from "dockview-react";
 import { beforeEach, expect, it, vi } from "vitest";
-import { addPanel, closePanel, dockNow, panelWith, restoreLayout, showAtEdge, showBeside, showPanel } from "../bench/dock";
-import { reopenClosed, viewOf } from "../bench/dock";
+import {
+  addPanel,
+  closePanel,
+  dockNow,
+  panelWith,
+  reopenClosed,
+  restoreLayout,
+  showAtEdge,
+  showBeside,
+  showPanel,
+  viewOf,
+} from "../bench/dock";
 import { isPanel, VIEWS } from "../bench/panel-views";
 import { connect } from "../testing/fake-transport";
 import { recordedBench } from "../testing/recorded";
