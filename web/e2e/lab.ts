@@ -85,7 +85,7 @@ export async function front(page: Page, panel: string, view?: string): Promise<v
 /** Find a panel, a view or a scope in the menu of panels, and open the first that is found. */
 export async function openPanel(page: Page, words: string): Promise<void> {
   await page.getByRole("button", { name: "Add or close panels" }).first().click();
-  await page.getByRole("textbox", { name: /^Search panels/ }).fill(words);
+  await page.getByRole("searchbox", { name: /^Search panels/ }).fill(words);
   await page.keyboard.press("Enter");
   await expect(page.getByRole("menu")).toHaveCount(0);
 }

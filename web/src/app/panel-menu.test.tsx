@@ -22,13 +22,13 @@ async function openMenu(bench = flat) {
   const { user } = mount(<Workspace />);
   act(() => setLayout("lecture"));
   await user.click(screen.getAllByRole("button", { name: "Add or close panels" })[0]);
-  const search = await screen.findByRole("textbox", { name: "Search panels, views and signals" });
+  const search = await screen.findByRole("searchbox", { name: "Search panels, views and signals" });
   await waitFor(() => expect(search).toHaveFocus());
   return { user, search };
 }
 const items = () => screen.getAllByRole("menuitem").map((item) => item.textContent ?? "");
 const isGone = () =>
-  waitFor(() => expect(screen.queryByRole("textbox", { name: /^Search panels/ })).not.toBeInTheDocument());
+  waitFor(() => expect(screen.queryByRole("searchbox", { name: /^Search panels/ })).not.toBeInTheDocument());
 
 it("lists every panel of a bench in the order of work, each with a line of words", async () => {
   await openMenu();
@@ -102,4 +102,11 @@ it("closes the panel in front", async () => {
   const { user } = await openMenu();
   await user.click(screen.getByRole("menuitem", { name: "Close Displacement" }));
   expect(dockNow()?.panels.map(({ title }) => title)).not.toContain("Displacement");
+});
+
+it("opens the entry that the arrows have marked", async () => {
+  const { user, search } = await openMenu();
+  await user.type(search, "view of controller{ArrowDown}{ArrowDown}{Enter}");
+  expect(panelWith("sets")?.api.isActive).toBe(true);
+  await isGone();
 });
