@@ -13,6 +13,7 @@ import pytest
 
 from scenarios.edit import parse_assignment, with_values
 from scenarios.library import get
+from scenarios.run import DEFAULT_SAMPLES
 from tests.server.conftest import TOKEN, Live
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -75,7 +76,7 @@ def test_the_command_line_takes_the_copied_runs() -> None:
         [event] = run.document["events"]
         told = case["event"]["command"]
         assert event == (told if told.keys() & {"at_sample", "when"} else {"at_sample": case["event"]["tick"], **told})
-        assert run.document.get("samples", SOURCE["samples"]) > case["event"]["tick"]
+        assert (run.samples or DEFAULT_SAMPLES) > case["event"]["tick"]
 
 
 def test_only_commands_to_the_board_are_headless_runs() -> None:

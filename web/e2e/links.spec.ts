@@ -1,7 +1,7 @@
 import type { Page } from "@playwright/test";
 import { benchOf, expect, test } from "./classroom";
-import type { LabServer } from "./lab-server";
 import { front } from "./lab";
+import type { LabServer } from "./lab-server";
 
 const momentOf = (server: LabServer, page: Page) =>
   server.ask<{ tick: number; digest: string }>("GET", `/benches/${benchOf(page)}/digest`);

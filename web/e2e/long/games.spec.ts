@@ -1,8 +1,8 @@
 import type { Page } from "@playwright/test";
 import { benchOf, expect, test } from "../classroom";
+import { front } from "../lab";
 import { expectFits } from "../screens";
 import { seriousViolations } from "../serious-violations";
-import { front } from "../lab";
 
 interface Play {
   attempts: { outcome: { points: number } }[];

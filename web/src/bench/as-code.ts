@@ -8,13 +8,16 @@ export interface Source {
   address: string;
   bench: string;
   scenario: string;
-  samples: number;
+  /** Its length in ticks, if it has one. */
+  samples: number | null;
 }
 
 export const LANGUAGES = { rest: "REST, with curl", cli: "Command line, headless", python: "Python" } as const;
 
 export type Language = keyof typeof LANGUAGES;
 
+/** What a headless run has of a scenario without a length. */
+const HEADLESS_SAMPLES = 10_000;
 const MOMENT = ["at_sample", "at_ms", "when"];
 
 /** The command of an event in each language that can say it; a headless run takes no command that runs a bench. */
@@ -33,7 +36,8 @@ function asCurl(command: Command, { address, bench }: Source): string {
 }
 
 /** A run with this event alone, long enough to see what it does. */
-function asRun(command: Command, tick: number, { scenario, samples }: Source): string {
+function asRun(command: Command, tick: number, { scenario, samples: own }: Source): string {
+  const samples = own ?? HEADLESS_SAMPLES;
   const event = MOMENT.some((name) => name in command) ? command : { at_sample: tick, ...command };
   const length = tick < samples ? "" : ` --set samples=${tick + samples}`;
   return `combbench run ${quoted(scenario)}${length} --set ${quoted(`events=[${literal(event, TOML)}]`)}`;

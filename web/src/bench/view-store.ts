@@ -64,7 +64,19 @@ export const useView = create<ViewStore>(() => ({
 
 /** The layout named in the address, else the one chosen last; a lecture for who comes first. */
 function firstLayout(): string {
-  /** The page named in the address. */
+  const asked = new URLSearchParams(window.location.search).get("layout");
+  return LAYOUT_NAMES.find((name) => name === asked) ?? localStorage.getItem(CHOSEN) ?? "lecture";
+}
+
+/** Keep a layout for the next visit; the address names it. */
+export function chooseLayout(layout: string): void {
+  localStorage.setItem(CHOSEN, layout);
+  const url = new URL(window.location.href);
+  url.searchParams.set("layout", layout);
+  window.history.replaceState(null, "", url);
+}
+
+/** The page named in the address. */
 export function pageInAddress(): PageName {
   const asked = inAddress("page");
   return MOVED[asked]?.page ?? PAGE_NAMES.find((name) => name === asked) ?? "bench";

@@ -17,7 +17,12 @@ export function CopyMenu({ event }: { event: LogEntry }) {
   return (
     <Menu position="bottom-end" shadow="md">
       <Menu.Target>
-        <ActionIcon size="sm" variant="subtle" aria-label={`Copy: ${event.text}`} title="Copy this command for a script">
+        <ActionIcon
+          size="sm"
+          variant="subtle"
+          aria-label={`Copy: ${event.text}`}
+          title="Copy this command for a script"
+        >
           <IconCode size={14} />
         </ActionIcon>
       </Menu.Target>

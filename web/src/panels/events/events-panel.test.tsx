@@ -1,5 +1,6 @@
 import { screen, within } from "@testing-library/react";
 import { beforeEach, expect, it } from "vitest";
+import { useAnnouncements } from "../../bench/announce";
 import { server } from "../../testing/fake-server";
 import { connect } from "../../testing/fake-transport";
 import { recordedBench } from "../../testing/recorded";
@@ -56,7 +57,6 @@ it("offers a teacher, and no student, a branch without a change", async () => {
 });
 
 it("copies the command behind an event for a shell, a headless run and Python", async () => {
-  server.on("GET", "/classes", { classes: [] });
   const board = connect(bench);
   const { user } = mount(<EventsPanel />);
   await board.events(events);
@@ -65,7 +65,7 @@ it("copies the command behind an event for a shell, a headless run and Python", 
   expect(list.getAllByRole("button", { name: /^Copy: / })).toHaveLength(events.filter((e) => e.command).length);
   for (const [item, text] of [
     ["REST, with curl", `http://localhost:3000/api/v1/benches/${bench.id}/commands`],
-    ["Command line, headless", "combbench run first-look --set 'events=[{at_sample = 1800, fault = \"added_mass\","],
+    ["Command line, headless", 'combbench run first-look --set \'events=[{at_sample = 1800, fault = "added_mass",'],
     ["Python", `Bench(lab, "${bench.id}").command(fault="added_mass", severity=0.05)`],
   ]) {
     await user.click(copy);
@@ -76,7 +76,6 @@ it("copies the command behind an event for a shell, a headless run and Python", 
 });
 
 it("offers no headless run for a command that runs the bench", async () => {
-  server.on("GET", "/classes", { classes: [] });
   const board = connect(bench);
   const { user } = mount(<EventsPanel />);
   await board.events(events);
