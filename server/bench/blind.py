@@ -46,8 +46,8 @@ SHEET = ("sample_rate_khz", "device", "plant", "reference", "controller", "senso
 """Tables of the bench that people see: those of the nominal device, not of the drawn one."""
 
 REFUSAL = "a fault is hidden on this bench"
-HINT = "answer or give up first, under Blind diagnosis"
-GAME_HINT = "hand in or end the game first, under Games"
+HINT = "answer or give up first, under Lesson › Hidden fault"
+GAME_HINT = "hand in or end the game first, under Lesson › Games"
 
 FAULTS: dict[str, tuple[str, Callable[[float], float]]] = {
     "mass": ("added_mass", lambda factor: factor - 1.0),

@@ -1,5 +1,5 @@
 import { readFile } from "node:fs/promises";
-import { expect, test } from "./lab";
+import { expect, front, test } from "./lab";
 
 const NAME = "ch3-case1-aged-mass";
 const QUOTE = "the controller generated almost 80% stronger signals than the input-reference";
@@ -11,7 +11,7 @@ test("a claim is judged on its bench and marked on the scope, its threshold is f
   const { id } = await server.ask<{ id: string }>("POST", "/benches", { scenario: NAME, paused: true });
   await page.request.get(server.url);
   await page.goto(`${server.origin}/?bench=${id}&layout=lab`);
-  await page.getByRole("tab", { name: "Claims" }).click();
+  await front(page, "Published");
   const claims = page.locator("section[aria-label='Claims']");
   const effort = (verdict: string) => claims.getByRole("listitem", { name: `effort ratio: ${verdict}` });
   await expect(claims).toHaveAttribute("data-over", "false");

@@ -1,6 +1,6 @@
 import { readFile } from "node:fs/promises";
 import { benchOf } from "./classroom";
-import { expect, test } from "./lab";
+import { expect, front, test } from "./lab";
 
 test("a controller is switched, keys act after lists and fields, a wrong value is refused in words, all is saved", async ({
   page,
@@ -27,7 +27,7 @@ test("a controller is switched, keys act after lists and fields, a wrong value i
   await expect.poll(tick).toBe(before + 1);
   await page.keyboard.press("Space");
   await expect(state).toHaveText("running");
-  await page.getByRole("tab", { name: "Events" }).click();
+  await front(page, "Log", "Events");
   await expect(page.getByRole("button", { name: /^\d.*switch to mrac/ })).toBeVisible();
   const scale = page.getByRole("group", { name: "Time scale" });
   await page.keyboard.press("]");
@@ -41,7 +41,7 @@ test("a controller is switched, keys act after lists and fields, a wrong value i
   const noise = page.getByRole("textbox", { name: /^Noise, µm/ });
   await noise.fill("0.2");
   await noise.press("Enter");
-  await page.getByRole("tab", { name: "Events" }).click();
+  await front(page, "Log", "Events");
   await expect(page.getByRole("button", { name: /^\d.*set sensors?\..*noise_um = 0\.2/ })).toBeVisible();
   await noise.fill("-1");
   await noise.press("Enter");

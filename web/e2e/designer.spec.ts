@@ -1,6 +1,6 @@
 import type { Page } from "@playwright/test";
 import { benchOf } from "./classroom";
-import { expect, test } from "./lab";
+import { expect, front, test } from "./lab";
 import type { LabServer } from "./lab-server";
 
 interface Device {
@@ -88,7 +88,7 @@ test("a gyroscope has its loops and its tilt, and its fault is injected, found a
   await server.advance(3);
   await expect(says).toHaveText("healthy");
 
-  await page.getByRole("tab", { name: "Controllers" }).click();
+  await front(page, "Controller");
   const panel = page.getByRole("region", { name: "Controllers" });
   await panel.getByRole("radio", { name: "Whole-angle read-out" }).click();
   await expect(panel.getByText("Waits: Whole-angle read-out")).toBeVisible();

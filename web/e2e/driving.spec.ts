@@ -1,4 +1,5 @@
 import { benchOf, classLine, expect, PHONE, test } from "./classroom";
+import { front } from "./lab";
 
 test("one person drives a bench: asks, hands over, takes back, and drives no more when gone", async ({
   page,
@@ -37,7 +38,7 @@ test("one person drives a bench: asks, hands over, takes back, and drives no mor
   await expect(theirs).toHaveCount(0);
   await page.getByRole("button", { name: "Run", exact: true }).click();
   await expect(page.getByTestId("bench-state")).toHaveText("running");
-  await page.getByRole("tab", { name: "Events" }).click();
+  await front(page, "Log", "Events");
   await page.getByText("Who did what").click();
   const who = page.getByRole("list", { name: "Who did what, newest first" });
   await expect(who.getByText("was handed the bench by Ada")).toBeVisible();

@@ -1,5 +1,5 @@
 import type { Page } from "@playwright/test";
-import { expect, test } from "./lab";
+import { expect, front, test } from "./lab";
 
 const lanesOf = (page: Page) => page.getByRole("region", { name: "Diagnosis by kalman" });
 
@@ -25,7 +25,7 @@ test("an injected fault is found and explained, the delay is printed, and healin
   await why.getByRole("button", { name: "The sample where it turned" }).click();
   await expect(why.getByText(/The verdict turned at this sample, from /)).toBeVisible();
 
-  await page.getByRole("tab", { name: "Events" }).click();
+  await front(page, "Log", "Events");
   await expect(page.getByRole("button", { name: /kalman found m\+5 after \d+\ssamples/ })).toBeVisible();
   await page.getByRole("button", { name: /^\d.*inject added_mass/ }).click();
   const live = page.getByRole("button", { name: "LIVE" }).first();

@@ -1,4 +1,5 @@
 import { benchOf, expect, test } from "./classroom";
+import { front } from "./lab";
 
 interface Play {
   attempts: { outcome: { points: number; figures: Record<string, number> } }[];
@@ -18,7 +19,7 @@ test("a student plays be the filter: knobs turn the hidden bench, and the settin
 }) => {
   const page = await student("Ada");
   await page.goto(`${server.origin}/?bench=${benchOf(page)}&layout=lab`);
-  await page.getByRole("tab", { name: "Games" }).click();
+  await front(page, "Lesson", "Games");
   const panel = page.locator("section[aria-label='Games']");
   const fill = async (name: RegExp, value: string) => {
     await panel.getByRole("textbox", { name }).fill(value);

@@ -68,6 +68,28 @@ async function open(page: Page, server: LabServer, bench: object, layout: string
 
 export { expect };
 
+/** Bring a panel of the dock to the front, turned to one of its views. */
+export async function front(page: Page, panel: string, view?: string): Promise<void> {
+  await page.getByRole("tab", { name: panel, exact: true }).click();
+  if (!view) return;
+  const row = page.getByRole("group", { name: `Views of ${panel}`, exact: true });
+  const menu = page.getByRole("button", { name: new RegExp(`^Views of ${panel}: `) });
+  await expect(row.or(menu)).toBeVisible();
+  if (await row.isVisible()) await row.getByRole("button", { name: view, exact: true }).click();
+  else {
+    await menu.click();
+    await page.getByRole("menuitem", { name: view, exact: true }).click();
+  }
+}
+
+/** Find a panel, a view or a scope in the menu of panels, and open the first that is found. */
+export async function openPanel(page: Page, words: string): Promise<void> {
+  await page.getByRole("button", { name: "Add or close panels" }).first().click();
+  await page.getByRole("searchbox", { name: /^Search panels/ }).fill(words);
+  await page.keyboard.press("Enter");
+  await expect(page.getByRole("menu")).toHaveCount(0);
+}
+
 /** Leave the 3D view of a page empty. */
 export const withoutScene = (page: Page): Promise<unknown> =>
   page.route(/\/3d\/(\?|$)/, (route) => route.fulfill({ contentType: "text/html", body: "" }));

@@ -1,4 +1,4 @@
-import { expect, test } from "./lab";
+import { expect, front, test } from "./lab";
 
 test("panels close at their tabs and come back; a layout is saved, renamed, deleted, reset, and stays with the page", async ({
   page,
@@ -15,14 +15,15 @@ test("panels close at their tabs and come back; a layout is saved, renamed, dele
   await expect(named("Voltage")).toHaveCount(0);
   await undo.click();
   await expect.poll(() => tabs.allTextContents()).toEqual(before);
-  await named("Events").click();
-  await named("Events").focus();
+  await front(page, "Log", "Events");
+  await named("Log").focus();
   await page.keyboard.press("Delete");
-  await expect(named("Events")).toHaveCount(0);
+  await expect(named("Log")).toHaveCount(0);
   await expect(page.locator("[role=tab]:focus")).toHaveAttribute("aria-selected", "true");
-  await named("Environment").click(); // another change comes between
+  await named("Device").click(); // another change comes between
   await undo.click();
-  await expect(named("Events")).toHaveAttribute("aria-selected", "true");
+  await expect(named("Log")).toHaveAttribute("aria-selected", "true");
+  await expect(page.getByRole("list", { name: "Events, newest first" })).toBeVisible();
   await expect.poll(async () => (await tabs.allTextContents()).sort()).toEqual(before.sort());
 
   const menu = async (item: string) => {
@@ -65,14 +66,14 @@ test("panels keep their sizes, and the open tab is in view, when the page opens 
   await openBench("lab");
   const sizes = () =>
     page.locator(".dv-groupview").evaluateAll((groups) => groups.map((g) => [g.clientWidth, g.clientHeight]));
-  const labs = page.getByRole("tab", { name: "Noise and memory" });
-  await labs.click();
+  const open = page.getByRole("tab", { name: "Published" });
+  await open.click();
   const notice = page.getByRole("region", { name: "Notice" }); // takes room of its own
   await expect(notice).toBeVisible();
   const before = await sizes();
-  for (const tab of ["Events", "Diagnosis"]) {
+  for (const tab of ["Log", "Diagnosis"]) {
     await page.reload();
-    await expect(labs).toBeInViewport({ ratio: 1 });
+    await expect(open).toBeInViewport({ ratio: 1 });
     await expect(notice).toBeVisible();
     await page.getByRole("tab", { name: tab, exact: true }).click(); // stores the layout again
   }

@@ -1,5 +1,6 @@
 import type { Page } from "@playwright/test";
 import { benchOf, expect, test } from "./classroom";
+import { front } from "./lab";
 import type { LabServer } from "./lab-server";
 
 const momentOf = (server: LabServer, page: Page) =>
@@ -16,7 +17,7 @@ test("links to an experiment and to a layout open the same tick, log, cursors an
   await server.advance(1);
   await page.getByRole("button", { name: "Pause" }).click();
   await expect(page.getByTestId("bench-state")).toHaveText("paused");
-  await page.getByRole("tab", { name: "Events", exact: true }).click();
+  await front(page, "Log", "Events");
   await page.getByRole("button", { name: "Measure" }).first().click();
   const cursor = page.getByRole("slider", { name: "Cursor A" });
   await cursor.press("ArrowLeft");
@@ -37,7 +38,7 @@ test("links to an experiment and to a layout open the same tick, log, cursors an
   expect(benchOf(other)).not.toBe(benchOf(page));
   expect(await momentOf(server, other)).toEqual(await momentOf(server, page));
   await expect(other.getByRole("region", { name: "Note of the link" })).toContainText("Watch the mass.");
-  await expect(other.getByRole("tab", { name: "Events", exact: true })).toHaveAttribute("aria-selected", "true");
+  await expect(other.getByRole("tab", { name: "Log", exact: true })).toHaveAttribute("aria-selected", "true");
   const log = other.getByRole("list", { name: "Events, newest first" });
   await expect(log.getByText(/added.mass/i).first()).toBeVisible();
   const same = other.getByRole("slider", { name: "Cursor A" });

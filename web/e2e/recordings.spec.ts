@@ -1,5 +1,5 @@
 import { benchOf } from "./classroom";
-import { expect, test } from "./lab";
+import { expect, front, test } from "./lab";
 
 interface Recording {
   id: string;
@@ -15,7 +15,7 @@ test("a bench is recorded with its past, replayed in a loop, compared and delete
   await openBench("lab");
   const bench = benchOf(page);
   await server.advance(2);
-  await page.getByRole("tab", { name: "Recordings" }).click();
+  await front(page, "Compare", "Recordings");
   const panel = page.getByRole("region", { name: "Recordings" });
   await expect(panel.getByText("Nothing recorded yet")).toBeVisible();
   const record = async (name: string, begins: string) => {
@@ -69,7 +69,7 @@ test("a bench is recorded with its past, replayed in a loop, compared and delete
   await expect(bar).toHaveCount(0);
   await expect.poll(() => benchOf(page)).toBe(bench);
 
-  await page.getByRole("tab", { name: "Recordings" }).click();
+  await front(page, "Compare", "Recordings");
   page.on("dialog", (dialog) => dialog.accept());
   for (const name of ["second", "first"]) {
     await panel.getByRole("button", { name: `Delete ${name}` }).click();
@@ -108,7 +108,7 @@ test("a replay has the sentences of the narrator as its captions, wherever it is
   await expect(caption).toBeVisible();
 
   await page.keyboard.press("3");
-  await page.getByRole("tab", { name: "Narrator" }).click();
+  await front(page, "Log", "Narrator");
   const ahead = page.getByRole("button", { name: /At 60.64/ });
   await expect(ahead).toHaveAttribute("data-ahead", "true");
   await ahead.click();

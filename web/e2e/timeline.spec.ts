@@ -1,5 +1,5 @@
 import { benchOf } from "./classroom";
-import { expect, test } from "./lab";
+import { expect, front, test } from "./lab";
 
 interface Bench {
   id: string;
@@ -64,14 +64,14 @@ test("the timeline goes back, branches begin there with one change each, and the
   await expect.poll(() => benchOf(page)).toBe(bench);
   await expect(page.getByTestId("bench-state")).toHaveText("running");
   const compared = timeline.getByRole("button", { name: "Compared with 1" });
-  const sheet = page.getByRole("dialog", { name: "Compare with other benches" });
+  const sheet = page.getByRole("region", { name: "Branches and runs" });
   await compared.click();
   await sheet.getByRole("button", { name: /^Close the bench with PID/ }).click();
   await expect(page.getByText(/^Behind, faded/)).toHaveCount(0);
   await expect.poll(all).not.toContain(pid);
   await page.keyboard.press("Escape");
 
-  await page.getByRole("tab", { name: "Events" }).click();
+  await front(page, "Log", "Events");
   await page.getByRole("button", { name: /^Branch without this: inject added_mass/ }).click();
   await expect.poll(() => benchOf(page)).not.toBe(bench);
   await expect.poll(() => ask()).toMatchObject({ state: "running", faults: [], origin: { bench } });

@@ -12,7 +12,7 @@ test("a tour drives the page and puts all back at its end, and by Escape while i
   const before = await tabs();
   const bubble = page.locator("#driver-popover-content");
   const next = bubble.getByRole("button", { name: "Next" });
-  const offer = page.getByRole("button", { name: "Show me round" });
+  const offer = page.getByRole("button", { name: "Take the tour" });
   const count = async (kind: "benches" | "runs") => (await server.rows(kind)).length;
   const asBefore = async () => {
     await expect(bubble).toHaveCount(0);

@@ -13,7 +13,8 @@ test("the benchmark shows each track: its question, its table best first, and it
   openBench,
 }) => {
   await openBench();
-  await page.keyboard.press("j");
+  await page.keyboard.press("u");
+  await page.getByRole("tab", { name: "Scores" }).click();
   const { results, costs } = await server.ask<Detail>("GET", "/benchmarks/mems-diag-1");
   for (const track of results) {
     await page.getByRole("combobox", { name: "Track" }).selectOption(track.id);

@@ -1,5 +1,6 @@
 import type { Page } from "@playwright/test";
 import { benchOf, expect, test } from "../classroom";
+import { front } from "../lab";
 import { expectFits } from "../screens";
 import { seriousViolations } from "../serious-violations";
 
@@ -26,7 +27,7 @@ const written = (points: number) => points.toFixed(1).replace("-", "\u2212");
 
 test("the panel lies right on every screen", async ({ page, openBench }) => {
   await openBench("lab");
-  await page.getByRole("tab", { name: "Games" }).click();
+  await front(page, "Lesson", "Games");
   for (const game of ["be-the-filter", "fool-the-bank"]) {
     await panelOf(page).getByRole("combobox", { name: "Game", exact: true }).selectOption(game);
     await expect(panelOf(page).getByText("How points are counted")).toBeVisible();
@@ -40,7 +41,7 @@ test("fool the bank: faults are tried and healed, and the answer tells the edge"
   server,
 }) => {
   await openBench("lab");
-  await page.getByRole("tab", { name: "Games" }).click();
+  await front(page, "Lesson", "Games");
   const panel = panelOf(page);
   await panel.getByRole("combobox", { name: "Game", exact: true }).selectOption("fool-the-bank");
   await fill(page, /^Seed/, "12");
@@ -74,7 +75,7 @@ test("a class: the table has everybody's points, and settings only once one's ow
     [ben, "1.2"],
   ] as const) {
     await one.goto(`${server.origin}/?bench=${benchOf(one)}&layout=lab`);
-    await one.getByRole("tab", { name: "Games" }).click();
+    await front(one, "Lesson", "Games");
     await fill(one, /^Mass/, mass);
     await panelOf(one).getByRole("button", { name: "Hand in" }).click();
     await expect(panelOf(one).getByText("4 attempts left")).toBeVisible();

@@ -1,6 +1,6 @@
 import type { Locator, Page } from "@playwright/test";
 import katex from "katex";
-import { expect, test } from "../lab";
+import { expect, front, test } from "../lab";
 import type { LabServer } from "../lab-server";
 
 const TRUE_DEG_S = 100;
@@ -82,7 +82,7 @@ test("four faults of a gyroscope are injected, found and healed from the page", 
   await expect(why.getByText("the winner raised by the least evidence")).toBeVisible();
 
   // the device the adaptive law is tuned for; it drives both axes
-  await page.getByRole("tab", { name: "Controllers" }).click();
+  await front(page, "Controller", "Choice");
   const controllers = page.locator("section[aria-label='Controllers']");
   await controllers.getByRole("radio", { name: "Adaptive control with rate estimate" }).click();
   await expect(controllers.getByText("Waits: Adaptive control with rate estimate")).toBeVisible();
@@ -127,7 +127,7 @@ test("a loop makes something of a fault, and controllers take over from the page
   await expect(faults.getByText("The device is healthy")).toBeVisible();
 
   await page.getByRole("tab", { name: "Forces" }).click();
-  await page.getByRole("tab", { name: "Controllers" }).click();
+  await front(page, "Controller", "Choice");
   const panel = page.locator("section[aria-label='Controllers']");
   const force = (axis: string) => () => reading(legend(page, "drive.x.force"), `drive ${axis} force`);
   const choose = async (title: string) => {
@@ -159,20 +159,20 @@ test("a rate that the motion does not tell is not trusted; the faults of any dev
   const alike = { frequency_x_hz: 663.676, frequency_y_hz: 663.676 };
   const rate = { kind: "constant", deg_per_s: 5000 };
   const id = await openDocument({ ...BENCH, device: { id: "gyro-a" }, rate, controllers: { adaptive_rate: alike } });
-  await page.getByRole("tab", { name: "Controllers" }).click();
+  await front(page, "Controller", "Choice");
   const controllers = page.locator("section[aria-label='Controllers']");
   const adaptive = page.getByRole("radio", { name: "Adaptive control with rate estimate" });
   const row = controllers.locator("[data-active='true']").filter({ has: adaptive });
   await adaptive.click();
   await server.advance(2);
   await expect(row).toContainText("not trusted");
-  await page.getByRole("tab", { name: "Events" }).click();
+  await front(page, "Log", "Events");
   await expect(page.getByText(/^adaptive_rate: not persistently exciting/)).toBeVisible();
   // another frequency along y, from its card, and the rate is told
   await controllers.getByRole("button", { name: "Parameters" }).last().click();
   await page.getByRole("textbox", { name: "Frequency y, Hz" }).fill("813.282");
   await page.keyboard.press("Enter");
-  await page.getByRole("tab", { name: "Controllers" }).click();
+  await front(page, "Controller", "Choice");
   await server.advance(2);
   await expect(row).not.toContainText("not trusted");
   // what the force to rebalance holds at this rate in 0.19 s swings past the travel when it lets go, so it is let little
@@ -205,7 +205,7 @@ test("of two gyroscopes one is made to swing as the other", async ({ page, serve
   const last = () => tilt.last().innerText();
   await later(server, first).toMatch(/^(4\.00|3\.99)/);
   await later(server, last).toMatch(/^(2\.00|1\.99)/);
-  await page.getByRole("tab", { name: "Controllers" }).click();
+  await front(page, "Controller", "Choice");
   await page.getByRole("radio", { name: "Sense-axis synchronisation" }).click();
   await later(server, first).toMatch(/^(2\.00|1\.99)/);
   await later(server, last).toMatch(/^(2\.00|1\.99)/);

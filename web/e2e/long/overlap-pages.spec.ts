@@ -14,7 +14,10 @@ const MENUS = [/: change bench$/, /: change it$/, "Add or close panels", "Choose
 const PAGES: [string, (page: Page) => Locator][] = [
   ["benchmark", (page) => page.getByRole("region", { name: "Curves" })],
   ["designer", (page) => page.getByRole("img", { name: /^Bode diagram/ })],
-  ["theory", (page) => page.getByText(/of the map is unstable/)],
+  ["theory", (page) => page.getByRole("heading", { name: "Equations" })],
+  ["theory&tab=positive-real", (page) => page.getByRole("img", { name: /^Real part/ })],
+  ["theory&tab=excitation", (page) => page.getByRole("heading", { name: "Does the input excite enough?" })],
+  ["theory&tab=stability", (page) => page.getByText(/of the map is unstable/)],
   ["gallery", (page) => page.getByRole("list", { name: "Experiments" }).getByRole("listitem").nth(5)],
 ];
 

@@ -1,5 +1,5 @@
 import type { Page } from "@playwright/test";
-import { expect, HYPOTHESES, test } from "../lab";
+import { expect, front, HYPOTHESES, openPanel, test } from "../lab";
 import type { LabServer } from "../lab-server";
 import { expectClean, expectReadable, isPhone, nameOf, SCHEMES, SCREENS, showOn } from "../screens";
 
@@ -13,8 +13,8 @@ const RESONATOR = {
 };
 const GYROSCOPE = { scenario: "gyro-diagnosis", set: { "readouts.allan": { kind: "allan" } } };
 
-/** What has a place in no laboratory, or in the research layout alone. */
-const ADDED = ["Controllers", "Parameter sets", "Scoreboard", "3D"];
+/** Views with a place in no laboratory, or in the research layout alone. */
+const ADDED = ["3D", "Spectrum", "Phase plane"];
 
 /** Open a bench that runs. */
 async function open(page: Page, server: LabServer, bench: object): Promise<string> {
@@ -58,14 +58,34 @@ async function walkDock(page: Page, key: string, added: string[], look: (where: 
   });
   await page.keyboard.press(key);
   for (const title of added) {
-    await page.getByRole("button", { name: "Add or close panels" }).last().click();
-    await page.getByRole("menuitem", { name: title, exact: true }).click();
+    await openPanel(page, title);
   }
   for (let rank = 0; ; rank += 1) {
     const names = await bringToFront(page, rank);
     if (!names) return;
     await look(names);
+    for (let view = 1; ; view += 1) {
+      const turned = await turnTo(page, view);
+      if (!turned) break;
+      await look(turned);
+    }
   }
+}
+
+/** Turn the panels in front to their views of a rank; their names, none when no panel has as many. */
+async function turnTo(page: Page, rank: number): Promise<string> {
+  const turned: string[] = [];
+  for (const choice of await page.locator(".dock-views, .dock-view[aria-haspopup=menu]").all()) {
+    const isRow = (await choice.getAttribute("role")) === "group";
+    if (!isRow) await choice.click();
+    const view = (isRow ? choice.getByRole("button") : page.getByRole("menuitem")).nth(rank);
+    if (await view.count()) {
+      turned.push(await view.innerText());
+      await view.click();
+    } else if (!isRow) await page.keyboard.press("Escape");
+    await expect(page.getByRole("menu")).toHaveCount(0);
+  }
+  return turned.join(", ");
 }
 
 /** Every panel that a phone can open. */
@@ -116,7 +136,7 @@ test("an Allan deviation that has gathered for long fits too", async ({ page, se
   for (const screen of SCREENS) {
     await showOn(page, screen);
     if (isPhone(screen)) await page.getByRole("combobox", { name: "Another panel" }).selectOption("allan");
-    else await page.getByRole("tab", { name: "Allan deviation" }).click();
+    else await front(page, "Rate");
     await expect(figures.nth(1)).toBeVisible();
     await expectClean(page, `Allan deviation at ${nameOf(screen)}`);
   }

@@ -1,6 +1,6 @@
 import type { Page } from "@playwright/test";
 import { benchOf } from "../classroom";
-import { expect, HYPOTHESES, test } from "../lab";
+import { expect, front, HYPOTHESES, test } from "../lab";
 import type { LabServer } from "../lab-server";
 import { expectClean, expectFits, expectReadable, SCHEMES, SCREENS, showOn } from "../screens";
 import { seriousViolations } from "../serious-violations";
@@ -8,9 +8,9 @@ import { seriousViolations } from "../serious-violations";
 const command = (server: LabServer, id: string, body: object) => server.ask("POST", `/benches/${id}/commands`, body);
 
 /** Open a panel of the lab layout. */
-const panelOf = async (page: Page, title: string) => {
-  await page.getByRole("tab", { name: title, exact: true }).click();
-  return page.getByRole("region", { name: title, exact: true });
+const panelOf = async (page: Page, panel: string, view: string) => {
+  await front(page, panel, view);
+  return page.getByRole("region", { name: view, exact: true });
 };
 
 for (const [device, scenario] of Object.entries({ resonator: "first-look", gyroscope: "gyro-diagnosis" }))
@@ -34,7 +34,10 @@ for (const [device, scenario] of Object.entries({ resonator: "first-look", gyros
 test("axe finds nothing serious on the pages Theory and Designer", async ({ page, server }) => {
   await page.request.get(server.url);
   for (const [address, whole] of Object.entries({
-    theory: page.getByText(/of the map is unstable/),
+    theory: page.getByRole("heading", { name: "Equations" }),
+    "theory&tab=positive-real": page.getByRole("img", { name: /^Real part/ }),
+    "theory&tab=excitation": page.getByRole("heading", { name: "Does the input excite enough?" }),
+    "theory&tab=stability": page.getByText(/of the map is unstable/),
     designer: page.getByRole("img", { name: /^Bode diagram/ }),
   })) {
     await page.goto(`${server.origin}/?page=${address}`);
@@ -62,7 +65,7 @@ test("parameter sets, recordings and their comparison fit every screen", async (
   await command(server, bench, { kind: "step", ticks: 1000 });
   for (const name of ["first", "second"])
     await server.ask("POST", `/benches/${bench}/recordings`, { name, past_ticks: 500, ticks: 0 });
-  const panel = await panelOf(page, "Recordings");
+  const panel = await panelOf(page, "Compare", "Recordings");
   await panel.getByRole("button", { name: "Compare second with another" }).click();
   await panel.getByRole("button", { name: "Compare", exact: true }).first().click();
   await expect(panel.getByRole("status")).toHaveText(/^Pass/);
@@ -81,7 +84,7 @@ test("the narrator fits every screen, before anything is said and with a verdict
   await expectFits(page, "a verdict as a caption", "section[aria-label='What happens now']");
   await command(server, id, { kind: "step", ticks: 6900 });
   await page.keyboard.press("3");
-  await page.getByRole("tab", { name: "Narrator" }).click();
+  await front(page, "Log", "Narrator");
   await expect(page.getByRole("list", { name: "What the narrator says" }).getByRole("listitem")).toHaveCount(15);
   await expectClean(page, "the panel of the narrator", "ol[aria-label^='What the narrator']");
   for (const scheme of SCHEMES)
@@ -105,7 +108,7 @@ test("a branch, its menu, the past and the sheet that compares benches fit", asy
 
   const timeline = page.getByRole("region", { name: "Timeline" });
   await timeline.getByRole("button", { name: "Compare" }).click();
-  const sheet = page.getByRole("dialog", { name: "Compare with other benches" });
+  const sheet = page.getByRole("region", { name: "Branches and runs" });
   for (const [n, source] of [`b ${other}`, `h ${run}`].entries()) {
     await sheet.getByRole("combobox", { name: "Add" }).selectOption(source);
     await expect(sheet.getByRole("listitem")).toHaveCount(n + 1);
@@ -137,7 +140,8 @@ test("a claim fits a desk and a phone once it is judged", async ({ page, server 
   const { id } = await server.ask<{ id: string }>("POST", "/benches", { scenario, paused: true });
   await page.request.get(server.url);
   await page.goto(`${server.origin}/?bench=${id}&layout=lab`);
-  const claims = await panelOf(page, "Claims");
+  await front(page, "Published");
+  const claims = page.getByRole("region", { name: "Claims" });
   await command(server, id, { kind: "step", ticks: 10_000 });
   await expect(claims.getByRole("listitem", { name: "effort ratio: holds as printed" })).toBeVisible();
   await expectFits(page, "the claims", "section[aria-label='Claims']", "claims");

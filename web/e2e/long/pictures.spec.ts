@@ -1,6 +1,6 @@
 import { readFileSync } from "node:fs";
 import type { Locator, Page } from "@playwright/test";
-import { expect, HYPOTHESES, inWords, pictureOf, test } from "../lab";
+import { expect, front, HYPOTHESES, inWords, openPanel, pictureOf, test } from "../lab";
 
 test.use({ colorScheme: "dark" });
 
@@ -59,9 +59,9 @@ test("spectrum, phase plane and lanes are kept with titled axes, and lanes with 
   server,
 }) => {
   await openBench("lab");
-  const front = async (tab: string) => {
-    await page.getByRole("tab", { name: tab, exact: true }).click();
-    return page.getByRole("region", { name: tab, exact: true });
+  const scope = async (view: string) => {
+    await openPanel(page, view);
+    return page.getByRole("region", { name: view, exact: true });
   };
   const lanes = page.getByRole("region", { name: "Diagnosis by kalman" });
   await page.getByRole("button", { name: /^Inject \+5.*Added mass$/ }).click();
@@ -73,7 +73,7 @@ test("spectrum, phase plane and lanes are kept with titled axes, and lanes with 
   expect(told).toEqual(expect.arrayContaining(HYPOTHESES.map(({ name }) => inWords(name))));
   expect(told.some((text) => /^at [\d\s.]+\sms: .*mass/i.test(text))).toBe(true);
 
-  const spectrum = await front("Spectrum");
+  const spectrum = await scope("Spectrum");
   await expect(spectrum.getByText(/^Strongest/)).toBeVisible();
   expect(await svgOf(page, spectrum)).toEqual(
     expect.arrayContaining(["frequency, kHz", "amplitude", "1\u00a0µm", "100\u00a0nm"]),
@@ -83,12 +83,10 @@ test("spectrum, phase plane and lanes are kept with titled axes, and lanes with 
   // twice the pixels of the drawing, from the header
   expect(png.readUInt32BE(16)).toBe(2 * 960);
 
-  const phase = await front("Phase plane");
+  const phase = await scope("Phase plane");
   await phase.getByRole("button", { name: "Use the planar plant" }).click();
   await expect(phase.getByRole("button", { name: "Use the planar plant" })).toHaveCount(0);
-  await front("Spectrum");
   await server.advance(1); // the map belongs to a plant that has run
-  await front("Phase plane");
   await expect(phase.getByText(/a slow drive folds/)).toBeVisible();
   const plane = await svgOf(page, phase);
   expect(plane).toContain("unstable");
@@ -112,9 +110,11 @@ test("Bode diagrams, charts of a campaign and plots of theory are kept, in light
   expect(bode).not.toMatch(/#56b4e9|#262e37|#e8ecf1/i);
 
   await page.keyboard.press("t");
+  await page.getByRole("tab", { name: "Positive real" }).click();
   const real = page.getByRole("region", { name: "Positive real" });
   await expect(real.getByRole("img", { name: /^Real part/ })).toBeVisible();
   expect(await svgOf(page, real)).toEqual(expect.arrayContaining(["ω, rad per unit of time", "Re G(jω)", "Im G(jω)"]));
+  await page.getByRole("tab", { name: "Stability" }).click();
   const map = page.getByRole("region", { name: "Instability map" });
   await expect(map.getByText(/of the map is unstable/)).toBeVisible();
   expect(await svgOf(page, map)).toContain("adaptation gain");
@@ -136,9 +136,9 @@ test("Bode diagrams, charts of a campaign and plots of theory are kept, in light
 
 test("a race, what adapts, aliases and a swept sine are kept", async ({ page, openBench, server }) => {
   await openBench("lab", { "diagnosers.imm": { kind: "imm", hypotheses: HYPOTHESES } });
-  const front = async (tab: string) => {
-    await page.getByRole("tab", { name: tab, exact: true }).click();
-    return page.getByRole("region", { name: tab, exact: true });
+  const viewOf = async (panel: string, view: string) => {
+    await front(page, panel, view);
+    return page.getByRole("region", { name: view, exact: true });
   };
   const race = page
     .locator("div", { has: page.getByRole("combobox", { name: "Diagnosers shown" }) })
@@ -151,20 +151,21 @@ test("a race, what adapts, aliases and a swept sine are kept", async ({ page, op
   expect(field).toEqual(expect.arrayContaining(["truth", "kalman", "imm", "time of the device, ms"]));
   expect(field).toContain("probabilities, stacked from 0 to 1");
 
-  const adaptation = await front("Adaptation");
+  const adaptation = await viewOf("Controller", "Adaptation");
   const canvas = "section[aria-label='Adaptation'] canvas";
   const blank = await pictureOf(page, canvas);
   await server.advance(1);
   await expect.poll(() => pictureOf(page, canvas)).not.toBe(blank);
   expect(await svgOf(page, adaptation)).toEqual(expect.arrayContaining(["now", "ideal", "time of the device, ms"]));
 
-  const hypotheses = await front("Hypotheses");
+  const hypotheses = await viewOf("Diagnosis", "Hypotheses");
   await expect(hypotheses.getByRole("img", { name: /in the complex plane/ })).toBeVisible();
   expect(await svgOf(page, hypotheses)).toEqual(
     expect.arrayContaining(["real part of the motion", "distance of the closest pair"]),
   );
 
-  const sweep = await front("Swept sine");
+  await front(page, "Frequency response");
+  const sweep = page.getByRole("region", { name: "Frequency response", exact: true });
   await sweep.getByRole("button", { name: "Sweep the device" }).click();
   await expect(sweep.getByRole("row", { name: /^Resonance/ })).toBeVisible();
   expect(await svgOf(page, sweep)).toEqual(expect.arrayContaining(["magnitude re static, dB", "frequency, Hz"]));

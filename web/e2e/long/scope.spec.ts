@@ -1,5 +1,5 @@
 import type { Locator, Page } from "@playwright/test";
-import { expect, test } from "../lab";
+import { expect, openPanel, test } from "../lab";
 import { SCREENS, showOn } from "../screens";
 
 /** What a scope lacks at first sight: its axis of time, one row of names, traces that fill it. */
@@ -114,7 +114,7 @@ function outOfSquare(canvas: HTMLCanvasElement): number {
 
 test("the phase plane is square at any width", async ({ page, server, openBench }) => {
   await openBench();
-  await page.getByRole("tab", { name: "Phase plane" }).click();
+  await openPanel(page, "Phase plane");
   for (const width of [1366, 1920, 820]) {
     await page.setViewportSize({ width, height: 768 });
     await server.advance(1);

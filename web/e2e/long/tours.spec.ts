@@ -77,5 +77,5 @@ test("every tour drives the page, does what it says, and puts all back, at its e
   expect(await runs()).toEqual(ran);
 
   await page.setViewportSize({ width: 390, height: 844 });
-  await expect(page.getByRole("button", { name: "Show me round" })).toHaveCount(0);
+  await expect(page.getByRole("button", { name: "Take the tour" })).toHaveCount(0);
 });

@@ -5,7 +5,7 @@ import { ApiError } from "../api/client";
 import { may, useMe } from "../api/me";
 import { useLecture } from "../bench/lecture";
 import { benchInAddress, inAddress, openBench, showBench } from "../bench/open-bench";
-import { pageInAddress, useView } from "../bench/view-store";
+import { pageInAddress, tabInAddress, useView } from "../bench/view-store";
 import { View3dHost } from "../panels/view3d/view3d-host";
 import { useBench } from "../stream/bench-store";
 import { closeReason } from "../stream/close-reason";
@@ -81,7 +81,7 @@ export function App() {
   useEffect(() => {
     start();
     const back = () => {
-      useView.setState({ page: pageInAddress() });
+      useView.setState({ page: pageInAddress(), tab: tabInAddress() });
       const id = benchInAddress();
       if (may("teach") && id && id !== useBench.getState().bench?.id) showBench(id);
     };

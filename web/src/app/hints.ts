@@ -83,7 +83,7 @@ function ofAxes({ controllers }: Shown): Hint[] {
   return [
     {
       id: "rate",
-      text: "change the angular rate under Controllers, and watch the estimate follow",
+      text: "change the angular rate under Controller, and watch the estimate follow",
       isDone: (event) => sets(event, "rate") && byHand(event),
     },
     ...(controllers.length > 1

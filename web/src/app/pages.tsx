@@ -1,7 +1,6 @@
 import {
   IconChartHistogram,
   IconLayoutDashboard,
-  IconListNumbers,
   IconMathFunction,
   IconPhoto,
   IconRulerMeasure,
@@ -11,11 +10,10 @@ import type { ComponentType, ReactNode } from "react";
 import { may, type Right } from "../api/me";
 import type { Me } from "../api/types";
 import type { PageName } from "../bench/view-store";
-import { BenchmarkPage } from "../benchmark/benchmark-page";
 import { ClassPage } from "../class/class-page";
 import { Designer } from "../designer/designer";
 import { GalleryPage } from "../gallery/gallery-page";
-import { RunsPage } from "../runs/runs-page";
+import { Runs } from "../runs/runs";
 import { Theory } from "../theory/theory";
 import { Workspace } from "./workspace";
 
@@ -58,18 +56,10 @@ export const PAGES: Record<PageName, PageKind> = {
   },
   runs: {
     name: "Runs",
-    title: "Headless runs and campaigns",
+    title: "Headless runs, campaigns, and the scores of the diagnosers",
     icon: <IconChartHistogram size={ICON} />,
     key: "u",
-    needs: "teach",
-    component: RunsPage,
-  },
-  benchmark: {
-    name: "Scores",
-    title: "Benchmark: how soon and how honestly diagnosers notice a fault",
-    icon: <IconListNumbers size={ICON} />,
-    key: "j",
-    component: BenchmarkPage,
+    component: Runs,
   },
   designer: {
     name: "Design",

@@ -23,11 +23,11 @@ export function PanelBody({ view, params, setParams }: PanelProps & { view: View
         </EmptyState>
       ) : playing && !kind.whileBlind ? (
         <EmptyState title="Hidden while the game is played">
-          The server hides what this panel shows until you have handed in for the last time in Lesson, Games.
+          The server hides what this panel shows until you have handed in for the last time in Lesson › Games.
         </EmptyState>
       ) : blind && !kind.whileBlind ? (
         <EmptyState title="Hidden while you look for the fault">
-          The server hides what this panel shows until you answer in Lesson, Hidden fault.
+          The server hides what this panel shows until you answer in Lesson › Hidden fault.
         </EmptyState>
       ) : replay && kind.changes ? (
         <EmptyState title="The past cannot be changed">

@@ -1,7 +1,7 @@
-import { Menu, TextInput } from "@mantine/core";
+import { Menu } from "@mantine/core";
 import { IconPlus } from "@tabler/icons-react";
 import type { DockviewGroupPanel, IDockviewPanel } from "dockview-react";
-import { useRef, useState } from "react";
+import { type KeyboardEvent, useState } from "react";
 import { useShallow } from "zustand/react/shallow";
 import { addPanel, addScope, closePanel, showPanel } from "../bench/dock";
 import { hasSeveral, type PanelName, VIEWS } from "../bench/panel-views";
@@ -26,17 +26,9 @@ export function PanelMenu({
   activePanel: IDockviewPanel | undefined;
 }) {
   const [query, setQuery] = useState("");
-  const search = useRef<HTMLInputElement>(null);
   const entries = useEntries(query);
   return (
-    <Menu
-      position="bottom-end"
-      shadow="md"
-      width={360}
-      returnFocus
-      onOpen={() => setTimeout(() => search.current?.focus())}
-      onClose={() => setQuery("")}
-    >
+    <Menu position="bottom-end" shadow="md" width={360} returnFocus>
       <Menu.Target>
         <button
           type="button"
@@ -48,17 +40,14 @@ export function PanelMenu({
         </button>
       </Menu.Target>
       <Menu.Dropdown className={styles.menu}>
-        <TextInput
-          ref={search}
+        <Menu.Search
           size="xs"
           className={styles.search}
           aria-label="Search panels, views and signals"
           placeholder="Search panels, views, signals"
           value={query}
           onChange={(event) => setQuery(event.currentTarget.value)}
-          onKeyDown={(event) => {
-            if (event.key === "Enter") entries[0]?.run();
-          }}
+          onKeyDown={openFirst}
         />
         {entries.map(({ key, title, about, run }) => (
           <Menu.Item key={key} onClick={run}>
@@ -108,6 +97,13 @@ function useEntries(query: string): Entry[] {
   const all = [...panels, ...views, ...scopes];
   const found = (entry: Entry, part: "title" | "about") => entry[part].toLowerCase().includes(wanted);
   return [...all.filter((e) => found(e, "title")), ...all.filter((e) => !found(e, "title") && found(e, "about"))];
+}
+
+/** Enter opens the first entry; once the arrows have marked another, the menu itself opens that. */
+function openFirst({ key, currentTarget }: KeyboardEvent<HTMLInputElement>): void {
+  const menu = currentTarget.closest("[role=menu]");
+  if (key === "Enter" && !menu?.querySelector("[data-menu-active]"))
+    menu?.querySelector<HTMLElement>("[role=menuitem]")?.click();
 }
 
 const openPanel = (panel: PanelName): void => void addPanel(VIEWS[panel][0]);

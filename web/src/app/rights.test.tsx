@@ -71,9 +71,9 @@ it("gives a student who looks at a bench that is shown to all nothing that chang
 });
 
 it.each([
-  ["teacher", ["Bench", "Class", "Gallery", "Runs", "Scores", "Design", "Theory"]],
-  ["student", ["Bench", "Gallery", "Scores", "Design", "Theory"]],
-  ["watcher", ["Bench", "Gallery", "Scores", "Design", "Theory"]],
+  ["teacher", ["Bench", "Class", "Gallery", "Runs", "Design", "Theory"]],
+  ["student", ["Bench", "Gallery", "Runs", "Design", "Theory"]],
+  ["watcher", ["Bench", "Gallery", "Runs", "Design", "Theory"]],
 ] as const)("offers a %s the pages there are for them", (role, names) => {
   be(role);
   mount(<Rail />);

@@ -41,8 +41,8 @@ function Share() {
     );
   return (
     <EmptyState title="Answer first">
-      A link holds all that was done on this bench, what is hidden too. Give your answer in Blind diagnosis, or end the
-      game in Games, then share.
+      A link holds all that was done on this bench, what is hidden too. Give your answer in Lesson › Hidden fault, or
+      end the game in Lesson › Games, then share.
     </EmptyState>
   );
 }

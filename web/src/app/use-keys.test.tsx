@@ -178,7 +178,6 @@ it.each([
   ["m", "class"],
   ["g", "designer"],
   ["t", "theory"],
-  ["j", "benchmark"],
 ])("the key %s goes to its page, and back", async (key, page) => {
   const { user } = mountKeys();
   await user.keyboard(key);

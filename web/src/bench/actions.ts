@@ -89,7 +89,7 @@ async function record(): Promise<void> {
       for (const id of from.recording) await api.stopRecording(from.id, id);
       notifications.show({
         title: "Recorded",
-        message: `${may("teach") ? "Replay, download or compare" : "Download"} it in the Recordings panel.`,
+        message: `${may("teach") ? "Replay, download or compare" : "Download"} it under Compare › Recordings.`,
       });
     } else {
       await api.record(from.id, { name: from.title.slice(0, 100) || "recording", layout: layoutNow() ?? null });

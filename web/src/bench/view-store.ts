@@ -10,12 +10,20 @@ const CHOSEN = "combbench.layout.chosen";
 export type CardId = string;
 
 /** What the page shows: the live bench, or what is done around it. */
-const PAGE_NAMES = ["bench", "class", "gallery", "runs", "benchmark", "designer", "theory"] as const;
+const PAGE_NAMES = ["bench", "class", "gallery", "runs", "designer", "theory"] as const;
 
 export type PageName = (typeof PAGE_NAMES)[number];
 
+/** Pages of earlier links, and where their contents are now. */
+const MOVED: Record<string, { page: PageName; tab: string }> = {
+  benchmark: { page: "runs", tab: "scores" },
+  scores: { page: "runs", tab: "scores" },
+};
+
 interface ViewStore {
   page: PageName;
+  /** The tab of the page in front, if the address names one. */
+  tab: string | undefined;
   /** A built-in one, or the name of one of one's own. */
   layout: string;
   card: CardId;
@@ -42,6 +50,7 @@ export const LECTURE_PX = 15;
 /** How this page looks at the bench; says nothing about the bench itself. */
 export const useView = create<ViewStore>(() => ({
   page: pageInAddress(),
+  tab: tabInAddress(),
   layout: firstLayout(),
   card: "diagnosers.kalman",
   sample: undefined,
@@ -69,16 +78,35 @@ export function chooseLayout(layout: string): void {
 
 /** The page named in the address. */
 export function pageInAddress(): PageName {
-  const asked = new URLSearchParams(window.location.search).get("page");
-  return PAGE_NAMES.find((name) => name === asked) ?? "bench";
+  const asked = inAddress("page");
+  return MOVED[asked]?.page ?? PAGE_NAMES.find((name) => name === asked) ?? "bench";
+}
+
+/** The tab of the page named in the address. */
+export function tabInAddress(): string | undefined {
+  return MOVED[inAddress("page")]?.tab ?? (inAddress("tab") || undefined);
+}
+
+function inAddress(name: "page" | "tab"): string {
+  return new URLSearchParams(window.location.search).get(name) ?? "";
+}
+
+/** Show a tab of the page; the address names it. */
+export function showTab(tab: string): void {
+  const url = new URL(window.location.href);
+  url.searchParams.set("page", useView.getState().page);
+  url.searchParams.set("tab", tab);
+  window.history.replaceState(null, "", url);
+  useView.setState({ tab });
 }
 
 /** Go to a page; the address names it, and back works. */
 export function setPage(page: PageName): void {
   if (page === useView.getState().page) return;
   const url = new URL(window.location.href);
+  url.searchParams.delete("tab");
   if (page === "bench") url.searchParams.delete("page");
   else url.searchParams.set("page", page);
   window.history.pushState(null, "", url);
-  useView.setState({ page });
+  useView.setState({ page, tab: undefined });
 }

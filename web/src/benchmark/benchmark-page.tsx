@@ -22,9 +22,9 @@ export function BenchmarkPage() {
   const [track, setTrack] = useState("known");
   const chosen = value?.results.find((one) => one.id === track);
   return (
-    <main className={styles.page}>
+    <div className={styles.page}>
       <header className={styles.top}>
-        <h1>Benchmark</h1>
+        <h2>Benchmark</h2>
         {value && (
           <NativeSelect
             size="xs"
@@ -41,7 +41,7 @@ export function BenchmarkPage() {
       ) : (
         !error && <EmptyState title="Opening the benchmark">The table comes from the server.</EmptyState>
       )}
-    </main>
+    </div>
   );
 }
 

@@ -58,9 +58,9 @@ export function RunsPage() {
     [choose, again],
   );
   return (
-    <main className={styles.page}>
+    <div className={styles.page}>
       <section className={styles.start} aria-label="Start a run">
-        <h1>Runs and campaigns</h1>
+        <h2>Start a run</h2>
         <StartForm onStarted={started} />
       </section>
       <section className={styles.jobs} aria-label="Runs and campaigns">
@@ -100,6 +100,6 @@ export function RunsPage() {
           </EmptyState>
         )}
       </section>
-    </main>
+    </div>
   );
 }

@@ -1,5 +1,6 @@
 import { screen, waitFor, within } from "@testing-library/react";
 import { beforeEach, expect, it } from "vitest";
+import { useView } from "../bench/view-store";
 import { Refusal, server } from "../testing/fake-server";
 import { recordedAnswer } from "../testing/recorded";
 import { mount } from "../testing/render";
@@ -7,6 +8,7 @@ import { EquationIndex } from "./equation-index";
 import { Excitation } from "./excitation";
 import { Instability } from "./instability";
 import { PositiveReal } from "./positive-real";
+import { Theory } from "./theory";
 
 const { positiveReal, persistency, map } = await recordedAnswer("theory");
 const catalog = await recordedAnswer("catalog");
@@ -87,4 +89,21 @@ it("counts the equations, finds those with several words, and those with errata"
   expect(within(status).queryByText(/of them/)).not.toBeInTheDocument();
   await user.type(screen.getByLabelText("Search equations"), "no such thing");
   expect(await screen.findByText("No equation has all these words.")).toBeVisible();
+});
+
+it("has the equations in front, as its links of old, and each calculator in a tab that the address names", async () => {
+  window.history.replaceState(null, "", "/?page=theory");
+  useView.setState({ page: "theory" });
+  const { user } = mount(<Theory />);
+  expect(screen.getByRole("heading", { name: "Equations" })).toBeVisible();
+  for (const [tab, region, address] of [
+    ["Positive real", "Positive real", "positive-real"],
+    ["Excitation", "Persistent excitation", "excitation"],
+    ["Stability", "Instability map", "stability"],
+  ]) {
+    await user.click(screen.getByRole("tab", { name: tab }));
+    expect(screen.getByRole("region", { name: region })).toBeVisible();
+    expect(screen.queryByRole("heading", { name: "Equations" })).not.toBeInTheDocument();
+    expect(window.location.search).toBe(`?page=theory&tab=${address}`);
+  }
 });

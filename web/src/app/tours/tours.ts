@@ -104,7 +104,7 @@ export const TOURS: Tour[] = [
     steps: [
       {
         title: "The list of faults",
-        text: "Faults that act are on top. Open a row to choose how strong, when, and as a step, a ramp or now and then.",
+        text: "Active faults are on top. Open a row to choose severity, start, and step, ramp or intermittent.",
         at: panel("faults"),
       },
       {
@@ -126,7 +126,7 @@ export const TOURS: Tour[] = [
       },
       {
         title: "Heal all",
-        text: "All faults are gone again. Events lists who did what, and at which tick.",
+        text: "All faults are gone again. Log lists every command with its tick, and who gave it.",
         at: panel("events"),
         does: async () => {
           await send({ heal: "all" } as Command);
@@ -198,13 +198,13 @@ export const TOURS: Tour[] = [
       },
       {
         title: "The score",
-        text: "How often the bank was right, how late, and what it mixed up with what.",
+        text: "The share of correct verdicts, their delays, and which hypotheses the bank confuses.",
         at: panel("scores"),
         does: show("scores"),
       },
       {
         title: "Find one yourself",
-        text: "Blind diagnosis hides a fault. You commit an answer, then the page reveals the truth.",
+        text: "Lesson › Hidden fault hides a fault. You commit an answer, then the page reveals the truth.",
         at: panel("blind"),
         does: show("blind"),
       },

@@ -31,7 +31,7 @@ export function BlindPanel() {
   if (question?.game)
     return (
       <EmptyState title="A game is played on this bench">
-        Hand in or end it under Games; then a fault can be hidden here.
+        Hand in or end it under Lesson › Games; then a fault can be hidden here.
       </EmptyState>
     );
   const rule = value && <p className={exercise.text}>{value.rule}</p>;

@@ -39,8 +39,8 @@ export function OnBench({ card }: { card: BlockCard }) {
         </Button>
       )}
       {card.family === "sense" && (
-        <Button size="compact-sm" variant="default" onClick={() => showPanel("environment")}>
-          Choose it under Environment
+        <Button size="compact-sm" variant="default" onClick={() => showPanel("sensor")}>
+          Choose it under Device › Sensor
         </Button>
       )}
       {card.family === "reference" && (

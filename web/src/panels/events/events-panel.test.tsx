@@ -1,5 +1,6 @@
 import { screen, within } from "@testing-library/react";
 import { beforeEach, expect, it } from "vitest";
+import { useAnnouncements } from "../../bench/announce";
 import { server } from "../../testing/fake-server";
 import { connect } from "../../testing/fake-transport";
 import { recordedBench } from "../../testing/recorded";
@@ -53,4 +54,32 @@ it("offers a teacher, and no student, a branch without a change", async () => {
   mount(<EventsPanel />);
   expect(screen.getByText(injected.text)).toBeVisible();
   expect(screen.queryByRole("button", { name })).not.toBeInTheDocument();
+});
+
+it("copies the command behind an event for a shell, a headless run and Python", async () => {
+  const board = connect(bench);
+  const { user } = mount(<EventsPanel />);
+  await board.events(events);
+  const list = within(screen.getByRole("list", { name: "Events, newest first" }));
+  const copy = list.getByRole("button", { name: /^Copy: inject added_mass/ });
+  expect(list.getAllByRole("button", { name: /^Copy: / })).toHaveLength(events.filter((e) => e.command).length);
+  for (const [item, text] of [
+    ["REST, with curl", `http://localhost:3000/api/v1/benches/${bench.id}/commands`],
+    ["Command line, headless", 'combbench run first-look --set \'events=[{at_sample = 1800, fault = "added_mass",'],
+    ["Python", `Bench(lab, "${bench.id}").command(fault="added_mass", severity=0.05)`],
+  ]) {
+    await user.click(copy);
+    await user.click(await screen.findByRole("menuitem", { name: item }));
+    expect(await navigator.clipboard.readText()).toContain(text);
+  }
+  expect(useAnnouncements.getState().polite).toBe("Command copied.");
+});
+
+it("offers no headless run for a command that runs the bench", async () => {
+  const board = connect(bench);
+  const { user } = mount(<EventsPanel />);
+  await board.events(events);
+  await user.click(screen.getByRole("button", { name: "Copy: stepped 200 ticks" }));
+  const items = await screen.findAllByRole("menuitem");
+  expect(items.map((item) => item.textContent)).toEqual(["REST, with curl", "Python"]);
 });

@@ -10,6 +10,7 @@ import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatMoment } from "../../ui/format";
 import { jump } from "../../ui/hover";
+import { CopyMenu } from "./copy-menu";
 import styles from "./events.module.css";
 import { WhoDid } from "./who-did";
 
@@ -53,7 +54,7 @@ function Events() {
   if (events.length === 0)
     return (
       <EmptyState title="Nothing has happened yet">
-        Every command, fault, finding and trip will stand here with its tick.
+        Commands, faults, findings and trips are listed here with their ticks.
       </EmptyState>
     );
   return (
@@ -75,6 +76,7 @@ function Events() {
               <span className={styles.text}>{event.text}</span>
               <span className={styles.actor}>{event.actor}</span>
             </button>
+            {event.command && <CopyMenu event={event} />}
             {canBranch(event) && (
               <ActionIcon
                 size="sm"

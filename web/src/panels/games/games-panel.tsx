@@ -39,7 +39,7 @@ export function GamesPanel() {
   if (isBlind)
     return (
       <EmptyState title="A fault is hidden on this bench">
-        Answer or give up under Blind diagnosis; then you can play here.
+        Answer or give up under Lesson › Hidden fault; then you can play here.
       </EmptyState>
     );
   const card = cards.value?.find(({ id }) => id === game);

@@ -18,7 +18,7 @@ const FIELDS: { name: Field; label: string; unit: string; minimum: number; maxim
   { name: "cycles", label: "Cycles of each tone", unit: "", minimum: 2, maximum: 1000, integer: true },
 ];
 
-/** Swept sine: the device as it is now, faults and air included, measured on a copy of the bench. */
+/** Frequency response: the device as it is now, faults and air included, measured on a copy of the bench. */
 export function IdentifyPanel() {
   const id = useBench((s) => s.bench?.id);
   const [how, setHow] = useState(START);
@@ -42,7 +42,7 @@ export function IdentifyPanel() {
     </Button>
   );
   return (
-    <section className={styles.panel} aria-label="Swept sine">
+    <section className={styles.panel} aria-label="Frequency response">
       <div className={styles.bar}>
         {FIELDS.map(({ name, ...field }) => (
           <span key={name} className={styles.field}>
