@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from pydantic import BaseModel
+from pydantic import BaseModel, Field
 
 from core.block import Block, Context, Equation
 from core.diagnose.chance import chi_square
@@ -21,6 +21,8 @@ HELD = 20.0
 TOLERANCE = 1e-3
 STEPS = 64
 """Steps whose delays are kept."""
+EXITS = 8
+"""False switches that are kept, the newest."""
 SPAN = 25.0
 """Verdicts over which residuals are averaged, with weights that fall off exponentially."""
 MOST_NIS = 100.0
@@ -82,7 +84,7 @@ class Score(Block):
         hypotheses: Records[Factors] = tail()
 
     class State(Record):
-        """The present truth and how far it is found, counters, delays, average residuals, confusion row by row."""
+        """The present truth and how far it is found, counters, delays, newest exits, average residuals, confusion."""
 
         truth: float
         run: float
@@ -97,6 +99,8 @@ class Score(Block):
         started: float
         was_right: float
         delays: Vector = vector(STEPS)
+        exit_tick: Vector = vector(EXITS)
+        exit_samples: Vector = vector(EXITS)
         average: Vector = vector(LANE)
         confusion: Vector = tail()
 
@@ -205,8 +209,15 @@ def count(p: Turns, s: Score.State, x: Score.Ports, n: int, truth: int) -> None:
                 s.delays[int(s.steps) - 1] = delay
     else:
         s.run = 0.0
-        if s.found != 0.0 and s.was_right != 0.0:
-            s.exits += 1.0
+        if s.found != 0.0:
+            if s.was_right != 0.0:
+                s.exits += 1.0
+                for i in range(EXITS - 1):
+                    s.exit_tick[i] = s.exit_tick[i + 1]
+                    s.exit_samples[i] = s.exit_samples[i + 1]
+                s.exit_tick[EXITS - 1] = x.tick
+                s.exit_samples[EXITS - 1] = 0.0
+            s.exit_samples[EXITS - 1] += p.every
     s.was_right = 1.0 if right else 0.0
     if truth >= 0 and winner >= 0:
         s.confusion[truth * n + winner] += 1.0
@@ -225,6 +236,13 @@ def count(p: Turns, s: Score.State, x: Score.Ports, n: int, truth: int) -> None:
     x.unexplained = 1.0 if least > p.limit else 0.0
 
 
+class FalseSwitch(BaseModel):
+    """A diagnoser that had found the truth turns to another verdict for some samples."""
+
+    tick: int
+    samples: int = Field(description="Until it said the truth again, or the truth changed")
+
+
 class Scores(BaseModel):
     """What has been scored so far."""
 
@@ -234,6 +252,7 @@ class Scores(BaseModel):
     truth: int
     correct_fraction: float
     false_switches: int
+    last_false_switches: list[FalseSwitch] = Field([], description="The newest of them")
     delays: list[int | None]
     since_tick: int
     nis: float | None
@@ -245,6 +264,8 @@ class Scores(BaseModel):
 def read(s: Score.State, names: list[str], winner: int, unexplained: bool) -> Scores:
     """Read the counters of a score block; winner and whether no hypothesis fits are among its signals."""
     n = len(names)
+    kept = min(int(s.exits), EXITS)
+    exits = zip(s.exit_tick[EXITS - kept :], s.exit_samples[EXITS - kept :], strict=True)
     delays = s.delays[: min(int(s.steps), STEPS)].tolist()
     return Scores(
         names=names,
@@ -253,6 +274,7 @@ def read(s: Score.State, names: list[str], winner: int, unexplained: bool) -> Sc
         truth=int(s.truth) if s.started else -1,
         correct_fraction=float(s.right / max(s.total, 1.0)),
         false_switches=int(s.exits),
+        last_false_switches=[FalseSwitch(tick=int(tick), samples=int(samples)) for tick, samples in exits],
         delays=[None if value < 0 else int(value) for value in delays],
         since_tick=int(s.since),
         nis=float(s.nis_sum / s.nis_count) if s.nis_sum else None,  # 0 from first to last where the bank says none

@@ -27,19 +27,20 @@ from tests.lab import do, fault, make, play
 from tests.physics.bank import BENCH, NOMINAL, signals
 
 
-def by_definition(winner: np.ndarray, truth: np.ndarray) -> tuple[float, int, list[int | None]]:
-    """Share of right samples; exits from the truth once found; delay to the first of 20 right in a row."""
+def by_definition(winner: np.ndarray, truth: np.ndarray) -> tuple[float, list[tuple[int, int]], list[int | None]]:
+    """Share of right samples; exits from the truth once found, with their lengths; delay to the first of 20 right."""
     edges = [0, *(np.flatnonzero(np.diff(truth)) + 1), len(truth)]
     delays: list[int | None] = []
-    exits = 0
+    exits: list[tuple[int, int]] = []
     for start, end in itertools.pairwise(edges):
         right = winner[start:end] == truth[start:end]
         found = next((i for i in range(len(right) - 19) if right[i : i + 20].all()), None)
         if truth[start] >= 0:
             delays.append(found)
         if found is not None:
-            after = right[found:]
-            exits += int(np.sum(after[:-1] & ~after[1:]))
+            turns = np.flatnonzero(np.diff(right[found:])) + 1
+            ends = [*turns, len(right) - found]
+            exits += [(int(start + found + ends[i]), int(ends[i + 1] - ends[i])) for i in range(0, len(turns), 2)]
     return float(np.mean(winner == truth)), exits, delays
 
 
@@ -76,7 +77,8 @@ def test_score_against_its_definition(data):
     found = score.read(s, ["0", "1", "2"], winner[-1], False)
     share, exits, delays = by_definition(np.array(winner), np.array(truth))
     assert found.correct_fraction == pytest.approx(share)
-    assert found.false_switches == exits
+    assert found.false_switches == len(exits)
+    assert [(one.tick, one.samples) for one in found.last_false_switches] == exits[-score.EXITS :]
     assert found.delays == delays
     confusion = np.zeros((3, 3), int)
     for who, what in zip(winner, truth, strict=True):
@@ -93,7 +95,7 @@ def test_scenario_scores_against_their_definition():
     share, exits, delays = by_definition(winner, truth)
     metrics = result.metrics
     assert metrics["diagnosis.kalman.correct_fraction"] == share
-    assert metrics["diagnosis.kalman.false_switches"] == exits
+    assert metrics["diagnosis.kalman.false_switches"] == len(exits)
     assert [metrics[f"diagnosis.kalman.delay_samples.{i}"] for i in range(1, 8)] == delays
     assert metrics["diagnosis.kalman.mean_delay_samples"] == pytest.approx(np.mean(delays[1:]))
     found = [entry for entry in result.board.log if entry.kind == "recognised"]

@@ -95,3 +95,17 @@ def test_what_is_published_without_a_number_is_no_window_around_our_figure():
 def test_a_claim_beyond_the_text_is_ours():
     beyond = [one for one in library() if one.head.source.startswith("beyond the text") or one.id.startswith("gyro-")]
     assert beyond and [one.id for one in beyond if one.verdict != "ours"] == []
+
+
+def test_titles_count_what_is_on_the_bench():
+    numbers = {word: n for n, word in enumerate("two three four five six seven eight nine ten".split(), 2)}
+    counted = []
+    for scenario in library():
+        on_the_bench = {
+            "controllers": {len(scenario.spec.controllers)},
+            "filters": {len(getattr(one.params, "hypotheses", ())) for one in scenario.spec.diagnosers.values()},
+        }
+        for word, noun in re.findall(rf"({'|'.join(numbers)}) (controllers|filters)", scenario.head.title):
+            counted.append((scenario.id, noun))
+            assert numbers[word] in on_the_bench[noun], f"{scenario.id} has {on_the_bench[noun]} {noun}"
+    assert counted == [("first-look", "filters"), ("first-look", "controllers")]

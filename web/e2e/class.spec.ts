@@ -1,4 +1,5 @@
 import { benchOf, classLine, expect, join, PHONE, test } from "./classroom";
+import { chooseMore } from "./lab";
 
 test("a class runs from its code to its end", async ({ page, server, elsewhere }) => {
   page.on("dialog", (dialog) => dialog.accept());
@@ -106,8 +107,7 @@ test("a teacher shows one bench on all screens, arranges the panels and asks for
 
   const layout = () => new URL(ada.url()).searchParams.get("layout");
   const before = layout();
-  await page.getByRole("button", { name: "Layout", exact: true }).click();
-  await page.getByRole("menuitem", { name: /^Save, rename or share/ }).click();
+  await chooseMore(page, /^Save, rename or share/);
   await page.getByRole("button", { name: "Give it to all of Tuesday" }).click();
   await page.keyboard.press("Escape");
   await expect(classLine(ada)).toContainText("Your teacher has arranged your panels: lab.");

@@ -1,6 +1,6 @@
 import { readFile } from "node:fs/promises";
 import { benchOf } from "./classroom";
-import { expect, front, test } from "./lab";
+import { chooseMore, expect, front, test } from "./lab";
 
 test("a controller is switched, keys act after lists and fields, a wrong value is refused in words, all is saved", async ({
   page,
@@ -47,10 +47,7 @@ test("a controller is switched, keys act after lists and fields, a wrong value i
   await noise.press("Enter");
   await expect(page.getByRole("alert").filter({ hasText: "at least 0" })).toBeVisible();
 
-  const [download] = await Promise.all([
-    page.waitForEvent("download"),
-    page.getByRole("button", { name: /^Save what happened/ }).click(),
-  ]);
+  const [download] = await Promise.all([page.waitForEvent("download"), chooseMore(page, /^Save this run/)]);
   expect(await readFile(await download.path(), "utf8")).toMatch(/sensors?\..*noise_um/);
   expect(download.suggestedFilename()).toMatch(/^first-look-\d+\.toml$/);
 });
@@ -66,7 +63,7 @@ test("a fault, a healing, a closed panel and a reset are taken back and made aga
   const body = page.locator("body");
   await faults.getByRole("button", { name: /^Inject .*Added mass/ }).click();
   await expect(acting).toBeVisible();
-  await page.getByRole("button", { name: /^Undo: Added mass \+5/ }).click();
+  await chooseMore(page, /^Undo: Added mass \+5/);
   await expect(acting).toBeHidden();
   await body.press("Control+y");
   await expect(acting).toBeVisible();

@@ -90,6 +90,12 @@ export async function openPanel(page: Page, words: string): Promise<void> {
   await expect(page.getByRole("menu")).toHaveCount(0);
 }
 
+/** Do something of the menu of all that is not about running. */
+export async function chooseMore(page: Page, name: string | RegExp): Promise<void> {
+  await page.getByRole("button", { name: "More", exact: true }).click();
+  await page.getByRole("menuitem", { name }).click();
+}
+
 /** Leave the 3D view of a page empty. */
 export const withoutScene = (page: Page): Promise<unknown> =>
   page.route(/\/3d\/(\?|$)/, (route) => route.fulfill({ contentType: "text/html", body: "" }));

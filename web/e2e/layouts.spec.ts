@@ -1,4 +1,4 @@
-import { expect, front, test } from "./lab";
+import { chooseMore, expect, front, test } from "./lab";
 
 test("panels close at their tabs and come back; a layout is saved, renamed, deleted, reset, and stays with the page", async ({
   page,
@@ -26,10 +26,7 @@ test("panels close at their tabs and come back; a layout is saved, renamed, dele
   await expect(page.getByRole("list", { name: "Events, newest first" })).toBeVisible();
   await expect.poll(async () => (await tabs.allTextContents()).sort()).toEqual(before.sort());
 
-  const menu = async (item: string) => {
-    await page.getByRole("button", { name: "Layout", exact: true }).click();
-    await page.getByRole("menuitem", { name: item }).click();
-  };
+  const menu = (item: string) => chooseMore(page, item);
   const sheet = page.getByRole("dialog", { name: "Layouts" });
   await named("Voltage").locator(".dock-close").click();
   await menu("Save, rename or share");

@@ -90,7 +90,7 @@ test("no menu overlaps or is cut, on any screen", async ({ page, openBench }) =>
   await openBench("lab");
   for (const screen of SCREENS.filter((screen) => !isPhone(screen))) {
     await showOn(page, screen);
-    for (const name of [...MENUS, screen.width < 1400 ? "More" : "Layout"]) {
+    for (const name of [...MENUS, "Step", "More"]) {
       await page
         .getByRole("button", { name, exact: typeof name === "string" })
         .or(page.getByTitle(name))

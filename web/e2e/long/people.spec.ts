@@ -1,4 +1,5 @@
 import { benchOf, classLine, expect, PHONE, test } from "../classroom";
+import { chooseMore } from "../lab";
 import { LabServer } from "../lab-server";
 import { expectClean, expectFits, showOn } from "../screens";
 import { seriousViolations } from "../serious-violations";
@@ -83,8 +84,7 @@ test("the pages of people who share a bench fit their screens", async ({
   await expectClean(ada, "a bench that was handed over, on a phone");
   await page.keyboard.press("m");
 
-  await page.getByRole("button", { name: "More" }).click();
-  await page.getByRole("menuitem", { name: /^Share this experiment/ }).click();
+  await chooseMore(page, /^Share this experiment/);
   await expect(page.getByRole("img", { name: /^QR code of/ })).toBeVisible();
   expect(await seriousViolations(page)).toEqual([]);
   await page.getByRole("button", { name: "Make a link" }).click();

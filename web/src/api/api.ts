@@ -2,6 +2,7 @@ import { ApiError, client, data } from "./client";
 import type {
   AliasSource,
   BodeOf,
+  Command,
   CompareWith,
   Design,
   Document,
@@ -27,6 +28,8 @@ const parameterSet = (set_id: string) => ({ params: { path: { set_id } } });
 const link = (link_id: string) => ({ params: { path: { link_id } } });
 const threshold = (threshold_id: string) => ({ params: { path: { threshold_id } } });
 const sweep = (sweep_id: string) => ({ params: { path: { sweep_id } } });
+const command = (id: string, body: Command) =>
+  data(client.POST("/api/v1/benches/{bench_id}/commands", { ...bench(id), body }));
 
 /** The REST calls of the page. */
 export const api = {
@@ -128,20 +131,16 @@ export const api = {
   benches: async () => (await data(client.GET("/api/v1/benches"))).benches,
   bench: (id: string) => data(client.GET("/api/v1/benches/{bench_id}", bench(id))),
   createBench: (body: NewBench) => data(client.POST("/api/v1/benches", { body })),
+  /** Do something to a bench that is not on the page. */
+  command,
   /** Let a bench that has just been made run as fast as it goes. */
-  runFast: (id: string) =>
-    data(
-      client.POST("/api/v1/benches/{bench_id}/commands", { ...bench(id), body: { kind: "time_scale", value: null } }),
-    ),
-  start: (id: string) =>
-    data(client.POST("/api/v1/benches/{bench_id}/commands", { ...bench(id), body: { kind: "start" } })),
-  reset: (id: string, values: Record<string, unknown>) =>
-    data(client.POST("/api/v1/benches/{bench_id}/commands", { ...bench(id), body: { kind: "reset", values } })),
+  runFast: (id: string) => command(id, { kind: "time_scale", value: null }),
+  start: (id: string) => command(id, { kind: "start" }),
+  reset: (id: string, values: Record<string, unknown>) => command(id, { kind: "reset", values }),
   events: (id: string) => data(client.GET("/api/v1/benches/{bench_id}/events", bench(id))),
   nameBench: (id: string, name: string) =>
     data(client.PATCH("/api/v1/benches/{bench_id}", { ...bench(id), body: { name } })),
-  seek: (id: string, tick: number) =>
-    data(client.POST("/api/v1/benches/{bench_id}/commands", { ...bench(id), body: { kind: "seek", tick } })),
+  seek: (id: string, tick: number) => command(id, { kind: "seek", tick }),
   reopenBench: (id: string) => data(client.POST("/api/v1/benches/{bench_id}/reopen", bench(id))),
   links: async (kind: "experiment" | "layout") =>
     (await data(client.GET("/api/v1/links", { params: { query: { kind } } }))).links,

@@ -4596,6 +4596,19 @@ export interface components {
             said: string;
         };
         /**
+         * FalseSwitch
+         * @description A diagnoser that had found the truth turns to another verdict for some samples.
+         */
+        FalseSwitch: {
+            /** Tick */
+            tick: number;
+            /**
+             * Samples
+             * @description Until it said the truth again, or the truth changed
+             */
+            samples: number;
+        };
+        /**
          * FastForward
          * @description Run as fast as possible for a while, then go on at the time scale.
          *
@@ -7187,6 +7200,12 @@ export interface components {
             correct_fraction: number;
             /** False Switches */
             false_switches: number;
+            /**
+             * Last False Switches
+             * @description The newest of them
+             * @default []
+             */
+            last_false_switches?: components["schemas"]["FalseSwitch"][];
             /** Delays */
             delays: (number | null)[];
             /** Since Tick */

@@ -4,7 +4,6 @@ import { useMe } from "../api/me";
 import type { ViewName } from "../bench/panel-views";
 import { server } from "../testing/fake-server";
 import { connect } from "../testing/fake-transport";
-import { resize } from "../testing/jsdom-gaps";
 import { recordedAnswer, recordedBench } from "../testing/recorded";
 import { be, mount } from "../testing/render";
 import { Header } from "./header/header";
@@ -26,48 +25,55 @@ const company = {
 };
 
 beforeEach(() => {
-  window.innerWidth = 2000;
-  resize(2000, 900);
   server.on("GET", "/catalog", catalog);
   server.on("GET", "/classes", { classes: [] });
+  server.on("GET", "/devices", { devices: [], geometry: [] });
 });
 
-const DRIVES = ["Pause", "Step one tick", "Step one period", "Reset", "÷2: half as fast", "×2: twice as fast"];
+const DRIVES = ["Pause", "Step", "÷2: half as fast", "×2: twice as fast"];
+const CHANGES = [/^Undo/, /^Redo/, /^Record/];
 const TEACHES = [/^Fork/, /^Keep this moment/, /^Share/];
 
-function mountHeader(role: "teacher" | "student" | "watcher") {
+/** The header of a person, with its menu of all that is not about running. */
+async function mountHeader(role: "teacher" | "student" | "watcher") {
   be(role, { bench: bench.id, class_name: "Tuesday" });
   connect({ ...bench, state: "running", company } as typeof bench);
-  mount(<Header />);
+  const { user } = mount(<Header />);
+  await user.click(screen.getByRole("button", { name: "More" }));
+  await screen.findByRole("menuitem", { name: /^Keyboard/ });
 }
 
-it("gives a teacher every button", () => {
-  mountHeader("teacher");
-  for (const name of [...DRIVES, ...TEACHES, /^Undo/, /^Redo/, /^Record/, /^Save/, /^Keyboard/])
-    expect(screen.getByRole("button", { name })).toBeVisible();
+const items = (names: RegExp[]) => names.flatMap((name) => screen.queryAllByRole("menuitem", { name }));
+const buttons = () => DRIVES.flatMap((name) => screen.queryAllByRole("button", { name }));
+
+it("gives a teacher every button and every item", async () => {
+  await mountHeader("teacher");
+  expect(buttons()).toHaveLength(DRIVES.length);
+  for (const name of [...CHANGES, ...TEACHES, /^Save this run/, /^Lab layout/, /^Present/])
+    expect(screen.getByRole("menuitem", { name })).toBeVisible();
 });
 
-it("gives a student what drives, and nothing that a teacher alone may use", () => {
-  mountHeader("student");
-  for (const name of [...DRIVES, /^Undo/, /^Redo/, /^Record/])
-    expect(screen.getByRole("button", { name })).toBeVisible();
-  for (const name of TEACHES) expect(screen.queryByRole("button", { name })).not.toBeInTheDocument();
+it("gives a student what drives, and nothing that a teacher alone may use", async () => {
+  await mountHeader("student");
+  expect(buttons()).toHaveLength(DRIVES.length);
+  expect(items(CHANGES)).toHaveLength(CHANGES.length);
+  expect(items(TEACHES)).toEqual([]);
 });
 
-it("gives a watcher nothing that changes the bench", () => {
-  mountHeader("watcher");
-  for (const name of [...DRIVES, ...TEACHES, /^Undo/, /^Redo/, /^Record/])
-    expect(screen.queryByRole("button", { name })).not.toBeInTheDocument();
+it("gives a watcher nothing that changes the bench", async () => {
+  await mountHeader("watcher");
+  expect(buttons()).toEqual([]);
+  expect(items([...CHANGES, ...TEACHES])).toEqual([]);
   expect(screen.getByText("You watch this bench")).toBeVisible();
   for (const box of screen.getAllByRole("combobox")) expect(box).toBeDisabled();
 });
 
 it("gives a student who looks at a bench that is shown to all nothing that changes it", async () => {
-  mountHeader("student");
+  await mountHeader("student");
   be("student", { bench: "own", shown: bench.id });
   act(() => useMe.setState({ at: bench.id }));
   await waitFor(() => expect(screen.queryByRole("button", { name: "Pause" })).not.toBeInTheDocument());
-  expect(screen.queryByRole("button", { name: /^Undo/ })).not.toBeInTheDocument();
+  expect(items(CHANGES)).toEqual([]);
 });
 
 it.each([

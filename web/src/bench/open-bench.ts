@@ -68,15 +68,20 @@ export async function openReplay(recording: string): Promise<void> {
 }
 
 /**
- * Begin the bench again from tick 0 with values written over it, as a bench of its own.
+ * Show a new bench in place of the one on the page.
  *
- * The one before is paused if nobody else watches it, so that going back finds it as it was.
+ * The one before is paused if no other page watches it, so that going back finds it as it was.
  */
+export async function openInstead(id: string): Promise<void> {
+  const { bench } = useBench.getState();
+  if (bench?.state === "running" && (bench.watchers ?? 0) <= 1) await send({ kind: "pause" });
+  openOwn(id);
+}
+
+/** Begin the bench again from tick 0 with values written over it, as a bench of its own. */
 export async function openVariant(set: Record<string, unknown>, said: string): Promise<void> {
   const { bench } = useBench.getState();
   if (!bench) return;
-  const made = await api.variant(bench.id, set);
-  if (bench.state === "running" && (bench.watchers ?? 0) <= 1) await send({ kind: "pause" });
-  openOwn(made.id);
+  await openInstead((await api.variant(bench.id, set)).id);
   announce(said);
 }

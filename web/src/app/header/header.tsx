@@ -3,8 +3,10 @@ import { BenchMenu } from "./bench-menu";
 import { CompanyMenu } from "./company";
 import { ControllerSelect } from "./controller-select";
 import { DeviceClock } from "./device-clock";
+import { DeviceSelect } from "./device-select";
 import styles from "./header.module.css";
 import { RunControls } from "./run-controls";
+import { SensorSelect } from "./sensor-select";
 import { StateBadge } from "./state-badge";
 import { TimeScaleControl } from "./time-scale-control";
 import { Tools } from "./tools";
@@ -18,6 +20,8 @@ export function Header() {
       <img src="./comb.svg" alt="" width="26" height="26" />
       <h1 className={styles.title}>CombBench</h1>
       <BenchMenu />
+      <DeviceSelect />
+      <SensorSelect />
       <ControllerSelect />
       <div className={styles.middle}>
         {drives && <RunControls />}

@@ -15,16 +15,32 @@ const bench = {
 
 const button = (name: string) => screen.getByRole("button", { name });
 
-it.each([
-  ["Run", { kind: "start" }],
-  ["Step one tick", { kind: "step", ticks: 1 }],
-  ["Step one period", { kind: "step_period" }],
-  ["Reset", { kind: "reset" }],
-])("%s sends its command", async (name, command) => {
+it("runs on Run", async () => {
   const board = connect(bench);
   const { user } = mount(<RunControls />);
-  await user.click(button(name));
+  await user.click(button("Run"));
+  expect(board.commands).toEqual([{ kind: "start" }]);
+});
+
+it.each([
+  [/^One tick/, { kind: "step", ticks: 1 }],
+  [/^One drive period/, { kind: "step_period" }],
+  [/^Reset to the start/, { kind: "reset" }],
+])("sends the command of %s in the menu of steps", async (name, command) => {
+  const board = connect(bench);
+  const { user } = mount(<RunControls />);
+  await user.click(button("Step"));
+  await user.click(await screen.findByRole("menuitem", { name }));
   expect(board.commands).toEqual([command]);
+});
+
+it("says that a drive has no period, and offers no step of one", async () => {
+  connect({ ...bench, drive_period_ticks: null });
+  const { user } = mount(<RunControls />);
+  await user.click(button("Step"));
+  const item = await screen.findByRole("menuitem", { name: /^One drive period/ });
+  expect(item).toBeDisabled();
+  expect(item).toHaveTextContent("The drive has no period of its own");
 });
 
 it("pauses a bench that runs, and runs one that has paused", async () => {

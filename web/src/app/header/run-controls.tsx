@@ -1,16 +1,11 @@
-import { ActionIcon, Tooltip } from "@mantine/core";
-import {
-  IconPlayerPauseFilled,
-  IconPlayerPlayFilled,
-  IconPlayerSkipForward,
-  IconPlayerTrackNext,
-  IconRotate,
-} from "@tabler/icons-react";
-import type { ReactNode } from "react";
+import { Button, Menu } from "@mantine/core";
+import { IconChevronDown, IconPlayerPauseFilled, IconPlayerPlayFilled } from "@tabler/icons-react";
 import { actions } from "../../bench/actions";
 import { useBench } from "../../stream/bench-store";
 import { useBoardState } from "../../stream/freshness";
 import styles from "./header.module.css";
+
+const STEP_WORDS = "One tick, one drive period, or back to the start";
 
 /** Run, pause, step a tick, step a period, reset. */
 export function RunControls() {
@@ -21,43 +16,41 @@ export function RunControls() {
   const period = useBench((s) => s.bench?.drive_period_ticks ?? null);
   return (
     <div className={styles.run}>
-      <Tooltip label={running ? "Pause (space)" : "Run (space)"}>
-        <ActionIcon
-          size={38}
-          radius="xl"
-          variant="filled"
-          color="accent"
-          aria-label={running ? "Pause" : "Run"}
-          disabled={stuck}
-          onClick={actions.toggle}
-        >
-          {running ? <IconPlayerPauseFilled size={20} /> : <IconPlayerPlayFilled size={20} />}
-        </ActionIcon>
-      </Tooltip>
-      <Small label="One tick ( . )" name="Step one tick" onClick={actions.stepTick} disabled={stuck}>
-        <IconPlayerSkipForward size={18} />
-      </Small>
-      <Small
-        label={period === null ? "The drive has no period of its own" : "One drive period ( , )"}
-        name="Step one period"
-        onClick={actions.stepPeriod}
-        disabled={stuck || period === null}
+      <Button
+        size="compact-md"
+        w="6.5em"
+        leftSection={running ? <IconPlayerPauseFilled size={17} /> : <IconPlayerPlayFilled size={17} />}
+        title={running ? "Pause (space)" : "Run (space)"}
+        disabled={stuck}
+        onClick={actions.toggle}
       >
-        <IconPlayerTrackNext size={18} />
-      </Small>
-      <Small label="Reset to the start (shift R)" name="Reset" onClick={actions.reset} disabled={unknown}>
-        <IconRotate size={18} />
-      </Small>
+        {running ? "Pause" : "Run"}
+      </Button>
+      <Menu position="bottom-start" shadow="md">
+        <Menu.Target>
+          <Button
+            size="compact-md"
+            variant="subtle"
+            px={6}
+            rightSection={<IconChevronDown size={13} />}
+            title={STEP_WORDS}
+            disabled={unknown}
+          >
+            Step
+          </Button>
+        </Menu.Target>
+        <Menu.Dropdown>
+          <Menu.Item disabled={stuck} onClick={actions.stepTick}>
+            One tick ( . )
+          </Menu.Item>
+          <Menu.Item disabled={stuck || period === null} onClick={actions.stepPeriod}>
+            One drive period ( , )
+            {period === null && <small className={styles.menuNote}>The drive has no period of its own</small>}
+          </Menu.Item>
+          <Menu.Divider />
+          <Menu.Item onClick={actions.reset}>Reset to the start (Shift R)</Menu.Item>
+        </Menu.Dropdown>
+      </Menu>
     </div>
-  );
-}
-
-function Small(props: { label: string; name: string; disabled?: boolean; onClick(): void; children: ReactNode }) {
-  return (
-    <Tooltip label={props.label}>
-      <ActionIcon size={32} variant="subtle" aria-label={props.name} disabled={props.disabled} onClick={props.onClick}>
-        {props.children}
-      </ActionIcon>
-    </Tooltip>
   );
 }

@@ -217,11 +217,8 @@ export const TOURS: Tour[] = [
     steps: [
       {
         title: "From live to headless",
-        text: "A bench keeps all that happens on it as a scenario. This button saves it; run again it gives the same bits.",
-        at: () =>
-          document.querySelector("[aria-label^='Save what happened']") ??
-          document.querySelector("[aria-label=More]") ??
-          undefined,
+        text: "A bench keeps all that happens on it as a scenario. This menu saves it; run again it gives the same bits.",
+        at: find("header [data-menu=more]"),
       },
       {
         title: "Runs and campaigns",

@@ -1,42 +1,24 @@
 import { Button, NativeSelect, Switch } from "@mantine/core";
-import { useRef, useState } from "react";
-import { fits } from "../../api/fits";
-import type { BlockCard, Document } from "../../api/types";
-import { useCatalog } from "../../api/use-catalog";
+import { useState } from "react";
+import type { Document } from "../../api/types";
 import { send } from "../../bench/send";
+import { BYPASS, feeds, useSensor } from "../../bench/sensor";
 import { useBench } from "../../stream/bench-store";
 import { Prose } from "../../ui/prose";
 import { Weaknesses } from "../../ui/weaknesses";
 import styles from "./device.module.css";
 
-const BYPASS = "ideal";
-
-/** Whether a sensor gives a displacement, so that a controller can be fed by it. */
-export const feeds = (sensor: BlockCard) => sensor.outputs.some((port) => port.name === "displacement");
-
 /** Which sensor feeds the controllers; the bypass is the ideal one, which sees the true displacement. */
 export function SensorChoice() {
-  const parameters = useBench((s) => s.bench?.parameters);
-  const axes = useBench((s) => s.bench?.axes) ?? [];
-  const { blocks } = useCatalog();
+  const all = useBench((s) => s.bench?.parameters.sensors) as Document | undefined;
+  const { kind, sensors, use } = useSensor();
   const [last, setLast] = useState("capacitive");
-  // What was chosen last counts until the board has answered: the next click is meant from there.
-  const [wanted, setWanted] = useState<string | undefined>(undefined);
-  const choice = useRef(0);
-  const kind = wanted ?? String((parameters?.sensor as Document | undefined)?.kind ?? BYPASS);
-  const sensors = blocks.filter((b) => b.family === "sense" && fits(b, axes));
-  const choices = sensors.filter(feeds);
   const chosen = sensors.find((b) => b.name === kind);
   const optical = sensors.filter((b) => !feeds(b));
-  const always = (name: string) =>
-    Boolean(((parameters?.sensors as Document | undefined)?.[name] as Document | undefined)?.always);
-  const use = async (name: string) => {
-    choice.current += 1;
-    const own = choice.current;
+  const always = (name: string) => Boolean((all?.[name] as Document | undefined)?.always);
+  const choose = (name: string) => {
     if (kind !== BYPASS) setLast(kind);
-    setWanted(name);
-    await send({ set: { "sensor.kind": name } }, `Sensor: ${sensors.find((b) => b.name === name)?.title ?? name}`);
-    if (own === choice.current) setWanted(undefined);
+    void use(name);
   };
   return (
     <>
@@ -46,8 +28,8 @@ export function SensorChoice() {
           size="xs"
           aria-label="Sensor that feeds the controllers"
           value={kind}
-          data={choices.map((b) => ({ value: b.name, label: b.title }))}
-          onChange={(event) => void use(event.currentTarget.value)}
+          data={sensors.filter(feeds).map((b) => ({ value: b.name, label: b.title }))}
+          onChange={(event) => choose(event.currentTarget.value)}
         />
         {sensors.some((b) => b.name === BYPASS) && (
           <Button
@@ -55,7 +37,7 @@ export function SensorChoice() {
             variant={kind === BYPASS ? "filled" : "default"}
             aria-pressed={kind === BYPASS}
             title="Feed the controllers with the true displacement"
-            onClick={() => void use(kind === BYPASS ? last : BYPASS)}
+            onClick={() => choose(kind === BYPASS ? last : BYPASS)}
           >
             Bypass
           </Button>

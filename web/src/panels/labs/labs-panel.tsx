@@ -6,7 +6,7 @@ import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { Knob } from "../../ui/knob";
-import { foundDelays, meanDelay } from "../lanes/delays";
+import { meanDelay } from "../lanes/delays";
 import { type Lab, type LabKnob, labsOf, memorySamples } from "./lab-knobs";
 import styles from "./labs.module.css";
 
@@ -107,7 +107,7 @@ function Outcome({ id }: { id: string }) {
   const score = useBench((s) => s.scores[id]);
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   if (!score) return null;
-  const mean = meanDelay(foundDelays(score.delays));
+  const mean = meanDelay(score.delays);
   return (
     <dl className={styles.outcome}>
       <div>

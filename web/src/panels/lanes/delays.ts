@@ -8,14 +8,15 @@ export interface TruthSwitch {
   delay: number | undefined;
   /** Whether the truth is among the hypotheses at all; if not, there is nothing to find. */
   findable: boolean;
+  /** No fault has acted yet; the delay is the time that the diagnoser takes to settle. */
+  isStartUp: boolean;
 }
 
-/** The delays of the changes that a diagnoser has found, in samples; without those that it named before they came. */
-export const foundDelays = (delays: readonly (number | null)[]): number[] => delays.flatMap((delay) => delay || []);
-
-/** The mean of some delays in samples; undefined without any. */
-export const meanDelay = (found: readonly number[]): number | undefined =>
-  found.length > 0 ? found.reduce((sum, d) => sum + d, 0) / found.length : undefined;
+/** The mean delay of the changes that a diagnoser found, in samples; its start-up and earlier verdicts do not count. */
+export function meanDelay([_startUp, ...delays]: readonly (number | null)[]): number | undefined {
+  const found = delays.flatMap((delay) => delay || []);
+  return found.length > 0 ? found.reduce((sum, d) => sum + d, 0) / found.length : undefined;
+}
 
 const NONE = "none of the hypotheses";
 
@@ -27,10 +28,12 @@ export function truthSwitches(events: readonly LogEntry[], diagnoser: string): T
   const [own, twin] = diagnoser.split(":").reverse();
   const told = events.filter((event) => event.kind === "truth_changed");
   const teller = !twin || told.some((e) => e.text.startsWith(`${own}:`)) ? own : told[0]?.text.split(":")[0];
+  const firstFault = events.find(({ kind }) => kind === "inject")?.tick ?? Number.POSITIVE_INFINITY;
   const found = told
     .filter((event) => event.text.startsWith(`${teller}:`))
-    .map(({ tick, new: label }): TruthSwitch => {
-      return { tick, label: String(label), delay: undefined, findable: label !== NONE };
+    .map(({ tick, new: label }, i): TruthSwitch => {
+      const isStartUp = i === 0 && tick < firstFault;
+      return { tick, label: String(label), delay: undefined, findable: label !== NONE, isStartUp };
     });
   const head = twin ? `${twin}: ${own} ` : `${own} `;
   for (const event of events) {
@@ -43,13 +46,13 @@ export function truthSwitches(events: readonly LogEntry[], diagnoser: string): T
 
 /**
  * Places by the delay of the latest change of the truth; equal delays share one. A diagnoser that has not found it has
- * none, and neither has one that said so before: a bank that never leaves "healthy" is not quick.
+ * none, and neither has one that said so before: a bank that never leaves "healthy" is not quick. A start-up is no race.
  */
 export function racePlaces(switches: Record<string, TruthSwitch[]>): Record<string, number> {
   const latest = Math.max(...Object.values(switches).map((list) => list.at(-1)?.tick ?? -1));
   const found = Object.entries(switches).flatMap(([id, list]) => {
     const last = list.at(-1);
-    return last && last.tick === latest && last.delay ? [{ id, delay: last.delay }] : [];
+    return last && last.tick === latest && last.delay && !last.isStartUp ? [{ id, delay: last.delay }] : [];
   });
   return Object.fromEntries(found.map(({ id, delay }) => [id, 1 + found.filter((f) => f.delay < delay).length]));
 }

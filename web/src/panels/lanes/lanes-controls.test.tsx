@@ -50,6 +50,33 @@ it("says the verdict in words, and how often it was right", () => {
   expect(figure("false switches")).toHaveTextContent("2");
 });
 
+it("calls the delay before any fault a start-up", async () => {
+  const board = connect(bench);
+  board.status(status);
+  mount(<LanesPanel />);
+  const fault = events.findIndex(({ kind }) => kind === "inject");
+  await board.events(events.slice(0, fault));
+  expect(figure("start-up")).toHaveTextContent(/^260\sµs$/);
+  await board.events(events.slice(fault));
+  expect(figure("delay")).toHaveTextContent(/^30\ssamples · 300\sµs$/);
+  expect(screen.queryByText("start-up")).not.toBeInTheDocument();
+});
+
+it("says when the last false switches were, and how long each lasted", () => {
+  const board = connect(bench);
+  const last_false_switches = [
+    { tick: 400, samples: 3 },
+    { tick: 1250, samples: 1 },
+  ];
+  board.status({ ...status, scores: { kalman: { ...score, false_switches: 5, last_false_switches } } });
+  mount(<LanesPanel />);
+  expect(figure("false switches")).toHaveTextContent(/^5last at 12\.500\sms, 1\ssample$/);
+  expect(figure("false switches")?.firstElementChild?.getAttribute("title")?.replace(/\s/g, " ")).toBe(
+    "The right verdict was left though nothing changed: 3 earlier " +
+      "at 4.000 ms (tick 400) for 3 samples, 30.0 µs at 12.500 ms (tick 1250) for 1 sample, 10.0 µs",
+  );
+});
+
 it("says by how much even the best hypothesis misses where none fits", async () => {
   const board = connect(bench);
   board.status({ ...status, scores: { kalman: { ...score, unexplained: true, least_nis: 9 } } });
@@ -117,7 +144,7 @@ it("races several diagnosers under one truth, with their delays and places", asy
   expect(last("second")).toHaveTextContent("450 µs2nd");
   expect(row("second")).toHaveTextContent("50.0 %");
   const mean = within(row("kalman")).getByText("mean delay").nextElementSibling;
-  expect(mean).toHaveTextContent("280 µs"); // of 26 and 30 samples
+  expect(mean).toHaveTextContent("300 µs"); // of 30 samples; those before them are the start-up
 });
 
 it("shows one of several diagnosers in full", async () => {

@@ -5,6 +5,7 @@ import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";
 import type { TruthSwitch } from "./delays";
+import { FalseSwitches } from "./false-switches";
 import styles from "./lanes.module.css";
 
 /** The figures of a diagnoser that are read from the last row. */
@@ -35,7 +36,7 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
         )}
       </div>
       <div>
-        <dt>delay</dt>
+        <dt title={last?.isStartUp ? START_UP : undefined}>{last?.isStartUp ? "start-up" : "delay"}</dt>
         <dd>{delayText(last, dtMs)}</dd>
       </div>
       <div>
@@ -44,11 +45,14 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
       </div>
       <div>
         <dt>false switches</dt>
-        <dd>{score?.false_switches ?? "–"}</dd>
+        <dd>{score ? <FalseSwitches score={score} /> : "–"}</dd>
       </div>
     </dl>
   );
 }
+
+/** The meaning of a start-up. */
+export const START_UP = "No fault has acted yet. This is the time that the diagnoser takes to settle.";
 
 /** Whether a verdict agrees with the truth; where no hypothesis is true, none is right. */
 export const isRight = ({ winner, truth, unexplained }: Score): boolean =>
@@ -59,6 +63,7 @@ function delayText(last: TruthSwitch | undefined, dtMs: number): string {
   if (!last.findable) return "not among the hypotheses";
   if (last.delay === undefined) return "not found yet";
   if (last.delay === 0) return "said before";
+  if (last.isStartUp) return formatSi(last.delay * dtMs, "ms", 3);
   return `${formatCount(last.delay, "sample")} · ${formatSi(last.delay * dtMs, "ms", 3)}`;
 }
 

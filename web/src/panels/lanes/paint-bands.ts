@@ -134,11 +134,12 @@ export function paintDelays(ctx: Pen, picture: LanesGround, x: (tick: number) =>
 }
 
 /** A delay in words, the longest first; the picture takes what fits. */
-function delayWords({ delay, findable }: TruthSwitch, dtMs: number): string[] {
+function delayWords({ delay, findable, isStartUp }: TruthSwitch, dtMs: number): string[] {
   if (!findable) return ["not among the hypotheses", "not among them", "none"];
   if (delay === undefined) return ["not found yet", "not yet"];
   if (delay === 0) return ["said before", "before"];
   const time = formatSi(delay * dtMs, "ms", 3);
+  if (isStartUp) return [`start-up ${time}`, time];
   return [
     `${formatCount(delay, "sample")} · ${time}`,
     `${formatNumber(delay, 0)} · ${time}`,

@@ -5,11 +5,12 @@ import { useView } from "../../bench/view-store";
 import { pickSample } from "../../bench/why";
 import type { Box, Look, Pen } from "../../picture/pen";
 import { useBench } from "../../stream/bench-store";
-import { formatNumber, formatPercent, formatSi } from "../../ui/format";
+import { formatPercent, formatSi } from "../../ui/format";
 import type { Contestant } from "./contestants";
-import { foundDelays, meanDelay, type TruthSwitch } from "./delays";
+import { meanDelay, type TruthSwitch } from "./delays";
+import { FalseSwitches } from "./false-switches";
 import { LaneCanvas, type LaneShown } from "./lane-canvas";
-import { FitsNone, isRight } from "./lanes-headline";
+import { FitsNone, isRight, START_UP } from "./lanes-headline";
 import { paintRow, type RaceShown } from "./paint-race";
 import styles from "./race.module.css";
 import type { LaneTime } from "./use-lane-time";
@@ -95,7 +96,7 @@ function Figures({ id, switches, place }: { id: string; switches: TruthSwitch[];
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   if (!score) return <dl className={styles.figures} />;
   const last = switches.at(-1);
-  const mean = meanDelay(foundDelays(score.delays));
+  const mean = meanDelay(score.delays);
   return (
     <dl className={styles.figures}>
       <div>
@@ -103,7 +104,7 @@ function Figures({ id, switches, place }: { id: string; switches: TruthSwitch[];
         <dd>{formatPercent(score.correct_fraction)}</dd>
       </div>
       <div>
-        <dt>last delay</dt>
+        <dt title={last?.isStartUp ? START_UP : undefined}>{last?.isStartUp ? "start-up" : "last delay"}</dt>
         <dd data-place={place}>
           {lastDelay(last, dtMs)}
           {place !== undefined && <b>{ORDINAL[place] ?? `${place}th`}</b>}
@@ -115,7 +116,9 @@ function Figures({ id, switches, place }: { id: string; switches: TruthSwitch[];
       </div>
       <div>
         <dt>false switches</dt>
-        <dd>{formatNumber(score.false_switches, 0)}</dd>
+        <dd>
+          <FalseSwitches score={score} />
+        </dd>
       </div>
     </dl>
   );

@@ -17,9 +17,17 @@ it("shows each diagnoser with its delays in samples and in time", () => {
   mount(<ScoreboardPanel />);
   const slow = { ...kalman, correct_fraction: 0.5, delays: [null, null, 10], false_switches: 3 };
   board.status({ scores: { kalman, slow_one: slow, none_found: { ...kalman, delays: [null] } } });
-  expect(cells("kalman")).toEqual(["97.75 %", "28.0samples, 280 µs", "0 of 2", "0"]);
+  expect(cells("kalman")).toEqual(["97.75 %", "30.0samples, 300 µsstart-up 260 µs", "0 of 2", "0"]);
   expect(cells("slow one")).toEqual(["50.00 %", "10.0samples, 100 µs", "2 of 3", "3"]);
   expect(cells("none found")).toEqual(["97.75 %", "–", "1 of 1", "0"]);
+});
+
+it("says when a diagnoser last left the right verdict, and for how long", () => {
+  const board = connect(bench);
+  mount(<ScoreboardPanel />);
+  const last_false_switches = [{ tick: 400, samples: 3 }];
+  board.status({ scores: { kalman: { ...kalman, false_switches: 1, last_false_switches } } });
+  expect(cells("kalman")[3]).toBe("1last at 4.000 ms, 3 samples");
 });
 
 it("shows the new score when it comes", () => {

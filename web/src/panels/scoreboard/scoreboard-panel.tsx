@@ -2,7 +2,9 @@ import { useBench } from "../../stream/bench-store";
 import { Confusion } from "../../ui/confusion";
 import { EmptyState } from "../../ui/empty-state";
 import { formatNumber, formatPercent, formatSi } from "../../ui/format";
-import { foundDelays, meanDelay } from "../lanes/delays";
+import { meanDelay } from "../lanes/delays";
+import { FalseSwitches } from "../lanes/false-switches";
+import { START_UP } from "../lanes/lanes-headline";
 import styles from "./scoreboard.module.css";
 
 /** Each diagnoser against the truth the bench knows. */
@@ -35,7 +37,8 @@ export function ScoreboardPanel() {
         <tbody>
           {entries.map(([id, score]) => {
             const missed = score.delays.filter((d) => d === null).length;
-            const mean = meanDelay(foundDelays(score.delays));
+            const mean = meanDelay(score.delays);
+            const [startUp] = score.delays;
             return (
               <tr key={id}>
                 <th scope="row">{id.replaceAll("_", " ")}</th>
@@ -43,11 +46,14 @@ export function ScoreboardPanel() {
                 <td>
                   {mean === undefined ? "–" : formatNumber(mean, 1)}
                   {mean !== undefined && <small>samples, {formatSi(mean * dtMs, "ms", 3)}</small>}
+                  {startUp && <small title={START_UP}>start-up {formatSi(startUp * dtMs, "ms", 3)}</small>}
                 </td>
                 <td>
                   {missed} of {score.delays.length}
                 </td>
-                <td>{formatNumber(score.false_switches, 0)}</td>
+                <td>
+                  <FalseSwitches score={score} />
+                </td>
               </tr>
             );
           })}
