@@ -21,6 +21,8 @@ from tests.scenarios.digests import OLDER
 
 NAMES = tuple(tracks())
 DEMONSTRATION = seed_list("demonstration", NAMES)
+DEMONSTRATED = "24de67b07cbee7a0d30a0b58d80c0cf17339ba99d35791fab9bdd4edea630901"
+"""Hash of all outputs on the seeds of the demonstration."""
 
 
 @pytest.fixture(scope="module")
@@ -34,6 +36,12 @@ def test_every_diagnoser_has_a_row_in_every_track_or_a_reason(table: results.Res
     assert there | out == {(unit, name) for unit in registry.blocks("diagnose") for name in NAMES}
     assert not there & out
     assert {unit for unit, _ in out} == {"axes_bank"} and all(one.reason for one in table.left_out)
+
+
+def test_cases_are_those_the_kept_table_was_measured_on(table: results.Results) -> None:
+    """Another digest says that devices, noise or diagnosers have changed: then the kept table is measured anew."""
+    bits = results.hash_of([row.digest for row in sorted(table.rows, key=lambda row: (row.track, row.unit))])
+    assert bits == DEMONSTRATED
 
 
 def test_a_diagnoser_alone_has_the_rows_it_has_beside_all_others(table: results.Results) -> None:
