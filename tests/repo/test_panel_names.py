@@ -69,7 +69,9 @@ def test_a_name_of_no_panel_is_found(text: str, names: list[str], panels: dict[s
 
 
 @pytest.mark.parametrize("places", [PLACES, PAGE])
-def test_each_panel_that_is_named_is_one_of_the_page(places: list[str], root: Path, panels: dict[str, set[str]]) -> None:
+def test_each_panel_that_is_named_is_one_of_the_page(
+    places: list[str], root: Path, panels: dict[str, set[str]]
+) -> None:
     paths = [path for place in places for path in root.glob(place) if path.name not in LEFT_OUT]
     assert len(paths) > 30
     texts = {path: path.read_text() for path in paths if not re.search(r"\.(test|fixture)\.", path.name)}

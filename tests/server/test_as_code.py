@@ -35,7 +35,8 @@ def curl(live: Live, text: str) -> Any:
     command, *words = shlex.split(text.replace("$COMBBENCH_TOKEN", TOKEN))
     assert command == "curl" and words[0::2][:3] == ["-H", "-H", "-d"] and len(words) == 7
     headers = dict(header.split(": ", 1) for header in (words[1], words[3]))
-    return live.anonymous().post(words[6], content=words[5], headers=headers)
+    with live.anonymous() as client:
+        return client.post(words[6], content=words[5], headers=headers)
 
 
 @pytest.fixture

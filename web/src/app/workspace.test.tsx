@@ -122,7 +122,7 @@ it.each([flat, gyroscope])("opens every view of a bench by the name that links a
     const panel = panelWith(view);
     expect(panel?.api.isActive, view).toBe(true);
     expect(panel && viewOf(panel)).toBe(view);
-    expect(screen.getByText(`This is the view ${view}`)).toBeInTheDocument();
+    expect(screen.getAllByText(`This is the view ${view}`).length).toBeGreaterThan(0);
   }
 });
 

@@ -29,10 +29,9 @@ export function asCode(event: Pick<LogEntry, "tick" | "command">, source: Source
 }
 
 function asCurl(command: Command, { address, bench }: Source): string {
-  return [
-    'curl -H "Authorization: Bearer $COMBBENCH_TOKEN" -H "Content-Type: application/json"',
-    `  -d ${quoted(JSON.stringify(command))} ${quoted(`${address}api/v1/benches/${bench}/commands`)}`,
-  ].join(" \\\n");
+  const headers = '-H "Authorization: Bearer $COMBBENCH_TOKEN" -H "Content-Type: application/json"';
+  const url = `${address}api/v1/benches/${bench}/commands`;
+  return `curl ${headers} -d ${quoted(JSON.stringify(command))} ${quoted(url)}`;
 }
 
 /** A run with this event alone, long enough to see what it does. */
