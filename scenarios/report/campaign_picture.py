@@ -54,7 +54,8 @@ class CampaignPicture(BaseModel):
     figures: list[str] = Field(description="Figures that a run has: those expected or usual, what varies most first")
     across: str = Field(description="Number on the axis across")
     up: str = Field(description="Number on the axis up of a map")
-    span: tuple[float, float] = Field(description="Range of the axis of the figure")
+    low: float = Field(description="Where the axis of the figure begins")
+    high: float
     parts: list[Part]
     left_out: int = Field(description="Parts without room")
     ranking: list[Rank] = Field(description="Closest first; for a ranking alone")
@@ -111,13 +112,15 @@ def campaign_picture(
     up = next(name for name in numbers if name != across) if kind == "map" else ""
     shown = [*there.values()][: MOST_DOTS if kind == "ranking" else None]
     parts = _parts(shown, figure, {name: values[name][: len(shown)] for name in (across, up) if name}, kind)
+    low, high = span_of(figure, _ends(parts, kind))
     return CampaignPicture(
         kind=kind,
         figure=figure,
         figures=figures,
         across=across,
         up=up,
-        span=span_of(figure, _ends(parts, kind)),
+        low=low,
+        high=high,
         parts=parts[:MOST_PARTS],
         left_out=max(0, len(parts) - MOST_PARTS),
         ranking=ranking,

@@ -18,7 +18,7 @@ def paint_campaign(shown: CampaignPicture) -> list[str]:
         return []
     if shown.kind == "map":
         return [_map(shown, part, scale) for part in shown.parts]
-    figure = Axis(scale.title, "", (scale.shown(shown.span[0]), scale.shown(shown.span[1])))
+    figure = Axis(scale.title, "", (scale.shown(shown.low), scale.shown(shown.high)))
     if shown.kind == "rows":
         rows = [Row(name_of(part.labels), scale.shown(part.mean[0]), scale.shown(part.std[0])) for part in shown.parts]
         return [paint_rows(RowChart(scale.name, figure, rows))]
@@ -65,6 +65,6 @@ def _map(shown: CampaignPicture, part: Part, scale: MetricScale) -> str:
             [label_text(x, value) for value in columns],
             [label_text(y, value) for value in rows],
             cells,
-            Axis("", "", (scale.shown(shown.span[0]), scale.shown(shown.span[1]))),
+            Axis("", "", (scale.shown(shown.low), scale.shown(shown.high))),
         )
     )

@@ -167,7 +167,7 @@ def test_a_map_is_painted_as_cells_with_the_scale_of_their_colours() -> None:
     (drawing,) = paint_campaign(shown)
     cells = re.findall(r'fill="(#\w+)"><title>([^<]+)</title>', drawing)
     assert len(cells) == 6
-    low, high = shown.span
+    low, high = shown.low, shown.high
     for fill, text in cells:
         noise = float(re.search(r"noise ([\d.]+)", text)[1])  # type: ignore[index]
         assert fill == ramp((noise - low) / (high - low)), text

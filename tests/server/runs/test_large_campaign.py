@@ -50,7 +50,7 @@ def test_the_picture_is_chosen_by_the_server_and_the_report_has_the_name_given(l
     assert shown["kind"] == "map" and shown["figure"] == shown["figures"][0] and len(shown["parts"][0]["mean"]) == 4
     other = live.http.get(f"{address}/picture", params={"figure": "control.rms_error_um"}).json()
     assert other["figure"] == "control.rms_error_um" and other["figures"] == shown["figures"]
-    assert other["span"][0] == 0.0
+    assert other["low"] == 0.0
     check(live.http.get(f"{address}/picture", params={"figure": "control.nonsense"}), 422, "unknown", "figure")
     points = live.http.get(f"{address}/points").json()
     assert points["words"]["m+5"] == "mass +5\u00a0%"

@@ -3752,13 +3752,12 @@ export interface components {
              */
             up: string;
             /**
-             * Span
-             * @description Range of the axis of the figure
+             * Low
+             * @description Where the axis of the figure begins
              */
-            span: [
-                number,
-                number
-            ];
+            low: number;
+            /** High */
+            high: number;
             /** Parts */
             parts: components["schemas"]["Part"][];
             /**

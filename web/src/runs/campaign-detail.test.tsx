@@ -93,7 +93,7 @@ it("shows the map of a grid of two numbers, one for each of the rest", async () 
     mean: [1, 2, 3, 4],
     std: [0, 0, 0, 0],
   });
-  const map = { kind: "map", up: "faults.mass_pct", span: [0, 4], parts: [part("pid"), part("mrac")] };
+  const map = { kind: "map", up: "faults.mass_pct", low: 0, high: 4, parts: [part("pid"), part("mrac")] };
   server.on("GET", "/sweeps/sweep-1/picture", { ...picture, figure: "control.rms_error_um", ...map });
   await mountCampaign();
   const charts = within(screen.getByRole("region", { name: "Figures" })).getAllByRole("img");
@@ -109,7 +109,7 @@ it("ranks the numbers of a hypercube, and shows the points over the one that is 
     { name: "sensor.noise_um", correlation: 0.9 },
     { name: "device.mass_kg", correlation: -0.1 },
   ];
-  const found = { kind: "ranking", figure: "control.rms_error_um", span: [0, 4], parts, ranking, chance: 0.3 };
+  const found = { kind: "ranking", figure: "control.rms_error_um", low: 0, high: 4, parts, ranking, chance: 0.3 };
   server.on("GET", "/sweeps/sweep-1/picture", { ...picture, ...found });
   const { user } = await mountCampaign();
   const figures = within(screen.getByRole("region", { name: "Figures" }));

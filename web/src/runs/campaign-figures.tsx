@@ -90,7 +90,7 @@ function MapFigure({ picture, part, scale }: Shown & { part: Part }) {
   );
 }
 
-function Lines({ picture: { kind, across, parts, span }, scale }: Shown) {
+function Lines({ picture: { kind, across, parts, low, high }, scale }: Shown) {
   const x = labelScale(
     across,
     parts.flatMap((part) => part.x),
@@ -111,7 +111,7 @@ function Lines({ picture: { kind, across, parts, span }, scale }: Shown) {
       title={`${scale.name} over ${x.name}`}
       xLabel={x.title}
       yLabel={scale.title}
-      yRange={[scale.shown(span[0]), scale.shown(span[1])]}
+      yRange={[scale.shown(low), scale.shown(high)]}
       lines={lines}
       say={(line, i) =>
         `${pointName({ [across]: parts[line].x[i] })}: ${scale.say(parts[line].mean[i], parts[line].std[i])}`
@@ -120,13 +120,13 @@ function Lines({ picture: { kind, across, parts, span }, scale }: Shown) {
   );
 }
 
-function Rows({ picture: { parts, span }, scale }: Shown) {
+function Rows({ picture: { parts, low, high }, scale }: Shown) {
   const ranks = parts.map(({ labels, mean: [mean], std: [std] }) => ({
     name: pointName(labels),
     value: scale.shown(mean),
     spread: scale.shown(std),
   }));
-  const shown = { label: scale.title, span: [scale.shown(span[0]), scale.shown(span[1])] as const, ranks };
+  const shown = { label: scale.title, span: [scale.shown(low), scale.shown(high)] as const, ranks };
   return (
     <RanksFigure
       title={scale.name}

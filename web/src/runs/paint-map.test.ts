@@ -16,7 +16,8 @@ const PICTURE: CampaignPicture = {
   figures: ["control.rms_error_um"],
   across: "sensor.noise_um",
   up: "faults.mass_pct",
-  span: [0, 0.4],
+  low: 0,
+  high: 0.4,
   parts: [
     {
       labels: {},

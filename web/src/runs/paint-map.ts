@@ -25,7 +25,7 @@ const BESIDE = 72;
 const STEPS = 48;
 
 /** A part of a picture as a map. */
-export function mapOf({ across, up, span }: CampaignPicture, part: Part, figure: MetricScale): MapShown {
+export function mapOf({ across, up, low, high }: CampaignPicture, part: Part, figure: MetricScale): MapShown {
   const ascending = (values: readonly number[]) => [...new Set(values)].sort((a, b) => a - b);
   return {
     part,
@@ -34,7 +34,7 @@ export function mapOf({ across, up, span }: CampaignPicture, part: Part, figure:
     columns: ascending(part.x),
     rows: ascending(part.y),
     figure,
-    span: [figure.shown(span[0]), figure.shown(span[1])],
+    span: [figure.shown(low), figure.shown(high)],
   };
 }
 

@@ -1,4 +1,5 @@
 import names from "../../../scenarios/metric_names.json";
+import { formatFigure, formatSpread } from "./format";
 import { plainScale, roundTo } from "./unit-scale";
 
 // The rules of reports (`scenarios/metric_name.py`); `metric-cases.json` holds both to the same names.
