@@ -49,7 +49,12 @@ it("has a row for each point, the last included, with units in the headings", as
     .getAllByRole("columnheader")
     .map((one) => one.textContent?.replace(/\s/g, " "));
   expect(headings.slice(0, 4)).toEqual(["noise, µm", "runs", "as expected", "tripped"]);
-  expect(headings.slice(4)).toEqual(["rms error, pm", "kalman: correct fraction", "kalman: false switches"]);
+  expect(headings.slice(4)).toEqual([
+    "kalman: correct fraction",
+    "rms error, pm",
+    "kalman: false switches",
+    "amplitude, µm",
+  ]);
   expect(first()).toEqual(["0.01", "0.02", "0.05", "0.1"]);
   const rms = headings.indexOf("rms error, pm");
   expect(rows()[0].slice(1, 4)).toEqual(["1", "1", "0"]);
@@ -78,7 +83,7 @@ it("shows the picture first: the figure that varies most over the noise, from ze
   expect(picture.figure).toBe(first);
   const chart = figures.getByRole("img", { name: / over noise/ });
   expect(penOf(chart).words).toEqual(expect.arrayContaining(["0.01", "0.10", "noise, µm"]));
-  await user.click(figures.getByRole("textbox", { name: "Figure" }));
+  await user.click(figures.getByRole("combobox", { name: "Figure" }));
   await user.click(screen.getByRole("option", { name: "rms error, µm" }));
   await waitFor(() =>
     expect(server.asked("GET", "/sweeps/sweep-1/picture").at(-1)?.query).toEqual({ figure: "control.rms_error_um" }),
@@ -115,7 +120,7 @@ it("ranks the numbers of a hypercube, and shows the points over the one that is 
   const figures = within(screen.getByRole("region", { name: "Figures" }));
   expect(figures.getByRole("img", { name: /what it goes with: noise: 0.90; mass: −0.10/ })).toBeVisible();
   expect(figures.getByRole("img", { name: /^rms error over noise/ })).toBeVisible();
-  await user.click(figures.getByRole("textbox", { name: "Across" }));
+  await user.click(figures.getByRole("combobox", { name: "Across" }));
   await user.click(screen.getByRole("option", { name: "mass" }));
   await waitFor(() =>
     expect(server.asked("GET", "/sweeps/sweep-1/picture").at(-1)?.query).toEqual({
@@ -130,7 +135,7 @@ it("draws the curves and the table of the diagnoser, by its title and its hypoth
   expect(screen.getByRole("img", { name: /Receiver operating characteristic/ })).toBeVisible();
   expect(screen.getByRole("img", { name: /Detection delay/ })).toBeVisible();
   expect(screen.getByText(/^Kalman bank .*truth down/)).toBeVisible();
-  expect(screen.getByRole("columnheader", { name: "mass +5 %" })).toBeVisible();
+  expect(screen.getByRole("columnheader", { name: "mass +5\u00a0%" })).toBeVisible();
 });
 
 it("shows the confusion of the point that is chosen", async () => {
