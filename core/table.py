@@ -7,12 +7,16 @@ from functools import cache
 from types import NoneType
 from typing import Annotated, Any, Literal, cast, get_args, get_origin
 
-from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic_core import InitErrorDetails
+
+from core.format import typeset
 
 NUMBERS = frozenset({int, float, bool})
 TRUTHS = frozenset({"true", "false", "yes", "no", "on", "off", "t", "f", "y", "n"})
 """Texts that pydantic takes for true or false."""
+Words = Annotated[str, AfterValidator(typeset)]
+"""A text for people: typed as "2e-6 um", read as "2×10⁻⁶ µm"."""
 OPEN = frozenset({"inf", "infinity"})
 
 

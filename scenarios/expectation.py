@@ -8,8 +8,9 @@ from typing import Annotated, Literal, Self, get_args
 
 from pydantic import Field, model_validator
 
-from core.format import format_short
-from core.table import Table
+from core.format import format_short, format_within
+from core.table import Table, Words
+from scenarios.metric_name import metric_unit
 
 Verdict = Literal[
     "reproduced",
@@ -44,15 +45,15 @@ class Expectation(Table):
     max: float | None = None
     value: float | None = None
     tolerance: float | None = Field(None, ge=0)
-    published: str = ""
+    published: Words = ""
     published_value: float | None = None
     published_range: tuple[End, End] | None = None
     fitted: list[str] = Field([])
     compare: Literal["open_loop", "pid", "none"] | None = None
     pid_too: bool = False
-    reason: str = ""
+    reason: Words = ""
     verdict: str | None = None
-    note: str = ""
+    note: Words = ""
 
     @model_validator(mode="after")
     def _bounded(self) -> Self:
@@ -95,11 +96,12 @@ class Expectation(Table):
         return self.value - (self.tolerance or 0.0), self.value + (self.tolerance or 0.0)
 
     def text(self) -> str:
-        """Write the expectation as text."""
+        """Write the expectation as text, with the unit of its metric."""
+        unit = metric_unit(self.metric)
         if self.value is not None:
-            return f"{format_short(self.value, '', 6)} ± {format_short(self.tolerance or 0.0, '', 6)}"
-        parts = [f">= {format_short(self.min, '', 6)}"] if self.min is not None else []
-        parts += [f"<= {format_short(self.max, '', 6)}"] if self.max is not None else []
+            return format_within(self.value, self.tolerance or 0.0, unit)
+        parts = [f"≥\u00a0{format_short(self.min, unit, 6)}"] if self.min is not None else []
+        parts += [f"≤\u00a0{format_short(self.max, unit, 6)}"] if self.max is not None else []
         return " and ".join(parts)
 
     @property

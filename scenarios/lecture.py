@@ -10,7 +10,7 @@ from pydantic import Field, ValidationError, model_validator
 from core.board.commands import LONGEST_MS
 from core.errors import InputError, from_validation
 from core.nesting import read_toml
-from core.table import Table
+from core.table import Table, Words
 from scenarios.edit import written
 from scenarios.expectation import Expectation
 from scenarios.library import get
@@ -61,11 +61,11 @@ class Span(Table):
 class Question(Table):
     """A question to a class before the answer is shown: which lane of a diagnoser rises, or one of some answers."""
 
-    text: str = Field(min_length=1, max_length=300)
-    answers: list[str] = Field([], max_length=6, description="the options; none for a question about lanes")
+    text: Words = Field(min_length=1, max_length=300)
+    answers: list[Words] = Field([], max_length=6, description="the options; none for a question about lanes")
     diagnoser: str = Field("", max_length=64, description="whose lanes are the answers")
     when: Span | None = Field(None, description="device time within which a moment is guessed, too")
-    right: str = Field("", max_length=100, description="the right answer, shown with the votes")
+    right: Words = Field("", max_length=100, description="the right answer, shown with the votes")
 
     @model_validator(mode="after")
     def _answerable(self) -> Self:
@@ -81,11 +81,11 @@ class Question(Table):
 class Cue(Table):
     """A cue: with ``scenario`` it begins an experiment, without it goes on with that of the cue before."""
 
-    title: str = Field(min_length=1, max_length=100)
+    title: Words = Field(min_length=1, max_length=100)
     minutes: float = Field(gt=0, le=60, description="planned")
-    say: str = Field(min_length=1, max_length=4000)
-    ask: str = Field("", max_length=1000, description="a question to the room")
-    see: str = Field("", max_length=1000, description="what will be seen")
+    say: Words = Field(min_length=1, max_length=4000)
+    ask: Words = Field("", max_length=1000, description="a question to the room")
+    see: Words = Field("", max_length=1000, description="what will be seen")
     scenario: str | None = Field(None, max_length=64, description="id of the library; begins an experiment at tick 0")
     seed: int | None = Field(None, ge=0, le=2**63 - 1)
     set: dict[str, Any] = Field({}, description="dotted paths of the scenario and their values")
@@ -111,9 +111,9 @@ class Cue(Table):
 class Head(Table):
     """A lecture as it is written."""
 
-    title: str = Field(min_length=1, max_length=200)
+    title: Words = Field(min_length=1, max_length=200)
     chapter: int = Field(ge=1, le=6)
-    summary: str = Field("", max_length=2000)
+    summary: Words = Field("", max_length=2000)
     cues: list[Cue] = Field(alias="cue", min_length=1, max_length=MOST_CUES)
 
 

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from core.board.commands import LONGEST_MS
 from core.format import format_short
-from core.table import Table
+from core.table import Table, Words
 
 Kind = Literal["band", "value", "moment"]
 
@@ -23,8 +23,8 @@ class Printed(Table):
 
     figure: str = Field("", max_length=40, description="number of the figure; empty for a sentence without one")
     section: str = Field(min_length=1, max_length=40)
-    words: str = Field(min_length=1, max_length=300, description="as printed")
-    number: str = Field(min_length=1, max_length=40, description="the part of the words that is the number")
+    words: Words = Field(min_length=1, max_length=300, description="as printed")
+    number: Words = Field(min_length=1, max_length=40, description="the part of the words that is the number")
     signal: str = Field(min_length=1, max_length=200)
     unit: str = Field(max_length=20, description="of the numbers here, which is that of the signal")
     low: float | None = None
@@ -36,7 +36,7 @@ class Printed(Table):
     after_ms: float = Field(0.0, ge=0, le=LONGEST_MS, description="where a band or a value begins")
     until_ms: float | None = Field(None, gt=0, le=LONGEST_MS, description="where it ends; at the end of the run")
     metric: str = Field("", max_length=200, description="the expectation that judges it")
-    reading: str = Field("", max_length=500)
+    reading: Words = Field("", max_length=500)
 
     @model_validator(mode="after")
     def _is_one(self) -> Self:

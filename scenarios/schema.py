@@ -23,7 +23,7 @@ from core.errors import InputError, from_validation, short, unknown, unknown_fie
 from core.nesting import read_toml
 from core.own.admission import check_admitted
 from core.own.apart import compile_by
-from core.table import Table
+from core.table import Table, Words
 from scenarios.comparator import NONE, Comparator
 from scenarios.expectation import Expectation, Verdict, overall
 from scenarios.measure.stretch import Stretch
@@ -41,10 +41,10 @@ class Head(Table):
 
     schema_: Literal[1] = Field(1, alias="schema")
     id: str = Field("unnamed", pattern=r"^[A-Za-z0-9][A-Za-z0-9-]{0,63}$")
-    title: str = Field("", max_length=200)
-    source: str = Field("", max_length=500)
-    summary: str = Field("", max_length=2000)
-    claim: str = Field("", max_length=2000)
+    title: Words = Field("", max_length=200)
+    source: Words = Field("", max_length=500)
+    summary: Words = Field("", max_length=2000)
+    claim: Words = Field("", max_length=2000)
     verdict: str | None = None
     samples: int | None = Field(None, ge=1, le=MAX_SAMPLES)
     duration_ms: float | None = Field(None, gt=0, le=LONGEST_MS)

@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 from core.board.commands import Trip
+from core.format import micro
 from scenarios.expectation import overall
 from scenarios.schema import Scenario
 
@@ -55,7 +56,7 @@ def summarise(
         "elapsed_s": elapsed_s,
         "digest": digest,
         "trip": trip.model_dump() if trip is not None else None,
-        "warnings": warnings,
+        "warnings": [micro(text) for text in warnings],
         "metrics": metrics,
         "expectations": expectations,
         "ok": all(entry["ok"] for entry in expectations),

@@ -44,6 +44,7 @@ def record_campaign(recorder: Recorder, folder: Path, run: str, sweep: str) -> N
     ids = [run, second["id"]]
     found = {
         "points": recorder.get(f"/sweeps/{sweep}/points", limit=50),
+        "picture": recorder.get(f"/sweeps/{sweep}/picture"),
         "density": recorder.get(f"/sweeps/{sweep}/distribution", x="sensor.noise_um", y="control.rms_error_um"),
         "histogram": recorder.get(f"/sweeps/{sweep}/distribution", x="sensor.noise_um"),
         "comparison": recorder.get("/runs/compare", ids=ids),

@@ -21,6 +21,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketDisconnect
 
 from core.errors import InputError, did_you_mean, either, field_of, one_line
+from core.format import micro
 
 log = logging.getLogger(__name__)
 
@@ -45,7 +46,7 @@ class ErrorBody(BaseModel):
     @classmethod
     def _in_one_line(cls, text: str) -> str:
         """Shorten the text, and keep it in one line: it may quote a caller, or list all allowed values."""
-        text = one_line(text[: LONGEST + 1])
+        text = micro(one_line(text[: LONGEST + 1]))
         return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
 
 

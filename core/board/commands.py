@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from core.board.document import Document
 from core.errors import InputError, from_validation, unknown_field
 from core.faults.fault import Profile
-from core.table import Table
+from core.table import Table, Words
 
 LONGEST_MS = 1e12
 """Latest moment that can be named, device time: beyond any run, and whole in samples."""
@@ -178,6 +178,6 @@ class Trip(BaseModel):
 
     tick: int
     time_ms: float
-    reason: str
+    reason: Words
     signal: str
     value: float | None

@@ -8,6 +8,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from core.board.document import Document
+from core.table import Words
 
 KEPT = 4000
 """Findings kept at least: an intermittent fault makes thousands a second."""
@@ -20,7 +21,7 @@ class LogEntry(BaseModel):
     tick: int
     actor: str
     kind: str
-    text: str
+    text: Words
     command: Document | None = None
     old: Any = None
     new: Any = None

@@ -16,6 +16,7 @@ from core.board.commands import Trip
 from core.errors import InputError
 from core.kernel import kernel
 from core.loop.score import Scores
+from core.table import Words
 from scenarios.measure.blocks import blocks
 from scenarios.run import Result, run
 from scenarios.schema import Scenario
@@ -56,8 +57,8 @@ class Outcome(BaseModel):
     elapsed_s: float = 0.0
     ok: bool = False
     stopped: Trip | None = None
-    error: str = ""
-    warnings: list[str] = []
+    error: Words = ""
+    warnings: list[Words] = []
     metrics: dict[str, float] = {}
     diagnosis: dict[str, Diagnosis] = {}
 

@@ -9,7 +9,7 @@ from typing import Any, Protocol, overload
 
 import numpy as np
 
-from core.block import FloatArray
+from core.block import FloatArray, IntArray
 from core.errors import InputError
 from scenarios.edit import written
 from scenarios.key import content_hash
@@ -44,7 +44,7 @@ class Rows:
     """
 
     def __init__(self, paths: Sequence[str], rows: FloatArray, number: str = "") -> None:
-        self._paths, self._rows, self._number = tuple(paths), rows, number
+        self.paths, self._rows, self._number = tuple(paths), rows, number
 
     def __len__(self) -> int:
         """Return the number of steps."""
@@ -52,14 +52,19 @@ class Rows:
 
     def __getitem__(self, at: int) -> Step:
         """Return a step."""
-        values = dict(zip(self._paths, self._rows[at].tolist(), strict=True))
+        values = dict(zip(self.paths, self._rows[at].tolist(), strict=True))
         return ({self._number: float(at + 1)} if self._number else {**values}), values
+
+    def column(self, path: str) -> FloatArray:
+        """Return what the steps write to a field."""
+        column: FloatArray = self._rows[:, self.paths.index(path)]
+        return column
 
     def ends(self, at: int) -> list[Step]:
         """Return a step with each value as small, then as large as it becomes; none where chance draws them."""
         _, values = self[at]
         ends = np.array([self._rows.min(axis=0), self._rows.max(axis=0)]).T.tolist()
-        changed = [{**values, path: end} for path, pair in zip(self._paths, ends, strict=True) for end in pair]
+        changed = [{**values, path: end} for path, pair in zip(self.paths, ends, strict=True) for end in pair]
         return [] if self._number else [({**one}, one) for one in changed]
 
 
@@ -125,6 +130,17 @@ class Points(Sequence[Point]):
             labels |= names
             values |= written_over
         return Point(labels, values, self._base)
+
+    def column(self, path: str, numbers: IntArray) -> FloatArray:
+        """Return what some points write to a field that takes numbers; nan where they do not."""
+        for axis in reversed(self.varied):
+            numbers, steps = np.divmod(numbers, len(axis))
+            if isinstance(axis, Rows):
+                if path in axis.paths:
+                    return axis.column(path)[steps]
+            elif any(path in axis[at][1] for at in range(len(axis))):
+                return np.array([axis[at][1].get(path, math.nan) for at in range(len(axis))], float)[steps]
+        return np.full(len(numbers), math.nan)
 
     def axes(self) -> dict[str, bool]:
         """Return the names of labels, in their order, and whether one of the values is a text."""

@@ -15,14 +15,15 @@ from core.block import FloatArray, IntArray
 from core.errors import unknown
 from scenarios.campaign.columns import named
 from scenarios.campaign.parts import PART, Parts
+from scenarios.campaign.sums import Sums
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import PointTally, Tallies
 
 TALLY = TypeAdapter(PointTally)
 MOST_DOTS = 2000
 """Runs that are drawn one by one; more are counted in cells."""
-BINS, SLICES = 60, 40
-"""Cells of a histogram, slices of a profile."""
+BINS = 60
+"""Cells of a histogram."""
 CELLS = (72, 44)
 """Cells across and up."""
 COUNTED = {"runs": None, "ok": "ok", "tripped": "trip"}
@@ -48,14 +49,6 @@ class Distribution(BaseModel):
     dots: list[list[float]] | None = Field(description="The runs themselves, where they are few")
 
 
-class Profile(BaseModel):
-    """Mean and deviation of a figure in slices of an axis; slices without runs are left out."""
-
-    x: list[float]
-    mean: list[float]
-    std: list[float]
-
-
 class Survey:
     """The results of a campaign that are in its files.
 
@@ -68,13 +61,13 @@ class Survey:
     """
 
     def __init__(self, sweep: Sweep, parts: Parts) -> None:
-        self._sweep, self.parts = sweep, parts
+        self.sweep, self.parts = sweep, parts
         self._schema = parts.schema() or pa.schema([])
 
     @property
     def points(self) -> int:
         """Points of the campaign, with runs or without."""
-        return len(self._sweep.points)
+        return len(self.sweep.points)
 
     @property
     def figures(self) -> list[str]:
@@ -107,7 +100,7 @@ class Survey:
         if sort not in known:
             raise unknown("column", sort, known, "sort")
         if sort in self._axes:
-            labels = [self._sweep.points[number].labels.get(sort) for number in there.tolist()]
+            labels = [self.sweep.points[number].labels.get(sort) for number in there.tolist()]
             is_text = pa.types.is_string(self._schema.field(sort).type)
             ranks = {text: rank for rank, text in enumerate(sorted({str(label) for label in labels}))}
             values = np.array([ranks[str(label)] if is_text else label for label in labels], float)
@@ -119,23 +112,24 @@ class Survey:
         order = np.argsort(-values if descending else values, kind="stable")  # nan comes last
         return there[order]
 
-    def page(self, points: Sequence[int] | IntArray) -> list[PointTally]:
-        """Add up the runs of some points, in the order given."""
+    def page(self, points: Sequence[int] | IntArray, figures: Sequence[str] | None = None) -> list[PointTally]:
+        """Add up the runs of some points, in the order given; with figures named, these alone."""
         wanted, places = np.unique(np.asarray(points, np.int64), return_inverse=True)
         if not len(wanted):
             return []
-        seeds = len(self._sweep.seeds)
+        seeds = len(self.sweep.seeds)
         files = np.unique(np.concatenate([_files(number * seeds, (number + 1) * seeds) for number in wanted.tolist()]))
         tallies = Tallies(wanted)
-        names = ["point", "ok", "trip", "error", "warnings", *self.figures, *named(self._schema, "diagnosis")]
+        chosen = [*self.figures, *named(self._schema, "diagnosis")] if figures is None else figures
+        names = ["point", "ok", "trip", "error", "warnings", *chosen]
         for number in files.tolist():
             sums = self.parts.sums(number)
             if sums is None:
                 for table in self.parts.tables(names if len(self._schema) else None, [number]):
                     tallies.add(table)
             for place in np.flatnonzero(np.isin(wanted, list(sums or ()))).tolist():
-                tallies.add_sums(place, (sums or {})[int(wanted[place])])
-        done = tallies.tallies(self._sweep.points[number].labels for number in wanted.tolist())
+                tallies.add_sums(place, _only((sums or {})[int(wanted[place])], figures))
+        done = tallies.tallies(self.sweep.points[number].labels for number in wanted.tolist())
         return [done[place] for place in places.tolist()]
 
     def listed(self, points: Sequence[int]) -> bytes:
@@ -167,24 +161,6 @@ class Survey:
             dots=values.T.tolist() if y and values.shape[1] <= MOST_DOTS else None,
         )
 
-    def profile(self, x: str, figure: str) -> Profile:
-        """Return how a figure goes over an axis, slice by slice."""
-        at, values = self._values([x, figure])
-        extent = _extent(x, at, SLICES)
-        wide = (extent.high - extent.low) / SLICES
-        slices = np.minimum((at - extent.low) / wide, SLICES - 1).astype(np.int64)
-        count = np.bincount(slices, minlength=SLICES)
-        there = count > 0
-        mean = np.bincount(slices, values, SLICES)[there] / count[there]
-        middle = np.zeros(SLICES)
-        middle[there] = mean
-        square = np.bincount(slices, (values - middle[slices]) ** 2, SLICES)[there]
-        return Profile(
-            x=(extent.low + (np.flatnonzero(there) + 0.5) * wide).tolist(),
-            mean=mean.tolist(),
-            std=np.sqrt(square / np.maximum(count[there] - 1, 1)).tolist(),
-        )
-
     def runs(self) -> int:
         """Return how many runs there are."""
         return self.parts.rows()
@@ -208,7 +184,7 @@ class Survey:
 
     def _per_point(self, column: str | None) -> IntArray:
         """Count the runs of every point: all, those as expected, or those that tripped."""
-        found = np.zeros(len(self._sweep.points), np.int64)
+        found = np.zeros(len(self.sweep.points), np.int64)
         for table in self.parts.tables(["point", column] if column else ["point"]):
             points = table["point"].to_numpy()
             if column is not None:
@@ -218,7 +194,7 @@ class Survey:
 
     def _means(self, figure: str) -> FloatArray:
         """Return the mean of a figure at every point, nan where no run has it."""
-        count, total = np.zeros((2, len(self._sweep.points)))
+        count, total = np.zeros((2, len(self.sweep.points)))
         for table in self.parts.tables(["point", figure]):
             values = table[figure].to_numpy()
             there = np.isfinite(values)
@@ -233,6 +209,14 @@ def listed(document: dict[str, Any], folder: Path, points: Sequence[int]) -> byt
     """Return the tallies of some points as JSON; in a worker, from the files of the campaign."""
     sweep = Sweep(document)
     return Survey(sweep, Parts(sweep, folder)).listed(points)
+
+
+def _only(sums: Sums, figures: Sequence[str] | None) -> Sums:
+    """Return sums with some figures, and without the verdicts of diagnosers."""
+    if figures is None:
+        return sums
+    chosen = {name: moments for name, moments in sums["figures"].items() if name in figures}
+    return {**sums, "figures": chosen, "diagnosis": {}}
 
 
 def _files(first: int, end: int) -> IntArray:

@@ -12,7 +12,7 @@ from pydantic import Field, ValidationError, model_validator
 from core.block import FloatArray
 from core.device.spread import Tolerances, draw
 from core.errors import InputError, from_validation, short
-from core.table import Table
+from core.table import Table, Words
 from scenarios.campaign.points import Axis, Contents, Point, Points, Rows, Step, Values
 from scenarios.edit import with_values
 from scenarios.key import run_key
@@ -98,7 +98,7 @@ class Head(Table):
 
     schema_: Literal[1] = Field(1, alias="schema")
     id: str = Field("sweep", pattern=r"^[a-z0-9][a-z0-9-]{0,63}$")
-    title: str = Field("", max_length=200)
+    title: Words = Field("", max_length=200)
     scenario: str | dict[str, Any]
     set: Values = Field({})
     seeds: Seeds = Seeds()

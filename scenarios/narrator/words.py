@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from core.diagnose.hypothesis import NamedModel
+from core.board.spec import Section
+from core.diagnose.hypothesis import ModelList, NamedModel
 from core.format import MINUS, format_short, format_si
 
 NOUNS = {"gain": "drive gain", "second_stiffness": "stiffness along y"}
@@ -48,6 +49,17 @@ def hypothesis_words(model: NamedModel) -> str:
     if not said or not any(letter.isdigit() for letter in model.name):
         return model.name
     return ", ".join(_factor(name, value) for name, value in said.items())
+
+
+def diagnosis_words(diagnosers: Mapping[str, Section]) -> dict[str, str]:
+    """Return the diagnosers of a bench by their titles and all hypotheses in words, each by its name."""
+    words = {}
+    for name, section in diagnosers.items():
+        title = section.block.title
+        words[name] = title if name == section.block.name else f"{title}, {name.replace('_', ' ')}"
+        models = section.params.hypotheses if isinstance(section.params, ModelList) else []
+        words |= {model.name: hypothesis_words(model) for model in models}
+    return words
 
 
 def _factor(name: str, value: float) -> str:

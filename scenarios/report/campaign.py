@@ -2,52 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
+
+from markupsafe import Markup
 
 from core.format import format_count, format_share, format_spread
 from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import DiagnosisTally, PointTally
+from scenarios.metric_name import MetricScale, metric_scale
+from scenarios.narrator.words import diagnosis_words
 from scenarios.report.axis import Axis
+from scenarios.report.campaign_figures import by_variation, shown_figures
+from scenarios.report.campaign_picture import campaign_picture
 from scenarios.report.html import as_toml, page, say
-from scenarios.report.metric_name import MetricScale, metric_limits, metric_scale
+from scenarios.report.paint_campaign import paint_campaign
+from scenarios.report.point_name import label_scale, label_text, name_of
 from scenarios.report.svg import Chart, Series
 
-USUAL = (".correct_fraction", ".mean_delay_samples", ".false_switches", "control.rms_error_um")
 MOST_CURVES = 16
+MOST_PICTURES = 6
+"""Figures that are drawn."""
 MOST_POINTS = 1000
-"""Points of the table; of a campaign with more, the curves are made of slices of the axis."""
+"""Points of the table; the pictures are of all."""
 SHARE = (0.0, 1.0)
 
 
-def name_of(labels: dict[str, str | float]) -> str:
-    """Name a point."""
-    parts = []
-    for path, value in labels.items():
-        scale = _scale(path, [value])
-        parts.append(f"{scale.name} {_label(scale, value)}" + (f"\u00a0{scale.unit}" if scale.unit else ""))
-    return ", ".join(parts) or "all runs"
-
-
-def _scale(path: str, values: Iterable[str | float]) -> MetricScale:
-    """Return how a number that was varied is shown, named by the end of its path."""
-    return metric_scale(path.rsplit(".", 1)[-1], values)
-
-
-def _label(scale: MetricScale, value: str | float) -> str:
-    return value if isinstance(value, str) else say(scale.shown(value))
-
-
-def surveyed_report(sweep: Sweep, survey: Survey) -> str:
+def surveyed_report(sweep: Sweep, survey: Survey, name: str = "") -> str:
     """Return the report of a campaign of any size: of many points, the first that have runs."""
-    order = survey.order()
     if len(sweep.points) <= MOST_POINTS:
-        return campaign_report(sweep, survey.page(range(len(sweep.points))))
-    return campaign_report(sweep, survey.page(order[:MOST_POINTS]), survey if len(order) > MOST_POINTS else None)
+        return campaign_report(sweep, survey.page(range(len(sweep.points))), name)
+    order = survey.order()
+    rows = survey.page(order, shown_figures(sweep, survey.figures))
+    return campaign_report(sweep, survey.page(order[:MOST_POINTS]), name, dict(zip(order.tolist(), rows, strict=True)))
 
 
-def campaign_report(sweep: Sweep, points: Sequence[PointTally], survey: Survey | None = None) -> str:
+def campaign_report(
+    sweep: Sweep, points: Sequence[PointTally], name: str = "", everything: Mapping[int, PointTally] | None = None
+) -> str:
     """Return the report of a campaign as one HTML file.
 
     Parameters
@@ -56,24 +49,27 @@ def campaign_report(sweep: Sweep, points: Sequence[PointTally], survey: Survey |
         The campaign.
     points : sequence of PointTally
         Its results, those that are there.
-    survey : Survey, optional
-        All results, where the points are only some of them.
+    name : str
+        The name that it was given; empty: its title.
+    everything : mapping, optional
+        The figures of all points by their numbers, where the results are only some of them.
     """
     head = sweep.base.head
-    done = sum(point.runs for point in points) if survey is None else survey.runs()
-    measured = {name for point in points for name in point.metrics}
-    shown = [entry.metric for entry in head.expect if entry.metric in measured]
-    shown += [name for name in sorted(measured) if name.endswith(USUAL) and name not in shown]
-    shown = list(dict.fromkeys(shown))
+    rows = dict(enumerate(points)) if everything is None else everything
+    shown = shown_figures(sweep, {name for point in rows.values() for name in point.metrics})
+    drawn = by_variation(rows.values(), shown)[:MOST_PICTURES]
+    words = diagnosis_words(sweep.base.spec.diagnosers)
     axes = list(dict.fromkeys(name for point in points for name in point.labels))
-    across = {axis: _scale(axis, (point.labels.get(axis, "") for point in points)) for axis in axes}
+    across = {axis: label_scale(axis, (point.labels.get(axis, "") for point in points)) for axis in axes}
     up = {name: metric_scale(name, (p.metrics[name].mean for p in points if name in p.metrics)) for name in shown}
     return page(
         "campaign.html",
-        sweep.head.title or sweep.head.id,
+        name or sweep.head.title or f"Campaign {sweep.head.id}",
         scenario=head.title or sweep.base.id,
-        progress=f"{say(done)} of {say(len(sweep))} runs, {format_count(len(sweep.points), 'point')} with "
+        progress=f"{say(sum(point.runs for point in rows.values()))} of {say(len(sweep))} runs, "
+        f"{format_count(len(sweep.points), 'point')} with "
         f"{format_count(len(sweep.seeds), 'seed')} each ({sweep.seeds[0]} to {sweep.seeds[-1]}).",
+        pictures=[Markup(one) for name in drawn for one in paint_campaign(campaign_picture(sweep, rows, shown, name))],
         head=[
             *(scale.title for scale in across.values()),
             *("runs", "expectations hold", "tripped"),
@@ -81,7 +77,7 @@ def campaign_report(sweep: Sweep, points: Sequence[PointTally], survey: Survey |
         ],
         points=[
             [
-                *(_label(scale, point.labels.get(axis, "")) for axis, scale in across.items()),
+                *(label_text(scale, point.labels.get(axis, "")) for axis, scale in across.items()),
                 *(point.runs, point.ok, point.tripped),
                 *(_mean(point, name, scale) for name, scale in up.items()),
             ]
@@ -89,10 +85,10 @@ def campaign_report(sweep: Sweep, points: Sequence[PointTally], survey: Survey |
         ],
         errors=[f"{name_of(point.labels)}: {text}" for point in points for text in point.errors],
         warnings=[f"{name_of(point.labels)}: {text}" for point in points for text in point.warnings],
-        left_out=0 if survey is None else len(sweep.points) - len(points),
-        trends=_trends(points, axes, shown) if survey is None else _profiles(survey, across, up),
+        left_out=0 if everything is None else len(sweep.points) - len(points),
         diagnosers=[
-            _diagnoser(name, points) for name in dict.fromkeys(name for point in points for name in point.diagnosis)
+            _diagnoser(name, points, words)
+            for name in dict.fromkeys(name for point in points for name in point.diagnosis)
         ],
         document=as_toml(sweep.document),
     )
@@ -103,56 +99,7 @@ def _mean(point: PointTally, name: str, scale: MetricScale) -> str:
     return "" if spread is None else format_spread(name, scale.shown(spread.mean), scale.shown(spread.std))
 
 
-def _trends(points: Sequence[PointTally], axes: Sequence[str], shown: Sequence[str]) -> list[Chart]:
-    """Draw every figure shown over every number that was varied, one line for each combination of the rest."""
-    charts = []
-    for axis in axes:
-        values = {point.labels.get(axis) for point in points}
-        if len(values) < 2 or not all(isinstance(value, int | float) for value in values):
-            continue
-        groups: dict[str, list[PointTally]] = {}
-        others = [name for name in axes if name != axis]
-        is_alone = len({name_of({k: p.labels[k] for k in others}) for p in points}) > MOST_CURVES
-        for point in sorted(points, key=lambda p: float(p.labels[axis])):
-            rest = "" if is_alone else name_of({key: point.labels[key] for key in others})
-            groups.setdefault(rest, []).append(point)
-        x = _scale(axis, (point.labels[axis] for point in points))
-        for name in shown:
-            measured = {rest: [point for point in group if name in point.metrics] for rest, group in groups.items()}
-            y = metric_scale(name, (p.metrics[name].mean for group in measured.values() for p in group))
-            lines = [
-                Series(
-                    rest,
-                    [x.shown(float(point.labels[axis])) for point in group],
-                    [y.shown(point.metrics[name].mean) for point in group],
-                    [y.shown(point.metrics[name].std) for point in group],
-                    limits=metric_limits(name),
-                )
-                for rest, group in measured.items()
-            ]
-            charts.append(Chart(y.title, Axis(x.title), Axis("mean ± std"), lines))
-    return charts
-
-
-def _profiles(survey: Survey, across: dict[str, MetricScale], up: dict[str, MetricScale]) -> list[Chart]:
-    """Draw every figure shown over every number that was varied, the runs of a slice together."""
-    charts = []
-    for axis in [axis for axis in across if axis in survey.quantities]:
-        for name, y in up.items():
-            found = survey.profile(axis, name)
-            x = _scale(axis, found.x)
-            line = Series(
-                "",
-                [x.shown(value) for value in found.x],
-                [y.shown(value) for value in found.mean],
-                [y.shown(value) for value in found.std],
-                limits=metric_limits(name),
-            )
-            charts.append(Chart(y.title, Axis(x.title), Axis("mean ± std of the runs of a slice"), [line]))
-    return charts
-
-
-def _diagnoser(name: str, points: Sequence[PointTally]) -> dict[str, Any]:
+def _diagnoser(name: str, points: Sequence[PointTally], words: Mapping[str, str]) -> dict[str, Any]:
     """Return one diagnoser: curves of all points, then confusion point by point."""
     entries = [point for point in points if name in point.diagnosis]
     drawn = [(name_of(point.labels), point.diagnosis[name]) for point in entries[:MOST_CURVES]]
@@ -171,13 +118,14 @@ def _diagnoser(name: str, points: Sequence[PointTally]) -> dict[str, Any]:
         charts.append(Chart("Detection delay", x, Axis("share entries by then", "", SHARE), delays))
     tables = []
     for label, entry in drawn:
+        names = [words.get(one, one) for one in entry.names]
         total = [max(1, sum(row)) for row in entry.confusion]
         rows = [
             [truth, *(format_share(count / all_of) for count in row), sum(row)]
-            for truth, row, all_of in zip(entry.names, entry.confusion, total, strict=True)
+            for truth, row, all_of in zip(names, entry.confusion, total, strict=True)
         ]
-        tables.append({"name": label, "names": list(entry.names), "rows": rows, "missed": entry.missed})
-    return {"name": name, "charts": charts, "points": len(entries), "tables": tables}
+        tables.append({"name": label, "names": names, "rows": rows, "missed": entry.missed})
+    return {"name": words.get(name, name), "charts": charts, "points": len(entries), "tables": tables}
 
 
 def _delay_curve(label: str, entry: DiagnosisTally) -> Series:

@@ -23,8 +23,9 @@ from core.readout.allan import Allan
 from core.theory.rate_noise import LEAST_TIMES, averaging_times
 from core.units import DEG_H_PER_DEG_S
 from scenarios.measure.blocks import BLOCK, blocks, largest, loaded, mean
+from scenarios.metric_name import metric_scale
+from scenarios.narrator.words import diagnosis_words
 from scenarios.report.axis import Axis
-from scenarios.report.metric_name import metric_title, micro
 from scenarios.report.palette import Look, hypothesis, signal
 from scenarios.report.svg import Bar, Chart, Lane, Mark, Series, thin
 from scenarios.run import Result
@@ -65,7 +66,7 @@ def marks(result: Result) -> list[Mark]:
 
 
 def _title(result: Result) -> str:
-    return micro(result.scenario.head.title) or result.scenario.id
+    return result.scenario.head.title or result.scenario.id
 
 
 def _names(result: Result) -> set[str]:
@@ -115,8 +116,9 @@ def _expected(result: Result) -> Chart:
     for entry in result.scenario.head.expect:
         value = result.metrics.get(entry.metric, math.nan)
         if math.isfinite(value) and len(bars) < MOST_BARS:
-            text = format_figure(entry.metric, value, 3)
-            bars.append(Bar(metric_title(entry.metric), value, text, *entry.bounds(), entry.holds(value)))
+            scale = metric_scale(entry.metric, [value])
+            text = format_figure(entry.metric, scale.shown(value), 3)
+            bars.append(Bar(scale.title, value, text, *entry.bounds(), entry.holds(value)))
     return Chart(_title(result), bars=bars)
 
 
@@ -186,7 +188,8 @@ def _lanes(result: Result) -> Chart | None:
     if not scores:
         return None
     lanes, seen = [], set[int]()
-    names = next(iter(scores.values())).names
+    words = diagnosis_words(result.board.spec.diagnosers)
+    names = [words.get(one, one) for one in next(iter(scores.values())).names]
     for name in list(scores)[:MOST_LANES]:
         areas = _areas(result, f"{name}.truth", is_truth=True) + _areas(result, f"{name}.winner", is_truth=False)
         lanes.append(Lane(name.replace("_", " "), areas))

@@ -11,7 +11,6 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from core.format import format_number, format_short
 from scenarios.key import code_version
-from scenarios.report.metric_name import micro
 from scenarios.report.palette import style
 from scenarios.report.svg import paint
 
@@ -38,7 +37,7 @@ def say(value: Any) -> str:
     return format_number(value, 0) if isinstance(value, int) else format_short(value, "", 6)
 
 
-TEMPLATES.filters |= {"say": say, "micro": micro, "paint": paint}  # the painter escapes the texts in a chart
+TEMPLATES.filters |= {"say": say, "paint": paint}  # the painter escapes the texts in a chart
 
 
 def as_toml(document: dict[str, Any]) -> str:

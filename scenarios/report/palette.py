@@ -10,7 +10,8 @@ from typing import Any
 PALETTE: dict[str, Any] = json.loads(Path(__file__).with_suffix(".json").read_text())
 """Shared with the page: colours by scheme, dashes, the order of hypotheses, signals that have a look of their own.
 
-The first colour is neutral; the pale ones are darkened in the light scheme, so that they stay visible on white.
+The first colour is neutral; the pale ones are darkened in the light scheme, so that they stay visible on white. The
+ramp goes from few to many: each step is lighter on dark, darker on light, in every kind of sight.
 """
 SLOTS = len(PALETTE["colours"]["light"])
 DASHES: list[list[int]] = PALETTE["dashes"]
@@ -49,7 +50,8 @@ CHART_STYLE = """
 svg { color: #1a1f26 } svg text { font: 11px system-ui, sans-serif; fill: currentColor }
 svg .title { font-weight: 600 } svg .x { text-anchor: middle } svg .y { text-anchor: end }
 svg .grid { stroke: #8884; fill: none } svg .mark { stroke: #888; stroke-dasharray: 2 2; fill: none }
-svg .line { fill: none; stroke-width: 1.7; stroke-linejoin: round } svg .bar { opacity: .6 } svg .area { opacity: .5 }
+svg .line { fill: none; stroke-width: 1.7; stroke-linejoin: round } svg .area { opacity: .5 }
+svg .band { opacity: .22 } svg .dots { stroke-width: 4.5; stroke-linecap: round; opacity: .75 }
 """
 
 
@@ -73,3 +75,12 @@ def signal(name: str, number: int) -> Look:
     """Return the look of a signal: its own, or that of its place among others."""
     known = PALETTE["signals"].get(name)
     return Look.of(*known) if known else line(number)
+
+
+def ramp(share: float) -> str:
+    """Return the colour of a share of a scale from 0 to 1, in the light scheme."""
+    stops = [[int(colour[at : at + 2], 16) for at in (1, 3, 5)] for colour in PALETTE["ramp"]["light"]]
+    at = min(max(share, 0.0), 1.0) * (len(stops) - 1)
+    first = min(int(at), len(stops) - 2)
+    mixed = [round(a + (b - a) * (at - first)) for a, b in zip(stops[first], stops[first + 1], strict=True)]
+    return "#" + "".join(f"{part:02x}" for part in mixed)

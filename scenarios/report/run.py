@@ -9,10 +9,11 @@ import numpy as np
 
 from core.format import format_beside, format_count, format_figure, format_in, format_number, format_short, unit_text
 from scenarios.measure.blocks import is_zero
+from scenarios.metric_name import metric_scale, metric_text
+from scenarios.narrator.words import diagnosis_words
 from scenarios.report.axis import Axis
 from scenarios.report.figure import TIME, figure, marks
 from scenarios.report.html import as_toml, page
-from scenarios.report.metric_name import metric_scale, metric_title, micro
 from scenarios.report.palette import Look, hypothesis, signal
 from scenarios.report.svg import Chart, Series, thin
 from scenarios.run import Result
@@ -45,7 +46,7 @@ def run_report(result: Result, summary: dict[str, Any]) -> str:
     entries = [entry for entry in result.board.log if entry.kind != "scheduled"]
     return page(
         "run.html",
-        micro(head.title) or result.scenario.id,
+        head.title or result.scenario.id,
         head=head,
         verdict=summary["verdict"] or "none",
         seeds=f"seeds {seeds[0]} to {seeds[-1]}, charts of the first" if seeds else f"seed {summary['seed']}",
@@ -80,15 +81,16 @@ def _figure(metric: str, value: float, spread: dict[str, float]) -> list[str]:
 
 def _expectation(entry: dict[str, Any]) -> list[str]:
     """Return a row of the expectations."""
+    metric = entry["metric"]
     return [
-        metric_title(entry["metric"]),
-        micro(entry["published"]),
-        entry["expected"].replace(">=", "≥").replace("<=", "≤"),
-        format_figure(entry["metric"], entry["measured"], 6),
+        metric_scale(metric).name,
+        entry["published"],
+        entry["expected"],
+        metric_text(metric, entry["measured"], 6),
         "holds" if entry["ok"] else "does not hold",
-        *(format_figure(entry["metric"], entry[name], 6) if entry.get(name) is not None else "–" for name in OTHERS),
+        *(metric_text(metric, entry.get(name), 6) for name in OTHERS),
         entry["verdict"] or "",
-        micro("; ".join(filter(None, (entry["note"], _comparator(entry))))),
+        "; ".join(filter(None, (entry["note"], _comparator(entry)))),
     ]
 
 
@@ -155,11 +157,13 @@ def _groups(result: Result) -> Sequence[tuple[str, tuple[str, ...]]]:
 
 def _verdicts(result: Result) -> list[dict[str, Any]]:
     """Return the verdicts of each diagnoser against the truth."""
+    words = diagnosis_words(result.board.spec.diagnosers)
+    said = {name: [words.get(one, one) for one in scores.names] for name, scores in result.board.scores().items()}
     return [
         {
-            "name": name,
-            "names": list(scores.names),
-            "rows": [[truth, *row] for truth, row in zip(scores.names, scores.confusion, strict=True)],
+            "name": words[name],
+            "names": said[name],
+            "rows": [[truth, *row] for truth, row in zip(said[name], scores.confusion, strict=True)],
             "delays": ", ".join("not found" if delay is None else format_number(delay, 0) for delay in scores.delays),
         }
         for name, scores in result.board.scores().items()

@@ -22,14 +22,11 @@ LETTER = 5.9
 """Width of a letter, px; what decides where a legend goes on in the next row."""
 ROW = 15
 NOTHING = Axis("")
-LEAST_SHARE = 0.02
-"""Bars show how far runs differ: on an axis of less than this share of the values they would be giants."""
-UNLIMITED = (-math.inf, math.inf)
 
 
 @dataclass(frozen=True)
 class Series:
-    """One line, with bars of plus and minus ``spread``; its look follows from its place unless it has one."""
+    """One line in a band of plus and minus ``spread``, or dots; its look follows from its place unless it has one."""
 
     name: str
     x: Sequence[float]
@@ -37,8 +34,7 @@ class Series:
     spread: Sequence[float] | None = None
     is_stepped: bool = False
     look: Look | None = None
-    limits: tuple[float, float] = UNLIMITED
-    """What its values cannot pass, such as 0 for a count: bars end there."""
+    is_dotted: bool = False
 
 
 @dataclass(frozen=True)
@@ -137,20 +133,26 @@ def paint(chart: Chart, size: Size = REPORT) -> str:
     keys = list(chart.keys) or _keys(chart.series)
     rows = _wrapped(keys, size.width - 20)
     top = 8 + (18 if size.has_title else 0) + ROW * len(rows)
-    parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {size.width} {size.height}" '
-        f'width="{size.width}" role="img" aria-label="{escape(chart.title)}">'
-    ]
-    if size.has_title:
-        parts.append(f'<text x="10" y="16" class="title">{escape(chart.title)}</text>')
+    parts = begun(chart.title, size)
     parts += _legend(rows, top - ROW * len(rows) + 4)
     parts += _bars(chart.bars, size, top) if chart.bars else _field(chart, size, top + 6)
     return "".join([*parts, "</svg>"])
 
 
+def begun(title: str, size: Size) -> list[str]:
+    """Return the beginning of a picture, with its title."""
+    parts = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {size.width} {size.height}" '
+        f'width="{size.width}" role="img" aria-label="{escape(title)}">'
+    ]
+    if size.has_title:
+        parts.append(f'<text x="10" y="16" class="title">{escape(title)}</text>')
+    return parts
+
+
 def _field(chart: Chart, size: Size, top: int) -> list[str]:
     """Paint axes, and lines or lanes between them."""
-    y = Scale(chart.y, _heights(chart.series))
+    y = Scale(chart.y, [end for one in chart.series for end in _ends(one)])
     ends = [edge for lane in chart.lanes for first, end, _, _ in lane.areas for edge in (first, end)]
     x = Scale(chart.x, ends or [value for one in chart.series for value in one.x])
     bottom, right = size.height - (38 if x.title else 20), size.width - 14
@@ -179,17 +181,22 @@ def _field(chart: Chart, size: Size, top: int) -> list[str]:
         look = one.look or line(number)
         spreads = one.spread or [0.0] * len(one.x)
         points = [
-            (across(at), down(value), *map(down, _ends(one, value, s)))
-            for at, value, s in zip(one.x, one.y, spreads, strict=True)
+            (across(at), down(value), down(max(value - spread, y.low)), down(min(value + spread, y.high)))
+            for at, value, spread in zip(one.x, one.y, spreads, strict=True)
             if math.isfinite(at) and math.isfinite(value)
         ]
         path = "".join(
             (f"H{px}V{py}" if one.is_stepped and at else f"{'L' if at else 'M'}{px} {py}")
             for at, (px, py, _, _) in enumerate(points)
         )
-        bars = "".join(f"M{px} {low}V{high}" for px, _, low, high in points if low != high)
-        parts.append(f'<g {look.stroke}><path d="{path}" class="line"/><title>{escape(one.name)}</title></g>')
-        parts.append(f'<path d="{bars}" class="bar s{look.slot}"/>' if bars else "")
+        is_dotted = one.is_dotted or len(points) == 1
+        if is_dotted:
+            path = "".join(f"M{px} {py}h0" for px, py, _, _ in points)
+        if one.spread and len(points) > 1:
+            edge = [f"{px} {low}" for px, _, low, _ in points] + [f"{px} {high}" for px, _, _, high in points[::-1]]
+            parts.append(f'<path d="M{"L".join(edge)}Z" class="band f{look.slot}"/>')
+        kind = "dots" if is_dotted else "line"
+        parts.append(f'<g {look.stroke}><path d="{path}" class="{kind}"/><title>{escape(one.name)}</title></g>')
     parts += _lanes(chart.lanes, across, left, top, bottom)
     parts.append(f'<text x="{(left + right) / 2}" y="{size.height - 7}" class="x">{escape(x.title)}</text>')
     if y.title and not chart.lanes:
@@ -268,19 +275,7 @@ def _legend(rows: Sequence[Sequence[tuple[float, str, Look]]], top: float) -> li
     return parts
 
 
-def _ends(one: Series, value: float, spread: float) -> tuple[float, float]:
-    """Return where the bar at a value begins and ends."""
-    return max(value - spread, one.limits[0]), min(value + spread, one.limits[1])
-
-
-def _heights(series: Sequence[Series]) -> list[float]:
-    """Return all heights that the y axis must show for lines; bars make it wide enough to be in proportion."""
-    bars = [_ends(one, y, s) for one in series for y, s in zip(one.y, one.spread or [0.0] * len(one.y), strict=True)]
-    found = [end for bar in bars for end in bar]
-    finite = [value for value in found if math.isfinite(value)]
-    if finite and any(one.spread for one in series):
-        longest = max(high - low for low, high in bars if math.isfinite(high - low))
-        middle, half = (min(finite) + max(finite)) / 2.0, max(LEAST_SHARE / 2.0 * max(map(abs, finite)), longest)
-        least, most = min(one.limits[0] for one in series), max(one.limits[1] for one in series)
-        found += [max(middle - half, least), min(middle + half, most)]
-    return found
+def _ends(one: Series) -> list[float]:
+    """Return all heights of a line and of its band."""
+    spreads = one.spread or [0.0] * len(one.y)
+    return [end for value, spread in zip(one.y, spreads, strict=True) for end in (value - spread, value + spread)]

@@ -5,7 +5,8 @@ from __future__ import annotations
 import textwrap
 from typing import Any
 
-from core.format import format_figure, format_in, format_short, format_si
+from core.format import format_in, format_short, format_si, format_spread
+from scenarios.metric_name import metric_text, metric_unit
 
 BESIDE = ("measured", "open_loop", "pid")
 """Figures of one expectation: its own, and those of other controllers in the same scenario."""
@@ -27,8 +28,8 @@ def run_text(summary: dict[str, Any]) -> str:
     lines += [line for said in summary.get("narration", ()) for line in _wrapped(said["text"], 2)]
     for name, value in summary["metrics"].items():
         spread = summary.get("metrics_std", {}).get(name)
-        after = f" ± {format_short(spread, '', 2)}" if spread else ""
-        lines.append(f"  {name:<44} {format_figure(name, value, 6)}{after}")
+        text = format_spread(name, value, spread, metric_unit(name)) if spread else metric_text(name, value, 6)
+        lines.append(f"  {name:<44} {text}")
     lines += [f"  {'ok  ' if entry['ok'] else 'MISS'} {_row(entry)}" for entry in summary["expectations"]]
     return "\n".join(lines)
 
@@ -61,7 +62,7 @@ def _figures(entry: dict[str, Any]) -> str:
     """Return what was expected, what was measured, what other controllers give, and what was published."""
     figures = {name: entry[name] for name in BESIDE if entry.get(name) is not None}
     names = {"measured": "measured", "open_loop": "open loop", "pid": f"{entry.get('comparator')} gives"}
-    said = [f"{names[name]} {format_figure(entry['metric'], value, 6)}" for name, value in figures.items()]
+    said = [f"{names[name]} {metric_text(entry['metric'], value, 6)}" for name, value in figures.items()]
     said += [] if "measured" in figures else ["not measured"]
     said += ["which meets the claim too"] if entry.get("pid_too") else []
     said += [f"published: {entry['published']}"] if entry["published"] else []

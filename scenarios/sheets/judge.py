@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from core.errors import InputError, short
-from core.format import format_percent, format_short
+from core.format import format_percent, format_short, unit_text
 from scenarios.sheets.expression import evaluate
 from scenarios.sheets.quantity import parse_quantity, unit_of
 from scenarios.sheets.sheet import Answered, Choice, Number
@@ -90,7 +90,7 @@ def _number(asked: Number, text: str, facts: Mapping[str, float]) -> Verdict:
         _near(number, right / to_base, asked.within, asked.within_absolute)
         or _is_prefix_away(number, right / to_base, asked.within)
     ):
-        return Verdict(asked.wrong_unit, f"right value, {named}; it is asked in {asked.unit or 'no unit'}")
+        return Verdict(asked.wrong_unit, f"right value, {named}; it is asked in {unit_text(asked.unit) or 'no unit'}")
     return Verdict(0.0, f"wrong, and {named}" if base else "wrong: it has no unit")
 
 

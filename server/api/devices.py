@@ -16,6 +16,7 @@ from core.device.device import Device
 from core.device.geometry import Geometry
 from core.device.quantities import QUANTITIES
 from core.device.spread import Tolerances
+from core.table import Words
 from scenarios.design import Statistics, bode_band, designed, device_figures, process, sensitivities
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import ComputingDep
@@ -27,8 +28,8 @@ class DeviceCard(BaseModel):
     """A device of the catalogue."""
 
     id: str
-    title: str
-    source: str
+    title: Words
+    source: Words
     metrics: dict[str, float]
     parameters: dict[str, Any]
     plants: list[str] = Field(description="Plants that suit it")
@@ -61,7 +62,7 @@ class Figure(BaseModel):
 class Evaluation(BaseModel):
     """The figures of a device, worked out before it is built."""
 
-    title: str
+    title: Words
     source: str
     figures: list[Figure] = Field(description="Those it has: a transfer function has no mass, no comb pulls it in")
     metrics: dict[str, float] = Field(description="All figures by name")

@@ -12,6 +12,8 @@ from core.nesting import read_toml
 from scenarios.campaign.parts import write_runs
 from scenarios.campaign.survey import Distribution, Survey
 from scenarios.campaign.tally import PointTally
+from scenarios.narrator.words import diagnosis_words
+from scenarios.report.campaign_picture import CampaignPicture, surveyed_picture
 from scenarios.report.script import campaign_script
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
@@ -59,6 +61,7 @@ class SweepPoints(BaseModel):
     runs: int = Field(description="Runs in these results; until the campaign has ended, `sweep.done` may be ahead")
     figures: list[str] = Field(description="Figures that a run has")
     quantities: list[str] = Field(description="What runs can be counted over: axes that are numbers, seed, figures")
+    words: dict[str, str] = Field(description="Diagnosers by their titles and hypotheses in words, by their names")
 
 
 @router.post(
@@ -129,6 +132,7 @@ async def get_sweep_points(
             text = f"these are {len(chosen)} points, at most {MOST_POINTS} are sent at once"
             raise ApiError(422, "too_long", text, "limit", "ask page by page")
         about = {"found": len(order), "quantities": survey.quantities, "figures": survey.figures}
+        about["words"] = diagnosis_words(survey.sweep.base.spec.diagnosers)
         return {"points": survey.page(chosen), "runs": survey.runs(), **about}
 
     sweep, found = await service.sweeps.surveyed(sweep_id, read)
@@ -144,6 +148,17 @@ async def get_sweep_distribution(
 ) -> Distribution:
     """Count the runs done so far over one quantity or two; few runs are listed as well."""
     return await service.sweeps.read(sweep_id, lambda survey: survey.distribution(x, y))
+
+
+@router.get("/{sweep_id}/picture")
+async def get_sweep_picture(
+    sweep_id: str,
+    service: ServiceDep,
+    figure: Annotated[str, Query(max_length=200, description="A figure; none for the one that varies most")] = "",
+    across: Annotated[str, Query(max_length=200, description="A number that varies, for the axis across")] = "",
+) -> CampaignPicture:
+    """Return a figure over what was varied, and how to draw it: rows, lines, a map, or a ranking with dots."""
+    return await service.sweeps.read(sweep_id, lambda survey: surveyed_picture(survey, figure, across))
 
 
 @router.get(

@@ -95,7 +95,7 @@ def campaign(document: str, folder: Path) -> tuple[Sweep, Parts]:
     return sweep, Parts(sweep, folder)
 
 
-def report(document: str, folder: Path) -> str:
-    """Return the report of a campaign."""
+def report(document: str, folder: Path, name: str) -> str:
+    """Return the report of a campaign, headed by the name it was given."""
     sweep, parts = campaign(document, folder)
-    return surveyed_report(sweep, Survey(sweep, parts))
+    return surveyed_report(sweep, Survey(sweep, parts), name)

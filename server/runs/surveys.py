@@ -76,10 +76,10 @@ class Surveys:
         await self._ready(sweep_id, document, done, is_active)
         return await asyncio.to_thread(self._call, sweep_id, json.dumps(document, default=str), reader)
 
-    async def report(self, sweep_id: str, document: Document, done: int, is_active: bool) -> str:
+    async def report(self, sweep_id: str, document: Document, done: int, is_active: bool, name: str) -> str:
         """Return the report of a campaign; many curves take seconds."""
         await self._ready(sweep_id, document, done, is_active)
-        return await self._apart.call(done, report, json.dumps(document, default=str), self.folder / sweep_id)
+        return await self._apart.call(done, report, json.dumps(document, default=str), self.folder / sweep_id, name)
 
     def close(self) -> None:
         """End what is under way; files that are missing are made when somebody asks."""

@@ -133,7 +133,7 @@ class Sweeps(Requested[SweepRun]):
     async def report(self, sweep_id: str) -> str:
         """Return the report of the results so far."""
         row = await self._readable(sweep_id)
-        return await self._surveys.report(sweep_id, row.document, *self._progress(row))
+        return await self._surveys.report(sweep_id, row.document, *self._progress(row), row.label)
 
     def _progress(self, row: RequestRow) -> tuple[int, bool]:
         """Return how many runs are done, and whether there may be more soon."""

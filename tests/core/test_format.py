@@ -23,14 +23,17 @@ from core.format import (
     format_short,
     format_si,
     format_spread,
+    format_within,
     plain_scale,
     tick_labels,
+    typeset,
     unit_scale,
     unit_text,
 )
 
 CASES: dict[str, Any] = json.loads(Path("web/src/ui/format-cases.json").read_text("utf-8"))
 FORMATS = {"si": format_si, "short": format_short, "in": format_in}
+LOWERED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 PREFIX = {"T": 1e12, "G": 1e9, "M": 1e6, "k": 1e3, "": 1.0, "m": 1e-3, "µ": 1e-6}
 PREFIX |= {"n": 1e-9, "p": 1e-12, "f": 1e-15, "a": 1e-18}
 
@@ -55,6 +58,12 @@ def test_spreads_and_plain_units_are_those_of_the_page() -> None:
     """A deviation decides the decimals of its mean; figures beside each other share a unit without powers of ten."""
     for metric, mean, std, text in CASES["spread"]:
         assert format_spread(metric, mean, std) == text
+    for metric, mean, std, unit, text in CASES["spreadWithUnit"]:
+        assert format_spread(metric, mean, std, unit) == text
+    for metric, value, digits, unit, text in CASES["withUnit"]:
+        assert format_figure(metric, value, digits, unit) == text
+    for value, tolerance, unit, text in CASES["within"]:
+        assert format_within(value, tolerance, unit) == text
     for value, figure, digits, text in CASES["beside"]:
         assert format_beside(value, figure, digits) == text
     for unit, values, factor, text in CASES["plain"]:
@@ -78,10 +87,10 @@ def test_what_is_written_reads_back(digits: int) -> None:
     random = np.random.default_rng(1)
     for value in random.choice((-1.0, 1.0), 2000) * 10.0 ** random.uniform(-30, 30, 2000):
         for text in (format_si(value, "V", digits), format_short(value, "V", digits)):
-            found = re.fullmatch(r"(−?)(\d{1,3}(?:\.\d+)?)(?:e(−?\d+))?\u00a0([TGMkmµnpfa]?)V", text)
+            found = re.fullmatch(r"(−?)(\d{1,3}(?:\.\d+)?)(?:×10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?\u00a0([TGMkmµnpfa]?)V", text)
             assert found, text
             sign, number, power, prefix = found.groups()
-            size = float(number) * 10.0 ** int((power or "0").replace("−", "-")) * PREFIX[prefix]
+            size = float(number) * 10.0 ** int((power or "0").translate(LOWERED)) * PREFIX[prefix]
             assert float(number) < 1000.0
             assert (-size if sign else size) == pytest.approx(value, rel=0.5 * 10.0 ** (1 - digits) * 1.000001)
 
@@ -93,3 +102,32 @@ def test_small_things() -> None:
     assert [format_count(n, "sample") for n in (1, 12345)] == ["1\u00a0sample", "12\u202f345\u00a0samples"]
     assert format_number(-0.0001, 2) == "0.00"
     assert format_on(unit_scale("um", 4.1), -0.003) == "−0.003\u00a0µm"
+
+
+def test_a_value_and_its_deviation_share_one_power_and_no_line_breaks_between_them() -> None:
+    """Read back, both are what they were within half of the last digit that is shown."""
+    random = np.random.default_rng(2)
+    sizes = 10.0 ** random.uniform(-12, 6, 1000)
+    for mean, std in zip(sizes, sizes * 10.0 ** random.uniform(-5, 1, 1000), strict=True):
+        for unit in ("um", "N s/m", "deg", ""):
+            text = format_spread("", mean, std, unit)
+            assert not re.search(r"[ \u2009e]", text.replace("deg", "")), text
+            found = re.fullmatch(
+                r"\(?([\d.\u202f]+)\u00a0±\u00a0(<\u00a0)?([\d.\u202f]+)\)?(?:×10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?(?:\u00a0.+)?", text
+            )
+            assert found, text
+            shown, bound, spread, _ = found.groups()
+            assert len(shown.partition(".")[2]) == len(spread.partition(".")[2]), text
+            scale = unit_scale(unit, max(mean, std))
+            last = 0.5000001 * 10.0 ** -len(spread.partition(".")[2])
+            assert abs(float(shown.replace("\u202f", "")) - mean * scale.factor) <= last
+            assert bound or abs(float(spread.replace("\u202f", "")) - std * scale.factor) <= last
+
+
+def test_texts_of_people_are_typeset_and_names_are_left_alone() -> None:
+    """Units get their sign, powers of ten are raised, paths and words stay."""
+    assert typeset("Beams 0.2 um narrower, h = 20us, a drum") == "Beams 0.2\u00a0µm narrower, h = 20\u00a0µs, a drum"
+    assert typeset("beyond 8 um, in um, 3 um/V, uN um") == "beyond 8\u00a0µm, in µm, 3\u00a0µm/V, µN µm"
+    assert typeset("Q = R = 1e-4, -0.0002e-6, 0.4242e-6") == "Q = R = 10⁻⁴, -0.0002×10⁻⁶, 0.4242×10⁻⁶"
+    left = "set reference.amplitude_um = 1, tell us, drum, beam 2e, fe80e1"
+    assert typeset(left) == left

@@ -10,7 +10,6 @@ from typing import Any
 from xml.etree import ElementTree
 
 from scenarios.library import get, library
-from scenarios.report.metric_name import micro
 from scenarios.run import run
 from tests.server.conftest import TOKEN
 from tests.server.runs.test_runs import wait
@@ -48,7 +47,7 @@ def test_a_card_has_its_claim_before_its_run_and_its_figures_after(serve: Any) -
             ]
             drawing = live.http.get(f"/api/v1/runs/{card['run']}/thumbnail")
             assert drawing.headers["content-type"].startswith("image/svg+xml")
-            assert ElementTree.fromstring(drawing.text).attrib["aria-label"] == micro(get(name).head.title)
+            assert ElementTree.fromstring(drawing.text).attrib["aria-label"] == get(name).head.title
             report = live.http.get(f"/api/v1/runs/{card['run']}/report")
             assert report.headers["content-type"].startswith("text/html") and expected.digest in report.text
             assert "default-src 'none'" in report.headers["content-security-policy"]

@@ -20,6 +20,7 @@ from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import tally
 from scenarios.report.campaign import surveyed_report
+from scenarios.report.campaign_picture import campaign_picture, surveyed_picture
 from scenarios.schema import Scenario
 
 DOCUMENT: dict[str, Any] = {
@@ -182,9 +183,6 @@ def test_runs_are_counted_over_one_quantity_and_over_two(
     assert survey.distribution("sensor.noise_um", name).dots is None
     with pytest.raises(InputError, match="controller"):
         survey.distribution("controller.kind")
-    profile = survey.profile("sensor.noise_um", name)
-    assert len(profile.x) == 3 and profile.mean[2] == pytest.approx(values[23:].mean())
-    assert profile.std[2] == pytest.approx(values[23:].std(ddof=1))
 
 
 def test_the_report_of_many_points_lists_the_first(
@@ -194,8 +192,26 @@ def test_the_report_of_many_points_lists_the_first(
     monkeypatch.setattr("scenarios.report.campaign.MOST_POINTS", 3)
     table.show()
     parts.keep_up(table.read)
-    text = surveyed_report(sweep, Survey(sweep, parts))
-    assert "36 of 36 runs" in text and "The first 3 points" in text and "runs of a slice" in text
+    text = surveyed_report(sweep, Survey(sweep, parts), "Many")
+    assert "36 of 36 runs" in text and "The first 3 points" in text and "<h1>Many</h1>" in text
+
+
+def test_the_picture_of_files_is_that_of_outcomes(made: tuple[Sweep, Parts, Table]) -> None:
+    """It is of all points, and reads no more figures than it needs."""
+    sweep, parts, table = made
+    table.show()
+    parts.keep_up(table.read)
+    survey = Survey(sweep, parts)
+    everything = dict(enumerate(tally(sweep, table.found)))
+    for figure in ("", "control.rms_error_um"):
+        mine = surveyed_picture(survey, figure)
+        other = campaign_picture(sweep, everything, survey.figures, figure)
+        assert mine.figures == other.figures
+        assert [part.labels for part in mine.parts] == [part.labels for part in other.parts]
+        for part, beside in zip(mine.parts, other.parts, strict=True):
+            assert part.x == beside.x and part.mean == pytest.approx(beside.mean, rel=1e-9)
+    (bare,) = survey.page([0], ["control.rms_error_um"])
+    assert list(bare.metrics) == ["control.rms_error_um"] and not bare.diagnosis and bare.runs == 6
 
 
 def test_a_file_of_many_runs_of_a_point_holds_what_they_add_up_to(

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from core.format import labels_on, unit_scale
+from scenarios.metric_name import metric_scale
 from scenarios.report.axis import Axis, Scale, decade_ticks, linear_ticks, time_scale
-from scenarios.report.metric_name import metric_title, micro
 
 UI = Path("web/src/ui")
 CASES: dict[str, Any] = json.loads((UI / "axis-cases.json").read_text("utf-8"))
@@ -35,11 +35,7 @@ def test_units_and_labels_are_those_of_the_page() -> None:
 
 def test_figures_have_the_names_of_the_page() -> None:
     for metric, title in json.loads((UI / "metric-cases.json").read_text("utf-8")).items():
-        assert metric_title(metric) == title
-
-
-def test_units_of_a_text_are_printed() -> None:
-    assert micro("Beams 0.2 um narrower, h = 20us, a drum") == "Beams 0.2\u00a0µm narrower, h = 20\u00a0µs, a drum"
+        assert metric_scale(metric).title == title
 
 
 def test_an_axis_says_its_unit_once_and_labels_numbers() -> None:

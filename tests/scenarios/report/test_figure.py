@@ -55,7 +55,7 @@ def test_lanes_show_the_truth_the_verdict_and_what_was_done() -> None:
     assert truth[0][1] == pytest.approx(2000 * scenario.spec.dt_ms, abs=0.6)
     assert len({mark.x for mark in chart.marks}) == len(scenario.head.events)
     picture, texts = drawn(chart)
-    assert {"kalman", "healthy", "m+5", "time, ms"} <= set(texts)
+    assert {"kalman", "healthy", "mass +5\u00a0%", "time, ms"} <= set(texts)
     assert len(list(picture.iter(f"{SVG}rect"))) == len(lane.areas)
 
 

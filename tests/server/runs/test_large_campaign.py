@@ -42,6 +42,22 @@ def test_results_of_many_points_are_as_of_few(live: Any) -> None:
     assert all(point["runs"] == 1 for point in answer["points"])
 
 
+def test_the_picture_is_chosen_by_the_server_and_the_report_has_the_name_given(live: Any) -> None:
+    small = {**MANY, "grid": {"sensor.noise_um": [0.01, 0.1], "reference.amplitude_um": [1.0, 2.0]}}
+    made = live.http.post("/api/v1/sweeps", json={"sweep": small, "label": "Noise & <stroke>"}).json()
+    address = f"/api/v1/sweeps/{ended(live, made['id'])['id']}"
+    shown = live.http.get(f"{address}/picture").json()
+    assert shown["kind"] == "map" and shown["figure"] == shown["figures"][0] and len(shown["parts"][0]["mean"]) == 4
+    other = live.http.get(f"{address}/picture", params={"figure": "control.rms_error_um"}).json()
+    assert other["figure"] == "control.rms_error_um" and other["figures"] == shown["figures"]
+    assert other["low"] == 0.0
+    check(live.http.get(f"{address}/picture", params={"figure": "control.nonsense"}), 422, "unknown", "figure")
+    points = live.http.get(f"{address}/points").json()
+    assert points["words"]["m+5"] == "mass +5\u00a0%"
+    report = live.http.get(f"{address}/report").text
+    assert "<h1>Noise &amp; &lt;stroke&gt;</h1>" in report and report.index("<svg") < report.index("<table")
+
+
 def test_a_wrong_value_among_many_is_refused_at_once_and_so_is_what_is_too_long(live: Any) -> None:
     for noises in ([0.1, -1.0], [*MANY["grid"]["sensor.noise_um"], -1.0]):
         grid = {"sensor.noise_um": noises}

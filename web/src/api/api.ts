@@ -101,6 +101,8 @@ export const api = {
   cancelSweep: (id: string) => data(client.DELETE("/api/v1/sweeps/{sweep_id}", sweep(id))),
   sweepPoints: (id: string, query: PointQuery) =>
     data(client.GET("/api/v1/sweeps/{sweep_id}/points", { params: { ...sweep(id).params, query } })),
+  sweepPicture: (id: string, query: { figure?: string; across?: string }) =>
+    data(client.GET("/api/v1/sweeps/{sweep_id}/picture", { params: { ...sweep(id).params, query } })),
   sweepDistribution: (id: string, query: { x: string; y?: string }) =>
     data(client.GET("/api/v1/sweeps/{sweep_id}/distribution", { params: { ...sweep(id).params, query } })),
   scenario: (scenario_id: string) =>

@@ -1,5 +1,4 @@
 import createClient from "openapi-fetch";
-import { micro } from "./micro";
 import type { paths } from "./schema";
 import { sessionHeaders } from "./session";
 import type { ApiErrorBody } from "./types";
@@ -28,7 +27,7 @@ export async function data<T>(answer: Promise<{ data?: T; error?: unknown; respo
 /** A proxy or a crash may answer in another shape; then the status is all there is. */
 function errorBody(error: unknown, status: number): ApiErrorBody {
   const body = (error as { error?: ApiErrorBody } | undefined)?.error;
-  if (body?.message) return { ...body, message: micro(body.message), hint: micro(body.hint ?? "") };
+  if (body?.message) return { ...body, hint: body.hint ?? "" };
   return { code: "unexpected", message: `The server answered ${status}.`, field: "", hint: "" };
 }
 

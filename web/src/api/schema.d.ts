@@ -1303,6 +1303,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/sweeps/{sweep_id}/picture": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Sweep Picture
+         * @description Return a figure over what was varied, and how to draw it: rows, lines, a map, or a ranking with dots.
+         */
+        get: operations["get_sweep_picture"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sweeps/{sweep_id}/runs": {
         parameters: {
             query?: never;
@@ -3702,6 +3722,59 @@ export interface components {
             share: number;
             /** Loads */
             loads: components["schemas"]["Load"][];
+        };
+        /**
+         * CampaignPicture
+         * @description A figure of a campaign and how it is drawn.
+         */
+        CampaignPicture: {
+            /**
+             * Kind
+             * @description By numbers that vary: none, one, two; a ranking if more, or if chance draws them
+             * @enum {string}
+             */
+            kind: "rows" | "lines" | "map" | "ranking";
+            /** Figure */
+            figure: string;
+            /**
+             * Figures
+             * @description Figures that a run has: those expected or usual, what varies most first
+             */
+            figures: string[];
+            /**
+             * Across
+             * @description Number on the axis across
+             */
+            across: string;
+            /**
+             * Up
+             * @description Number on the axis up of a map
+             */
+            up: string;
+            /**
+             * Low
+             * @description Where the axis of the figure begins
+             */
+            low: number;
+            /** High */
+            high: number;
+            /** Parts */
+            parts: components["schemas"]["Part"][];
+            /**
+             * Left Out
+             * @description Parts without room
+             */
+            left_out: number;
+            /**
+             * Ranking
+             * @description Closest first; for a ranking alone
+             */
+            ranking: components["schemas"]["Rank"][];
+            /**
+             * Chance
+             * @description Correlation that values without relation stay below in 95 % of campaigns
+             */
+            chance: number;
         };
         /**
          * CaptureMark
@@ -6415,6 +6488,33 @@ export interface components {
             sets: components["schemas"]["ParameterSet"][];
         };
         /**
+         * Part
+         * @description A figure over what was varied, for one combination of the rest: variants, texts of the grid.
+         */
+        Part: {
+            /** Labels */
+            labels: {
+                [key: string]: string | number;
+            };
+            /**
+             * X
+             * @description Values across; none for rows
+             */
+            x: number[];
+            /**
+             * Y
+             * @description Values up; for a map alone
+             */
+            y: number[];
+            /** Mean */
+            mean: number[];
+            /**
+             * Std
+             * @description Deviation over the seeds
+             */
+            std: number[];
+        };
+        /**
          * Pause
          * @description Stop time at the next tick edge.
          */
@@ -6664,6 +6764,19 @@ export interface components {
              * @default
              */
             right?: string;
+        };
+        /**
+         * Rank
+         * @description How closely a figure goes with a number that was varied.
+         */
+        Rank: {
+            /** Name */
+            name: string;
+            /**
+             * Correlation
+             * @description Rank correlation by Spearman, -1 to 1
+             */
+            correlation: number;
         };
         /**
          * RateReadout
@@ -7867,6 +7980,13 @@ export interface components {
              * @description What runs can be counted over: axes that are numbers, seed, figures
              */
             quantities: string[];
+            /**
+             * Words
+             * @description Diagnosers by their titles and hypotheses in words, by their names
+             */
+            words: {
+                [key: string]: string;
+            };
         };
         /**
          * SweepRun
@@ -11797,6 +11917,43 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Distribution"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_sweep_picture: {
+        parameters: {
+            query?: {
+                /** @description A figure; none for the one that varies most */
+                figure?: string;
+                /** @description A number that varies, for the axis across */
+                across?: string;
+            };
+            header?: never;
+            path: {
+                /** @description Id of a campaign */
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CampaignPicture"];
                 };
             };
             /** @description Refused or failed */

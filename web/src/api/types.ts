@@ -31,6 +31,7 @@ export type Device = Schemas["DeviceCard"];
 export type DeviceCatalogue = Schemas["Devices"];
 export type Equation = Schemas["EquationCard"];
 export type Evaluation = Schemas["Evaluation"];
+export type CampaignPicture = Schemas["CampaignPicture"];
 export type Distribution = Schemas["Distribution"];
 export type DiagnosisTally = Schemas["DiagnosisTally"];
 export type ForkFrom = Partial<Schemas["ForkFrom"]>;

@@ -2,7 +2,6 @@ import { Button, CloseButton } from "@mantine/core";
 import { IconPlayerPlayFilled, IconSquare, IconSquareCheckFilled } from "@tabler/icons-react";
 import { type ReactNode, useEffect, useState } from "react";
 import { useMay } from "../api/me";
-import { micro } from "../api/micro";
 import { actions } from "../bench/actions";
 import { showPanel } from "../bench/dock";
 import { showError } from "../bench/send";
@@ -64,7 +63,7 @@ export function Banner({ hints = true }: { hints?: boolean }) {
     return (
       <Line
         tone="alarm"
-        title={`Tripped: ${micro(trip.reason.replace(/^tripped: /, ""))}`}
+        title={`Tripped: ${trip.reason.replace(/^tripped: /, "")}`}
         text={`at ${formatClock(trip.tick * dtMs)} s, ${formatTick(trip.tick)}. The voltage is off; the panels show the last values before.`}
       >
         {drives && (

@@ -3,7 +3,6 @@ import { IconClipboardList, IconFolderOpen, IconRulerMeasure } from "@tabler/ico
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
 import { useMay } from "../api/me";
-import { micro } from "../api/micro";
 import type { Device, ScenarioSummary } from "../api/types";
 import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
@@ -134,7 +133,7 @@ function Gallery() {
           <li key={s.id}>
             <div>
               <h3>{s.title}</h3>
-              <p>{micro(s.summary || s.claim)}</p>
+              <p>{s.summary || s.claim}</p>
               <small>
                 {s.id}
                 {s.source && ` · ${s.source}`}

@@ -1,4 +1,5 @@
 import type { Bench } from "../api/types";
+import { cardOf } from "../api/use-catalog";
 import { useBench } from "../stream/bench-store";
 import { formatChange } from "../ui/format";
 
@@ -20,6 +21,14 @@ export function hypothesisWords(name: string, diagnosers = useBench.getState().b
   if (!diagnosers) return name;
   if (known?.diagnosers !== diagnosers) known = { diagnosers, words: wordsOf(diagnosers) };
   return known.words.get(name) ?? name;
+}
+
+/** A diagnoser by the title of its block, and by its own name where it has one. */
+export function diagnoserWords(id: string, diagnosers: Diagnosers | undefined): string {
+  const kind = diagnosers?.[id]?.kind ?? id;
+  const name = id.replaceAll("_", " ");
+  const title = cardOf("diagnose", kind)?.title;
+  return !title ? name : id === kind ? title : `${title}, ${name}`;
 }
 
 /** Hypotheses with their words, for a title: "m+5: mass +5 %". */

@@ -11,7 +11,7 @@ const entry = (metric: string, measured: number | null, rest: Partial<Entry> = {
   measured,
   published: "",
   published_value: null,
-  expected: ">= -1",
+  expected: "≥ −1",
   ok: true,
   verdict: "reproduced",
   fitted: [],
@@ -36,7 +36,7 @@ it("keeps a share from reading as all beside errors that were counted, and count
     entry("diagnosis.kalman.false_switches", 53),
     entry("control.rms_error_um", 0.0123456),
   );
-  expect(rows.slice(1).map((row) => row[MEASURED])).toEqual(["0.99997", "53", "0.01235"]);
+  expect(rows.slice(1).map((row) => row[MEASURED])).toEqual(["0.99997", "53", "12.35\u00a0nm"]);
 });
 
 it("says a figure that was not measured by a dash", () => {
@@ -50,7 +50,7 @@ it("has what the open loop gives beside each figure, and a PID only where one is
     ["effort ratio", "≥ −1", "1.800", "1"],
   ]);
   const [head, , row] = table(plain, entry("control.settling_ms", 9.7, { open_loop: 100, pid: 20 }));
-  expect([head.at(-1), row.at(-1)]).toEqual(["PID", "20"]);
+  expect([head.at(-1), row.at(-1)]).toEqual(["PID", "20\u00a0ms"]);
 });
 
 it("names the PID of a row, and says where it meets the claim too", () => {

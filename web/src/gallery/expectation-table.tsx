@@ -1,8 +1,6 @@
 import { useState } from "react";
-import { micro } from "../api/micro";
 import type { GalleryCard } from "../api/types";
-import { formatFigure } from "../ui/format";
-import { metricTitle } from "../ui/metric-name";
+import { metricScale } from "../ui/metric-name";
 import { Verdict } from "../ui/verdict";
 import styles from "./gallery.module.css";
 
@@ -17,10 +15,6 @@ interface ExpectationTableProps {
   /** Of the whole; rows that differ from it say their own. */
   verdict: string | null;
 }
-
-/** Bounds as they are printed rather than typed. */
-const typeset = (text: string) =>
-  text.replaceAll(" ± ", "\u00a0±\u00a0").replaceAll(">=", "≥").replaceAll("<=", "≤").replaceAll("-", "−");
 
 /** What is said of a figure beside its numbers: why it stands alone, what was chosen for it, where it comes from. */
 function remarks(entry: Entry): string[] {
@@ -57,37 +51,38 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
           </tr>
         </thead>
         <tbody>
-          {rows.map((entry) => (
-            <tr key={entry.metric} title={micro([entry.metric, ...remarks(entry)].join(": "))}>
-              <th scope="row">
-                {metricTitle(entry.metric)}
-                {entry.published && (
-                  <small className={styles.published}>
-                    published: {micro(entry.published).replaceAll(" %", "\u00a0%")}
-                  </small>
-                )}
-                {entry.comparator && (
-                  <small className={styles.published}>
-                    {entry.comparator}
-                    {entry.pid_too && ", meets the claim too"}
-                  </small>
-                )}
-                {entry.verdict !== verdict && (
-                  <div>
-                    <Verdict verdict={entry.verdict} borneOut={entry.ok === true} />
-                  </div>
-                )}
-                {all && remarks(entry).map((text) => <small key={text}>{micro(text)}</small>)}
-              </th>
-              <td>{typeset(entry.expected)}</td>
-              <td className={styles.measured} data-ok={entry.ok}>
-                {formatFigure(entry.metric, entry.measured)}
-                {entry.ok === false && " ✗"}
-              </td>
-              <td>{formatFigure(entry.metric, entry.open_loop)}</td>
-              {hasPid && <td>{formatFigure(entry.metric, entry.pid)}</td>}
-            </tr>
-          ))}
+          {rows.map((entry) => {
+            const { name, say } = metricScale(entry.metric, []);
+            return (
+              <tr key={entry.metric} title={[entry.metric, ...remarks(entry)].join(": ")}>
+                <th scope="row">
+                  {name}
+                  {entry.published && (
+                    <small className={styles.published}>published: {entry.published.replaceAll(" %", "\u00a0%")}</small>
+                  )}
+                  {entry.comparator && (
+                    <small className={styles.published}>
+                      {entry.comparator}
+                      {entry.pid_too && ", meets the claim too"}
+                    </small>
+                  )}
+                  {entry.verdict !== verdict && (
+                    <div>
+                      <Verdict verdict={entry.verdict} borneOut={entry.ok === true} />
+                    </div>
+                  )}
+                  {all && remarks(entry).map((text) => <small key={text}>{text}</small>)}
+                </th>
+                <td>{entry.expected}</td>
+                <td className={styles.measured} data-ok={entry.ok}>
+                  {say(entry.measured)}
+                  {entry.ok === false && " ✗"}
+                </td>
+                <td>{say(entry.open_loop)}</td>
+                {hasPid && <td>{say(entry.pid)}</td>}
+              </tr>
+            );
+          })}
         </tbody>
       </table>
       {entries.length > SHOWN || entries.some((entry) => remarks(entry).length > 0) ? (

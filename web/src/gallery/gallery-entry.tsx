@@ -3,7 +3,6 @@ import { IconFileText, IconPlayerPlay, IconPlayerTrackNext } from "@tabler/icons
 import { useEffect, useRef, useState } from "react";
 import { api } from "../api/api";
 import { useMay } from "../api/me";
-import { micro } from "../api/micro";
 import type { GalleryCard } from "../api/types";
 import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
@@ -34,7 +33,7 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
   const [starting, setStarting] = useState(false);
   const drives = useMay("drive");
   const teaches = useMay("teach");
-  const title = micro(card.title);
+  const { title } = card;
   const underWay = card.state === "queued" || card.state === "running";
 
   const live = async () => {
@@ -81,7 +80,7 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
             {figure}: <b>ours {ours}</b> / printed {printed}
           </p>
         ))}
-        <p>{micro(card.claim || card.summary)}</p>
+        <p>{card.claim || card.summary}</p>
       </div>
       <ExpectationTable entries={card.expectations} verdict={card.verdict} />
       <footer>

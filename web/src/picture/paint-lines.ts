@@ -1,17 +1,19 @@
-import { formatShort, formatSpread } from "../ui/format";
+import { formatShort } from "../ui/format";
 import { DASHES, type Scheme, TRACE_COLOURS } from "../ui/palette";
 import { linearAxis, type Plot, paintAxes, type Range } from "./axes";
 import type { LegendEntry } from "./legend";
 import type { Box, Look, Pen } from "./pen";
-import { paintLine, paintPoints, within } from "./traces";
+import { paintBand, paintLine, paintPoints, within } from "./traces";
 
 export interface ChartLine {
   name: string;
   x: readonly number[];
   y: readonly number[];
-  /** Half the length of the bar at each point. */
+  /** Half the width of the band at each point. */
   spread?: readonly number[];
   isStepped?: boolean;
+  /** Points alone. */
+  isDotted?: boolean;
 }
 
 export interface LinesShown {
@@ -20,13 +22,7 @@ export interface LinesShown {
   lines: readonly ChartLine[];
   xRange?: Range;
   yRange?: Range;
-  /** What the figure cannot pass, such as 0 for a count: bars end there. */
-  yLimits?: Range;
 }
-
-/** Bars show how far runs differ; on a range of less than this share of the values they would be giants. */
-const LEAST_SHARE = 0.02;
-const UNLIMITED: Range = [Number.NEGATIVE_INFINITY, Number.POSITIVE_INFINITY];
 
 const colourOf = (i: number, scheme: Scheme) => TRACE_COLOURS[scheme][1 + (i % (TRACE_COLOURS[scheme].length - 1))];
 const dashesOf = (i: number) => DASHES[i % DASHES.length];
@@ -35,41 +31,32 @@ const dashesOf = (i: number) => DASHES[i % DASHES.length];
 export const lineEntries = (lines: readonly ChartLine[], scheme: Scheme): LegendEntry[] =>
   lines.length > 1 ? lines.map(({ name }, i) => ({ name, colour: colourOf(i, scheme), dashes: dashesOf(i) })) : [];
 
-/** Lines over two titled axes. */
-export function paintLines(
-  pen: Pen,
-  box: Box,
-  { xLabel, yLabel, lines, xRange, yRange, yLimits = UNLIMITED }: LinesShown,
-  look: Look,
-): Plot {
+/** Lines in their bands over two titled axes. */
+export function paintLines(pen: Pen, box: Box, shown: LinesShown, look: Look): Plot {
+  const { xLabel, yLabel, lines, xRange, yRange } = shown;
   const across = xRange ?? spanOf(lines.flatMap((line) => line.x));
-  const up = yRange ?? heightOf(lines, yLimits);
+  const up = yRange ?? spanOf(lines.flatMap((line) => line.y));
   const plot = paintAxes(pen, box, linearAxis(across, xLabel), linearAxis(up, yLabel), look);
   const { left, right, top, bottom } = plot.field;
   // a line along an edge of the field keeps its width
   within(pen, { left: left - 3, right: right + 3, top: top - 3, bottom: bottom + 3 }, () =>
-    lines.forEach(({ x, y, spread, isStepped }, i) => {
+    lines.forEach(({ x, y, spread, isStepped, isDotted }, i) => {
       const colour = colourOf(i, look.scheme);
-      paintLine(pen, plot, x, y, { colour, dashes: dashesOf(i) }, isStepped);
-      if (spread || x.length === 1) paintPoints(pen, plot, x, y, colour, spread, yLimits);
+      if (isDotted || x.length === 1) paintPoints(pen, plot, x, y, colour, spread);
+      else {
+        if (spread) paintBand(pen, plot, x, ...bandOf(y, spread), `${colour}38`);
+        paintLine(pen, plot, x, y, { colour, dashes: dashesOf(i) }, isStepped);
+      }
     }),
   );
   return plot;
 }
 
-/** The range of lines with their bars, wide enough that bars are in proportion to the values. */
-function heightOf(lines: readonly ChartLine[], [least, most]: Range): Range {
-  const bars = lines.flatMap(({ y, spread }) =>
-    y.map((v, i) => [Math.max(v - (spread?.[i] ?? 0), least), Math.min(v + (spread?.[i] ?? 0), most)]),
-  );
-  const [low, high] = spanOf(bars.flat());
-  if (!lines.some(({ spread }) => spread)) return [low, high];
-  const longest = bars.reduce((most, [from, to]) => Math.max(most, to - from), 0);
-  const lacks = Math.max(LEAST_SHARE * Math.max(Math.abs(low), Math.abs(high)), 2 * longest) - (high - low);
-  const wide: Range = lacks > 0 ? [low - lacks / 2, high + lacks / 2] : [low, high];
-  const air = 0.04 * (wide[1] - wide[0]);
-  return [Math.max(wide[0], least - air), Math.min(wide[1], most + air)];
-}
+/** The lower and the upper edge of a band. */
+const bandOf = (y: readonly number[], spread: readonly number[]): [number[], number[]] => [
+  y.map((value, i) => value - spread[i]),
+  y.map((value, i) => value + spread[i]),
+];
 
 /** A range with some air around the values. */
 function spanOf(values: readonly number[]): Range {
@@ -91,16 +78,20 @@ export function nearestPoint(
   lines: readonly ChartLine[],
   plot: Plot,
   at: { x: number; y: number },
+  say = (line: number, point: number) =>
+    `${formatShort(lines[line].x[point], "")}, ${formatShort(lines[line].y[point], "")}`,
 ): string | undefined {
   let best = REACH_PX;
-  let found: string | undefined;
-  for (const line of lines)
+  let found: [number, number] | undefined;
+  lines.forEach((line, number) => {
     line.x.forEach((x, i) => {
       const far = Math.hypot(plot.x(x) - at.x, plot.y(line.y[i]) - at.y);
       if (!(far < best)) return;
       best = far;
-      const value = line.spread?.[i] ? formatSpread("", line.y[i], line.spread[i]) : formatShort(line.y[i], "");
-      found = `${line.name ? `${line.name}: ` : ""}${formatShort(x, "")}, ${value}`;
+      found = [number, i];
     });
-  return found;
+  });
+  if (!found) return undefined;
+  const { name } = lines[found[0]];
+  return (name ? `${name}: ` : "") + say(...found);
 }

@@ -1,4 +1,4 @@
-import type { Place, Plot, Range } from "./axes";
+import type { Place, Plot } from "./axes";
 import type { Field, Pen } from "./pen";
 
 export interface Stroke {
@@ -102,13 +102,11 @@ export function paintPoints(
   up: readonly number[],
   colour: string,
   errors?: readonly number[],
-  [least, most]: Range = [Number.NEGATIVE_INFINITY, Number.POSITIVE_INFINITY],
 ): void {
   across.forEach((value, i) => {
     const at = plot.x(value);
     const half = errors?.[i] ?? 0;
-    const [low, high] = [Math.max(up[i] - half, least), Math.min(up[i] + half, most)];
-    if (half > 0) paintRule(pen, [at, plot.y(low)], [at, plot.y(high)], { colour, width: 1 });
+    if (half > 0) paintRule(pen, [at, plot.y(up[i] - half)], [at, plot.y(up[i] + half)], { colour, width: 1 });
     paintDot(pen, at, plot.y(up[i]), 3, colour);
   });
 }

@@ -7,17 +7,21 @@ import { penOf } from "../testing/recording-pen";
 import { mount } from "../testing/render";
 import { CampaignDetail } from "./campaign-detail";
 
-const { points, density, histogram } = await recordedAnswer("campaign");
+const { points, picture, density, histogram } = await recordedAnswer("campaign");
 const sweep = await recordedAnswer("sweep");
 const NOISES = [0.01, 0.02, 0.05, 0.1];
 const many = Array.from({ length: 50 }, (_, i) => ({ ...points.points[0], labels: { "sensor.noise_um": i / 1000 } }));
 
-beforeEach(() => server.on("GET", "/sweeps/sweep-1/points", points));
+beforeEach(() => {
+  server.on("GET", "/sweeps/sweep-1/points", points);
+  server.on("GET", "/sweeps/sweep-1/picture", picture);
+});
 
 async function mountCampaign(of = sweep) {
   const onChanged = vi.fn();
   const shown = mount(<CampaignDetail sweep={of} onChanged={onChanged} />);
-  const table = (await screen.findAllByRole("table"))[0];
+  await shown.user.click(await screen.findByText("All points as a table"));
+  const table = screen.getAllByRole("table").at(-1) as HTMLElement;
   const rows = () =>
     within(table)
       .getAllByRole("row")
@@ -45,7 +49,12 @@ it("has a row for each point, the last included, with units in the headings", as
     .getAllByRole("columnheader")
     .map((one) => one.textContent?.replace(/\s/g, " "));
   expect(headings.slice(0, 4)).toEqual(["noise, µm", "runs", "as expected", "tripped"]);
-  expect(headings.slice(4)).toEqual(["rms error, pm", "kalman: correct fraction", "kalman: false switches"]);
+  expect(headings.slice(4)).toEqual([
+    "kalman: correct fraction",
+    "rms error, pm",
+    "kalman: false switches",
+    "amplitude, µm",
+  ]);
   expect(first()).toEqual(["0.01", "0.02", "0.05", "0.1"]);
   const rms = headings.indexOf("rms error, pm");
   expect(rows()[0].slice(1, 4)).toEqual(["1", "1", "0"]);
@@ -65,15 +74,68 @@ it("sorts by the heading that is pressed, up and down", async () => {
   expect(server.asked("GET", "/sweeps/sweep-1/points")).toHaveLength(1);
 });
 
-it("draws the figures over the noise, and the curves and the table of the diagnoser", async () => {
-  await mountCampaign();
+it("shows the picture first: the figure that varies most over the noise, from zero where zero means something", async () => {
+  const { user } = await mountCampaign();
   await drawOnce();
-  const chart = screen.getByRole("img", { name: /rms error.* over noise/ });
-  expect(chart).toHaveAccessibleName(/mean ± std, pm over noise, µm$/);
-  expect(penOf(chart).words).toEqual(expect.arrayContaining(["0.01", "0.10", "300", "400"]));
+  const figures = within(screen.getByRole("region", { name: "Figures" }));
+  expect(screen.getAllByRole("region")[0]).toHaveAccessibleName("Figures");
+  const [first] = picture.figures;
+  expect(picture.figure).toBe(first);
+  const chart = figures.getByRole("img", { name: / over noise/ });
+  expect(penOf(chart).words).toEqual(expect.arrayContaining(["0.01", "0.10", "noise, µm"]));
+  await user.click(figures.getByRole("combobox", { name: "Figure" }));
+  await user.click(screen.getByRole("option", { name: "rms error, µm" }));
+  await waitFor(() =>
+    expect(server.asked("GET", "/sweeps/sweep-1/picture").at(-1)?.query).toEqual({ figure: "control.rms_error_um" }),
+  );
+});
+
+it("shows the map of a grid of two numbers, one for each of the rest", async () => {
+  const part = (kind: string) => ({
+    labels: { "controller.kind": kind },
+    x: [0.01, 0.01, 0.1, 0.1],
+    y: [5, 10, 5, 10],
+    mean: [1, 2, 3, 4],
+    std: [0, 0, 0, 0],
+  });
+  const map = { kind: "map", up: "faults.mass_pct", low: 0, high: 4, parts: [part("pid"), part("mrac")] };
+  server.on("GET", "/sweeps/sweep-1/picture", { ...picture, figure: "control.rms_error_um", ...map });
+  await mountCampaign();
+  const charts = within(screen.getByRole("region", { name: "Figures" })).getAllByRole("img");
+  expect(charts.map((chart) => chart.getAttribute("aria-label"))).toEqual([
+    "rms error, µm over noise and mass: kind pid",
+    "rms error, µm over noise and mass: kind mrac",
+  ]);
+});
+
+it("ranks the numbers of a hypercube, and shows the points over the one that is chosen", async () => {
+  const parts = [{ labels: {}, x: [0.01, 0.02, 0.03], y: [], mean: [1, 2, 3], std: [0, 0, 0] }];
+  const ranking = [
+    { name: "sensor.noise_um", correlation: 0.9 },
+    { name: "device.mass_kg", correlation: -0.1 },
+  ];
+  const found = { kind: "ranking", figure: "control.rms_error_um", low: 0, high: 4, parts, ranking, chance: 0.3 };
+  server.on("GET", "/sweeps/sweep-1/picture", { ...picture, ...found });
+  const { user } = await mountCampaign();
+  const figures = within(screen.getByRole("region", { name: "Figures" }));
+  expect(figures.getByRole("img", { name: /what it goes with: noise: 0.90; mass: −0.10/ })).toBeVisible();
+  expect(figures.getByRole("img", { name: /^rms error over noise/ })).toBeVisible();
+  await user.click(figures.getByRole("combobox", { name: "Across" }));
+  await user.click(screen.getByRole("option", { name: "mass" }));
+  await waitFor(() =>
+    expect(server.asked("GET", "/sweeps/sweep-1/picture").at(-1)?.query).toEqual({
+      figure: "control.rms_error_um",
+      across: "device.mass_kg",
+    }),
+  );
+});
+
+it("draws the curves and the table of the diagnoser, by its title and its hypotheses in words", async () => {
+  await mountCampaign();
   expect(screen.getByRole("img", { name: /Receiver operating characteristic/ })).toBeVisible();
   expect(screen.getByRole("img", { name: /Detection delay/ })).toBeVisible();
-  expect(screen.getByText("truth down", { exact: false })).toBeVisible();
+  expect(screen.getByText(/^Kalman bank .*truth down/)).toBeVisible();
+  expect(screen.getByRole("columnheader", { name: "mass +5\u00a0%" })).toBeVisible();
 });
 
 it("shows the confusion of the point that is chosen", async () => {

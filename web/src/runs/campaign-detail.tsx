@@ -1,47 +1,44 @@
 import { MultiSelect } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../api/api";
-import { micro } from "../api/micro";
+import { useAnswer, useLast } from "../api/queries";
 import type { PointTally, SweepRun } from "../api/types";
-import { LineChart } from "../picture/line-chart";
 import { Downloads } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
 import { formatCount, formatNumber } from "../ui/format";
-import { metricLimits, metricScale, metricTitle } from "../ui/metric-name";
+import { metricTitle } from "../ui/metric-name";
 import { Stale } from "../ui/stale";
+import { CampaignFigures } from "./campaign-figures";
 import { DiagnosisCharts } from "./diagnosis-charts";
 import { DistributionChart } from "./distribution-chart";
 import { ReportButton, ScriptButton } from "./file-buttons";
 import { sweepName } from "./jobs";
 import { NameField } from "./name-field";
-import { labelScale, numericAxes, trend, usualMetrics } from "./points";
 import { PointsTable } from "./points-table";
 import styles from "./runs.module.css";
 import { usePoints } from "./use-points";
 
 /** Runs from which their distribution is worth a plot. */
 const SOME_RUNS = 50;
-const MOST_TRENDS = 6;
 const MOST_SAID = 4;
+/** Columns of the table before anybody chooses. */
+const FIRST_COLUMNS = 4;
 
-/** A campaign: its points as a table, figures over what was varied, and what each diagnoser said. */
+/** A campaign: its picture, what each diagnoser said, and its points as a table. */
 export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChanged(): void }) {
   const active = sweep.state === "queued" || sweep.state === "running";
   const { value, error, since, again, isPage, every, ...paging } = usePoints(sweep);
-  const [metrics, setMetrics] = useState<string[] | undefined>(undefined);
+  const [columns, setColumns] = useState<string[] | undefined>(undefined);
+  const [chosen, setChosen] = useState<{ figure?: string; across?: string }>({});
+  const { value: newest } = useAnswer(
+    ["sweep picture", sweep.id, sweep.state, chosen],
+    () => api.sweepPicture(sweep.id, chosen),
+    () => every,
+  );
+  const picture = useLast(newest);
   const files = `./api/v1/sweeps/${sweep.id}`;
   const points = value?.points ?? [];
-  const shown = metrics ?? usualMetrics(points);
-
-  const spread = (sweep.done ?? 0) >= SOME_RUNS && value && (
-    <DistributionChart
-      sweep={sweep}
-      quantities={value.quantities}
-      figures={value.figures}
-      first={shown[0]}
-      every={every}
-    />
-  );
+  const shown = columns ?? picture?.figures.slice(0, FIRST_COLUMNS) ?? [];
 
   return (
     <article className={styles.result}>
@@ -53,7 +50,7 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
         </small>
         <NameField
           label={sweep.label ?? ""}
-          title={micro(sweep.title) || `Campaign ${sweep.name}`}
+          title={sweep.title || `Campaign ${sweep.name}`}
           save={(label) => api.renameSweep(sweep.id, label).then(onChanged)}
         />
       </header>
@@ -74,20 +71,30 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
             </span>
           </div>
           <Said points={points} />
-          <MultiSelect
-            size="xs"
-            label="Figures"
-            searchable
-            data={(value?.figures ?? []).map((name) => ({ value: name, label: metricTitle(name) }))}
-            value={shown}
-            onChange={setMetrics}
-            maxDropdownHeight={300}
-          />
-          {isPage && spread}
-          <PointsTable points={points} metrics={shown} found={value?.found ?? 0} isPage={isPage} {...paging} />
-          {!isPage && <Trends points={points} metrics={shown} />}
-          {!isPage && spread}
-          <DiagnosisCharts points={points} />
+          {picture && picture.parts.length > 0 && <CampaignFigures picture={picture} onChoose={setChosen} />}
+          {(sweep.done ?? 0) >= SOME_RUNS && value && (
+            <DistributionChart
+              sweep={sweep}
+              quantities={value.quantities}
+              figures={value.figures}
+              first={picture?.figure}
+              every={every}
+            />
+          )}
+          <DiagnosisCharts points={points} words={value?.words ?? {}} />
+          <details className={styles.points} open={picture?.parts.length === 0}>
+            <summary>All points as a table</summary>
+            <MultiSelect
+              size="xs"
+              label="Columns"
+              searchable
+              data={(picture?.figures ?? []).map((name) => ({ value: name, label: metricTitle(name) }))}
+              value={shown}
+              onChange={setColumns}
+              maxDropdownHeight={300}
+            />
+            <PointsTable points={points} metrics={shown} found={value?.found ?? 0} isPage={isPage} {...paging} />
+          </details>
         </>
       )}
     </article>
@@ -102,44 +109,8 @@ function Said({ points }: { points: PointTally[] }) {
   return (
     <ul className={styles.refusal}>
       {[...errors, ...warnings.map((text) => `Warning: ${text}`)].map((text) => (
-        <li key={text}>{micro(text)}</li>
+        <li key={text}>{text}</li>
       ))}
     </ul>
-  );
-}
-
-function Trends({ points, metrics }: { points: PointTally[]; metrics: string[] }) {
-  const charts = numericAxes(points)
-    .flatMap((axis) => metrics.map((metric) => ({ axis, metric, lines: trend(points, axis, metric) })))
-    .slice(0, MOST_TRENDS);
-  if (charts.length === 0) return null;
-  return (
-    <div className={styles.charts}>
-      {charts.map(({ axis, metric, lines }) => {
-        const across = labelScale(
-          axis,
-          lines.flatMap(({ x }) => x),
-        );
-        const up = metricScale(
-          metric,
-          lines.flatMap(({ y }) => y),
-        );
-        return (
-          <LineChart
-            key={axis + metric}
-            title={`${up.name} over ${metricScale(axis, []).name}`}
-            xLabel={across.title}
-            yLimits={metricLimits(metric)}
-            yLabel={["mean ± std", up.unit].filter(Boolean).join(", ")}
-            lines={lines.map((line) => ({
-              ...line,
-              x: line.x.map(across.shown),
-              y: line.y.map(up.shown),
-              spread: line.spread?.map(up.shown),
-            }))}
-          />
-        );
-      })}
-    </div>
   );
 }

@@ -11,7 +11,7 @@ const MOST_LINES = 8;
 const UNIT: [number, number] = [0, 1];
 
 /** What a diagnoser said in all runs: operating characteristic and delays of the points, confusion of one. */
-export function DiagnosisCharts({ points }: { points: PointTally[] }) {
+export function DiagnosisCharts({ points, words }: { points: PointTally[]; words: Record<string, string> }) {
   const diagnosers = [...new Set(points.flatMap((point) => Object.keys(point.diagnosis ?? {})))];
   const [diagnoser, setDiagnoser] = useState<string | undefined>(undefined);
   const [at, setAt] = useState(0);
@@ -32,7 +32,7 @@ export function DiagnosisCharts({ points }: { points: PointTally[] }) {
             size="xs"
             aria-label="Diagnoser"
             value={id}
-            data={diagnosers}
+            data={diagnosers.map((name) => ({ value: name, label: words[name] ?? name }))}
             onChange={(e) => setDiagnoser(e.currentTarget.value)}
           />
         )}
@@ -80,7 +80,11 @@ export function DiagnosisCharts({ points }: { points: PointTally[] }) {
         />
       )}
       <div className={styles.wide}>
-        <Confusion id={id} names={one.tally.names} counts={one.tally.confusion} />
+        <Confusion
+          title={words[id] ?? id}
+          names={one.tally.names.map((name) => words[name] ?? name)}
+          counts={one.tally.confusion}
+        />
       </div>
       {one.tally.missed > 0 && <p className={styles.note}>{one.tally.missed} changes were never found.</p>}
     </section>

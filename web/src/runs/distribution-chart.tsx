@@ -3,16 +3,14 @@ import { useCallback, useMemo, useState } from "react";
 import { api } from "../api/api";
 import { useAnswer, useLast } from "../api/queries";
 import type { SweepRun } from "../api/types";
-import chart from "../picture/line-chart.module.css";
-import { Painted } from "../picture/painted";
+import { Figure } from "../picture/figure";
 import type { Box, Look, Pen } from "../picture/pen";
-import { fileStem } from "../picture/picture";
-import { PictureMenu } from "../picture/picture-menu";
 import { formatCount } from "../ui/format";
 import { metricScale } from "../ui/metric-name";
+import { rampColour } from "../ui/palette";
 import { Stale } from "../ui/stale";
 import { useScheme } from "../ui/use-canvas";
-import { cellText, extentText, mostIn, paintDistribution, rampColour, type Shown } from "./paint-distribution";
+import { cellText, extentText, mostIn, paintDistribution, type Shown } from "./paint-distribution";
 import { labelScale } from "./points";
 import styles from "./runs.module.css";
 
@@ -83,27 +81,20 @@ export function DistributionChart({ sweep, quantities, figures, first, every }: 
 
 function Chart({ shown }: { shown: Shown }) {
   const { found, x, y } = shown;
-  const [read, setRead] = useState<string | undefined>(undefined);
   const paint = useCallback((pen: Pen, box: Box, look: Look) => paintDistribution(pen, box, shown, look), [shown]);
   const kind = !y ? "Histogram" : found.dots ? "Runs" : "Density of runs";
   const title = y ? `${kind}: ${y.name} over ${x.name}` : `${kind} of ${x.name}`;
   return (
-    <figure className={chart.chart}>
-      <figcaption>
-        {title}
-        <output>{read}</output>
-        <PictureMenu name={title} take={() => ({ title, stem: fileStem(title), height: 480, paint })} />
-      </figcaption>
-      <div className={styles.field}>
-        <Painted
-          label={`${title}; ${formatCount(found.runs, "run")}, ${extentText(shown)}`}
-          paint={paint}
-          onPoint={(at, plot) => setRead(at && cellText(shown, plot, at))}
-        />
-      </div>
+    <Figure
+      title={title}
+      label={`${title}; ${formatCount(found.runs, "run")}, ${extentText(shown)}`}
+      height={340}
+      paint={paint}
+      read={(at, plot) => cellText(shown, plot, at)}
+    >
       {y && !found.dots && <Scale most={mostIn(found)} />}
       <p className={styles.note}>{formatCount(found.runs, "run")}. Point at the plot to read it.</p>
-    </figure>
+    </Figure>
   );
 }
 

@@ -1,4 +1,3 @@
-import { micro } from "../api/micro";
 import type { Run, SweepRun } from "../api/types";
 import { formatCount, formatNumber } from "../ui/format";
 
@@ -20,10 +19,10 @@ export type Job = Common & ({ kind: "run"; run: Run } | { kind: "campaign"; swee
 export const isActive = (state: string) => state === "queued" || state === "running";
 
 /** What a run is called. */
-export const runName = (run: Run): string => run.label || micro(run.title) || run.scenario_id;
+export const runName = (run: Run): string => run.label || run.title || run.scenario_id;
 
 /** What a campaign is called. */
-export const sweepName = (sweep: SweepRun): string => sweep.label || micro(sweep.title) || `Campaign ${sweep.name}`;
+export const sweepName = (sweep: SweepRun): string => sweep.label || sweep.title || `Campaign ${sweep.name}`;
 
 /** The seeds of a run in words. */
 export const seedText = (run: Run): string =>

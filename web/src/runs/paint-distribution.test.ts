@@ -3,8 +3,8 @@ import { expect, it, vi } from "vitest";
 import type { Distribution } from "../api/types";
 import { SvgPen, svgColour } from "../picture/svg-pen";
 import { metricScale } from "../ui/metric-name";
-import { contrast } from "../ui/palette";
-import { cellText, mostIn, paintDistribution, rampColour, shareOf } from "./paint-distribution";
+import { contrast, rampColour } from "../ui/palette";
+import { cellText, mostIn, paintDistribution, shareOf } from "./paint-distribution";
 
 vi.spyOn(HTMLCanvasElement.prototype, "getContext").mockReturnValue(null);
 

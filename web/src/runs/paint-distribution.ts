@@ -4,36 +4,13 @@ import type { Box, Look, Pen } from "../picture/pen";
 import { paintDot } from "../picture/traces";
 import { formatCount, formatShort } from "../ui/format";
 import type { MetricScale } from "../ui/metric-name";
-import { type Scheme, TRACE_COLOURS } from "../ui/palette";
+import { rampColour, TRACE_COLOURS } from "../ui/palette";
 
 /** What is painted: runs over one quantity or two, and how these are shown. */
 export interface Shown {
   found: Distribution;
   x: MetricScale;
   y: MetricScale | undefined;
-}
-
-/** From few runs in a cell to many: each step is lighter on dark, darker on light, in every kind of sight. */
-const RAMP: Record<Scheme, readonly (readonly [number, number, number])[]> = {
-  dark: [
-    [35, 66, 110],
-    [58, 150, 190],
-    [250, 232, 140],
-  ],
-  light: [
-    [190, 220, 242],
-    [30, 120, 180],
-    [40, 22, 74],
-  ],
-};
-
-/** The colour of a share from 0 to 1 of the scale. */
-export function rampColour(share: number, scheme: Scheme): string {
-  const stops = RAMP[scheme];
-  const at = Math.min(Math.max(share, 0), 1) * (stops.length - 1);
-  const from = Math.min(Math.floor(at), stops.length - 2);
-  const mixed = stops[from].map((value, i) => Math.round(value + (stops[from + 1][i] - value) * (at - from)));
-  return `rgb(${mixed.join(" ")})`;
 }
 
 /** Where a number of runs lies on the scale of colours, which is logarithmic. */

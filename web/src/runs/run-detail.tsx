@@ -1,7 +1,6 @@
 import { Button } from "@mantine/core";
 import { IconPlayerPlay } from "@tabler/icons-react";
 import { api } from "../api/api";
-import { micro } from "../api/micro";
 import type { GalleryCard, Run } from "../api/types";
 import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
@@ -66,13 +65,13 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
         </small>
         <NameField
           label={run.label ?? ""}
-          title={micro(run.title) || run.scenario_id}
+          title={run.title || run.scenario_id}
           save={(label) => api.renameRun(run.id, label).then(onChanged)}
         />
-        {summary.trip && <p className={styles.refusal}>Tripped: {micro(summary.trip.reason)}</p>}
+        {summary.trip && <p className={styles.refusal}>Tripped: {summary.trip.reason}</p>}
         {summary.warnings.map((text) => (
           <p key={text} className={styles.refusal}>
-            Warning: {micro(text)}
+            Warning: {text}
           </p>
         ))}
       </header>
@@ -103,7 +102,7 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
       {summary.expectations.length > 0 && (
         <>
           <h3>Expectations</h3>
-          {summary.claim && <p className={styles.note}>Claim: {micro(summary.claim)}.</p>}
+          {summary.claim && <p className={styles.note}>Claim: {summary.claim}.</p>}
           <ExpectationTable entries={summary.expectations} verdict={summary.verdict} />
         </>
       )}

@@ -57,7 +57,7 @@ it("shows a run that is chosen: its figures with units, its digest and its files
 });
 
 it("says what a run warns of, and that it tripped", async () => {
-  const summary = { ...run.summary, warnings: ["stvsc: thin"], trip: { reason: "beyond 8 um", time_ms: 1 } };
+  const summary = { ...run.summary, warnings: ["stvsc: thin"], trip: { reason: "beyond 8 µm", time_ms: 1 } };
   server.on("GET", "/runs", { runs: [{ ...run, summary }] });
   const { jobs, result } = await mountPage("&run=run-1");
   expect(await result.findByText("Warning: stvsc: thin")).toBeVisible();

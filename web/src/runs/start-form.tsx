@@ -3,7 +3,6 @@ import { IconPlayerTrackNext } from "@tabler/icons-react";
 import { useEffect, useMemo, useState } from "react";
 import { api } from "../api/api";
 import { ApiError } from "../api/client";
-import { micro } from "../api/micro";
 import type { ApiErrorBody, ScenarioSummary } from "../api/types";
 import { showError } from "../bench/send";
 import { formatCount } from "../ui/format";
@@ -76,7 +75,7 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
         allowDeselect={false}
         nothingFoundMessage="There is no scenario of this name"
         value={draft.scenario}
-        data={library.map((s) => ({ value: s.id, label: s.title ? `${s.id}: ${micro(s.title)}` : s.id }))}
+        data={library.map((s) => ({ value: s.id, label: s.title ? `${s.id}: ${s.title}` : s.id }))}
         onChange={(scenario) => scenario && set({ scenario })}
       />
       <TextInput

@@ -1,5 +1,4 @@
 import { api, benchExists } from "../api/api";
-import { micro } from "../api/micro";
 import type { Bench, LogEntry, Score } from "../api/types";
 import { setUnits } from "../api/use-catalog";
 import { type Connection, mergeStatus, useBench } from "./bench-store";
@@ -103,7 +102,7 @@ export function createStream(transport: Transport) {
       }
       case "events":
         if (pendingEvents.length === 0) flush = setTimeout(flushEvents, 30);
-        pendingEvents.push(...message.events.map((event) => ({ ...event, text: micro(event.text) })));
+        pendingEvents.push(...message.events);
         return;
       case "narration":
         useBench.setState((s) => ({ narration: narrate(s.narration, message) }));

@@ -2,17 +2,17 @@ import styles from "./confusion.module.css";
 import { formatCount, formatNumber, formatPart } from "./format";
 
 interface ConfusionProps {
-  id: string;
+  title: string;
   names: string[];
   /** Samples by truth (row) and verdict (column). */
   counts: number[][];
 }
 
 /** What was said while what was true: shares of each row, the diagonal is right. */
-export function Confusion({ id, names, counts }: ConfusionProps) {
+export function Confusion({ title, names, counts }: ConfusionProps) {
   return (
     <table className={styles.confusion}>
-      <caption>{id.replaceAll("_", " ")}: % of samples, truth down, verdict across</caption>
+      <caption>{title}: % of samples, truth down, verdict across</caption>
       <thead>
         <tr>
           <td />

@@ -53,6 +53,32 @@ it.each(cases.spread as [string, number, number, string][])("writes the spread o
   expect(formatSpread(metric, mean, std)).toBe(text);
 });
 
+it.each(
+  cases.spreadWithUnit as [string, number, number, string, string][],
+)("writes %s, %s and %s, in %s as %s", (...one) => {
+  const [metric, mean, std, unit, text] = one;
+  expect(formatSpread(metric, mean, std, unit)).toBe(text);
+});
+
+it.each(
+  cases.withUnit as [string, number | null, number, string, string][],
+)("writes %s of %s in %s digits, in %s, as %s", (...one) => {
+  const [metric, value, digits, unit, text] = one;
+  expect(formatFigure(metric, value, digits, unit)).toBe(text);
+});
+
+it("gives a value and its deviation one power, one unit, and no place for a line to break", () => {
+  for (const value of values(1000))
+    for (const unit of ["um", "N s/m", "deg", ""]) {
+      const [mean, std] = [value, Math.abs(value) / 700];
+      const text = formatSpread("", mean, std, unit);
+      expect(text).not.toMatch(/[ \u2009]|\de/);
+      expect(text.match(/×10/g)?.length ?? 0, text).toBeLessThanOrEqual(1);
+      const [shown, spread] = [...text.matchAll(/[\d\u202f]+(?:\.(\d+))?(?=\u00a0±|[)\u00a0]|$)/g)];
+      expect(shown[1], text).toBe(spread[1]);
+    }
+});
+
 it.each(cases.beside as [number, number, number, string][])("writes %s beside %s in %s digits as %s", (...one) => {
   const [value, figure, digits, text] = one;
   expect(formatBeside(value, figure, digits)).toBe(text);
@@ -80,12 +106,15 @@ function* values(count: number): Generator<number> {
 }
 
 const PREFIX = { T: 1e12, G: 1e9, M: 1e6, k: 1e3, "": 1, m: 1e-3, µ: 1e-6, n: 1e-9, p: 1e-12, f: 1e-15, a: 1e-18 };
-const SHOWN = /^(−?)(\d{1,3}(?:\.\d+)?)(?:e(−?\d+))?\u00a0([TGMkmµnpfa]?)V$/;
+const SHOWN = /^(−?)(\d{1,3}(?:\.\d+)?)(?:×10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?\u00a0([TGMkmµnpfa]?)V$/;
+
+const lowered = (power: string) =>
+  [...power].map((one) => (one === "⁻" ? "-" : "⁰¹²³⁴⁵⁶⁷⁸⁹".includes(one) ? "⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(one) : one)).join("");
 
 function parsed(text: string): number {
   const [, sign, digits, power, prefix] = SHOWN.exec(text) ?? [];
   expect(digits, text).toBeDefined();
-  const size = Number(digits) * 10 ** Number((power ?? "0").replace("−", "-")) * PREFIX[prefix as keyof typeof PREFIX];
+  const size = Number(digits) * 10 ** Number(lowered(power ?? "0")) * PREFIX[prefix as keyof typeof PREFIX];
   return sign ? -size : size;
 }
 
@@ -115,7 +144,7 @@ describe.each([2, 3, 4, 6])("any value in %i digits", (digits) => {
     for (const value of values(1000)) {
       const [whole, fraction = ""] = (/[\d.]+/.exec(formatSi(value, "V", digits)) ?? [""])[0].split(".");
       expect(fraction.length).toBe(Math.max(0, digits - whole.length));
-      expect(formatShort(value, "V", digits)).not.toMatch(/\.\d*0(\u00a0|e)/);
+      expect(formatShort(value, "V", digits)).not.toMatch(/\.\d*0(\u00a0|×)/);
     }
   });
 
@@ -140,7 +169,7 @@ describe("formatOn", () => {
   });
 
   it("keeps the power of ten too", () =>
-    expect([2e-5, 0].map((v) => formatOn(unitScale("", 2e-5), v))).toEqual(["20.00e−6", "0.00e−6"]));
+    expect([2e-5, 0].map((v) => formatOn(unitScale("", 2e-5), v))).toEqual(["20.00×10⁻⁶", "0.00×10⁻⁶"]));
 });
 
 it("labels an axis whose title says the unit", () =>

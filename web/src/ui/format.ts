@@ -8,6 +8,8 @@ const THIN = "\u202f";
 const SPACE = "\u00a0";
 const NOTHING = "–";
 const PLUS_MINUS = `${SPACE}±${SPACE}`;
+/** Digits of a whole figure with a unit. */
+const WHOLE_DIGITS = 9;
 /** From here on a number with fixed decimals would be a row of digits that mean nothing. */
 const IMMENSE = 1e15;
 
@@ -58,22 +60,32 @@ export function formatShare(share: number, decimals = 4): string {
 }
 
 /** A measured figure by the name of its metric, none as a dash: what is whole, such as a count, is written whole. */
-export function formatFigure(metric: string, value: number | null | undefined, digits = 4): string {
+export function formatFigure(metric: string, value: number | null | undefined, digits = 4, unit = ""): string {
   if (value === null || value === undefined) return NOTHING;
   if (metric.endsWith("_fraction")) return formatShare(value, digits);
-  return Number.isInteger(value) ? formatNumber(value, 0) : formatSi(value, "", digits);
+  if (!Number.isInteger(value)) return formatSi(value, unit, digits);
+  return unit ? formatShort(value, unit, WHOLE_DIGITS) : formatNumber(value, 0);
 }
 
 /**
- * A mean and its standard deviation, to the second digit of the deviation and on one power of ten: "0.24700 ± 0.00028".
- * No line breaks inside it.
+ * A mean and its standard deviation, to the second digit of the deviation, in one unit with one prefix:
+ * "709.00 ± 0.70 nm". No line breaks inside it.
  */
-export function formatSpread(metric: string, mean: number, std: number): string {
-  if (std === 0) return `${formatFigure(metric, mean)}${PLUS_MINUS}0`;
-  const { factor, exponent } = unitScale("", Math.max(Math.abs(mean), std));
-  const [shown, spread] = [mean * factor, std * factor];
+export function formatSpread(metric: string, mean: number, std: number, unit = ""): string {
+  const scale = unitScale(unit, Math.max(Math.abs(mean), std));
+  if (std === 0) {
+    const figure = scale.exponent || scale.factor !== 1 ? "" : formatFigure(metric, mean);
+    return pair(figure || formatNumber(mean * scale.factor, scale.decimals), "0", scale);
+  }
+  const [shown, spread] = [mean * scale.factor, std * scale.factor];
   const decimals = Math.min(decimalsFor(spread, 2), decimalsFor(Math.max(Math.abs(shown), spread), 6));
-  return `${formatNumber(shown, decimals)}${exponent}${PLUS_MINUS}${formatLeast(spread, decimals)}${exponent}`;
+  return pair(formatNumber(shown, decimals), formatLeast(spread, decimals), scale);
+}
+
+/** A value and what it may be off by, with the power of ten and the unit of both. */
+function pair(value: string, spread: string, { exponent, unit }: UnitScale): string {
+  const both = `${value}${PLUS_MINUS}${spread}`;
+  return withUnit(exponent ? `(${both})${exponent}` : both, unit);
 }
 
 /** A difference from a figure, or its deviation, with the decimals that the figure has. */
@@ -150,8 +162,10 @@ export function inTex(text: string): string {
     .replaceAll(MINUS, "-")
     .replaceAll(THIN, "\\,")
     .replaceAll(SPACE, "~")
-    .replace(/e(-?\d+)$/, "\\cdot10^{$1}");
+    .replace(/×10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)$/, (_, power: string) => `\\cdot10^{${[...power].map(lowered).join("")}}`);
 }
+
+const lowered = (digit: string) => (digit === "⁻" ? "-" : String("⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(digit)));
 
 /** A number as one would type it, for fields that are edited: without grouping, with the hyphen of the keyboard. */
 export function formatEntry(value: number): string {

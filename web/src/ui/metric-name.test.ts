@@ -1,7 +1,6 @@
 import { expect, it } from "vitest";
-import { micro } from "../api/micro";
 import cases from "./metric-cases.json";
-import { metricLimits, metricName, metricScale, metricTitle } from "./metric-name";
+import { metricName, metricScale, metricTitle } from "./metric-name";
 
 it("says a metric in words and keeps whose it is", () => {
   expect(metricName("diagnosis.kalman.correct_fraction")).toBe("kalman correct fraction");
@@ -21,20 +20,12 @@ it("shows figures in a unit that needs no power of ten, and leaves those that re
   expect(metricScale("control.effort_ratio", [1e-9]).title).toBe("effort ratio");
 });
 
-it("prints the units of a text", () => {
-  expect(micro("Beams 0.2 um narrower, h = 20us, a drum")).toBe("Beams 0.2\u00a0µm narrower, h = 20\u00a0µs, a drum");
-});
-
-it("writes micro in texts of the server with its sign, and leaves names alone", () => {
-  expect(micro("displacement beyond 8 um, in um, 3 um/V, uN um")).toBe(
-    "displacement beyond 8\u00a0µm, in µm, 3\u00a0µm/V, µN µm",
-  );
-  expect(micro("set reference.amplitude_um = 1, tell us, drum")).toBe("set reference.amplitude_um = 1, tell us, drum");
-});
-
-it("knows what a figure cannot pass: 0 for counts and sizes, 1 for shares", () => {
-  expect(metricLimits("diagnosis.kalman.false_switches")).toEqual([0, Number.POSITIVE_INFINITY]);
-  expect(metricLimits("control.rms_error_um")?.[0]).toBe(0);
-  expect(metricLimits("diagnosis.kalman.correct_fraction")).toEqual([0, 1]);
-  expect(metricLimits("rate.scale_error_pct")).toBeUndefined();
+it("says one figure by itself with its own prefix and unit, and with its deviation", () => {
+  const error = metricScale("control.rms_error_um", [0.02, 0.0007]);
+  expect([error.say(0.02), error.say(0.7091, 0.0007), error.say(undefined)]).toEqual([
+    "20.00\u00a0nm",
+    "709.10\u00a0±\u00a00.70\u00a0nm",
+    "–",
+  ]);
+  expect(metricScale("diagnosis.kalman.false_switches", []).say(27)).toBe("27");
 });

@@ -1,7 +1,8 @@
-import names from "../../../scenarios/report/metric_names.json";
+import names from "../../../scenarios/metric_names.json";
+import { formatFigure, formatSpread } from "./format";
 import { plainScale, roundTo } from "./unit-scale";
 
-// The rules of reports (`scenarios/report/metric_name.py`); `metric-cases.json` holds both to the same names.
+// The rules of reports (`scenarios/metric_name.py`); `metric-cases.json` holds both to the same names.
 
 /** Units by the ending that the names of fields have for them. */
 const UNITS: Partial<Record<string, string>> = names.units;
@@ -27,6 +28,8 @@ export interface MetricScale {
   title: string;
   /** A figure in that unit. */
   shown(value: number): number;
+  /** One figure by itself, with its deviation if it has one, in the unit and prefix that suit it. */
+  say(mean: number | null | undefined, std?: number): string;
 }
 
 /** The scale of some figures: in the unit that the name of their metric ends in, with a prefix where they need one. */
@@ -37,17 +40,9 @@ export function metricScale(metric: string, values: readonly (number | null | un
     values.filter((value) => typeof value === "number"),
   );
   const shown = (value: number) => (factor === 1 ? value : roundTo(value * factor, 12));
-  return { name, unit, title: unit ? `${name}, ${unit}` : name, shown };
-}
-
-const COUNTED = new Set(names.counted);
-const FROM_ZERO: [number, number] = [0, Number.POSITIVE_INFINITY];
-const SHARE: [number, number] = [0, 1];
-
-/** What a figure cannot pass: 0 for counts, times and sizes, 1 for shares too; undefined where it may be anything. */
-export function metricLimits(metric: string): [number, number] | undefined {
-  if (metric.endsWith("_fraction")) return SHARE;
-  return metric.split(/[._]/).some((word) => COUNTED.has(word)) ? FROM_ZERO : undefined;
+  const say: MetricScale["say"] = (mean, std) =>
+    std && typeof mean === "number" ? formatSpread(metric, mean, std, own) : formatFigure(metric, mean, 4, own);
+  return { name, unit, title: unit ? `${name}, ${unit}` : name, shown, say };
 }
 
 /** A metric in words with the unit its name ends in: "control.rms_error_um" reads "rms error, µm". */

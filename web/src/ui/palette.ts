@@ -58,6 +58,15 @@ const parts = (colour: string) => [1, 3, 5].map((at) => Number.parseInt(colour.s
 /** How much of a colour is left in what lies behind. */
 const LEFT = 0.45;
 
+/** The colour of a share from 0 to 1 of a scale: lighter and lighter on dark, darker on light, in every kind of sight. */
+export function rampColour(share: number, scheme: Scheme): string {
+  const stops = palette.ramp[scheme].map(parts);
+  const at = Math.min(Math.max(share, 0), 1) * (stops.length - 1);
+  const from = Math.min(Math.floor(at), stops.length - 2);
+  const mixed = stops[from].map((value, i) => Math.round(value + (stops[from + 1][i] - value) * (at - from)));
+  return `rgb(${mixed.join(" ")})`;
+}
+
 /** A colour of what lies behind, on the panels of a scheme. */
 export function faded(colour: string, scheme: Scheme): string {
   const ground = parts(CANVAS[scheme].panel);

@@ -4,7 +4,7 @@ export interface UnitScale {
   factor: number;
   unit: string;
   decimals: number;
-  /** Power of ten behind the number where no prefix reaches, such as "e−6"; else empty. */
+  /** Power of ten behind the number where no prefix reaches, such as "×10⁻⁶"; else empty. */
   exponent: string;
 }
 
@@ -81,7 +81,7 @@ export function unitScale(unit: string, magnitude: number, digits = 4): UnitScal
     factor: toBase / 10 ** power,
     unit: name,
     decimals: decimalsFor(size / 10 ** power, digits),
-    exponent: power === 0 ? "" : `e${power < 0 ? "−" : ""}${Math.abs(power)}`,
+    exponent: power === 0 ? "" : `×10${raised(power)}`,
   };
 }
 
@@ -109,6 +109,9 @@ export function decimalsFor(shown: number, digits: number): number {
   if (!(shown > 0)) return digits - 1;
   return Math.max(0, digits - 1 - powerOf(roundTo(shown, digits)));
 }
+
+const raised = (power: number) =>
+  [...String(power)].map((one) => (one === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(one)])).join("");
 
 const powerOf = (size: number) => Number(size.toExponential().split("e")[1]);
 

@@ -1,5 +1,5 @@
 import type { RateReadout } from "../../api/types";
-import { formatShort, formatSi } from "../../ui/format";
+import { formatShort, formatSpread } from "../../ui/format";
 import styles from "./allan.module.css";
 import { driftGrade, walkGrade } from "./deviation";
 
@@ -25,11 +25,8 @@ export function FigureTable({ figures }: { figures: RateReadout["figures"] }) {
                 <small>{sentence(figure.reason)}</small>
               ) : (
                 <>
-                  <b>{formatSi(figure.value, figure.unit, 3)}</b>
-                  <small>
-                    ± {formatSi(figure.error ?? 0, figure.unit, 2)}
-                    {gradeOf(figure.letter, figure.value)}
-                  </small>
+                  <b>{formatSpread("", figure.value, figure.error ?? 0, figure.unit)}</b>
+                  <small>{gradeOf(figure.letter, figure.value)}</small>
                 </>
               )}
             </td>
@@ -42,8 +39,8 @@ export function FigureTable({ figures }: { figures: RateReadout["figures"] }) {
 }
 
 function gradeOf(letter: string, value: number): string {
-  if (letter === "N") return `, ${walkGrade(value)}`;
-  return letter === "B" ? `, ${driftGrade(value)}` : "";
+  if (letter === "N") return walkGrade(value);
+  return letter === "B" ? driftGrade(value) : "";
 }
 
 const sentence = (reason: string) => `${reason.charAt(0).toUpperCase()}${reason.slice(1)}.`;

@@ -1,7 +1,6 @@
 import { Button } from "@mantine/core";
 import { IconCheck, IconClock, IconX } from "@tabler/icons-react";
 import { useMay } from "../../api/me";
-import { micro } from "../../api/micro";
 import type { Claim, ClaimList } from "../../api/types";
 import { addScope } from "../../bench/dock";
 import { placeIn } from "../../bench/printed";
@@ -32,9 +31,9 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
   const places = [...new Set(claim.marks.map(placeIn))];
   const said = places.map((place) => {
     const here = claim.marks.filter((mark) => placeIn(mark) === place);
-    return `${[...new Set(here.map((mark) => `“${micro(mark.words)}”`))].join(", ")}: ${place}`;
+    return `${[...new Set(here.map((mark) => `“${mark.words}”`))].join(", ")}: ${place}`;
   });
-  const readings = [...new Set(claim.marks.flatMap(({ reading }) => (reading ? [micro(reading)] : [])))];
+  const readings = [...new Set(claim.marks.flatMap(({ reading }) => (reading ? [reading] : [])))];
   const drawn = [...new Set(claim.marks.flatMap(({ signal, problem }) => (problem ? [] : [signal])))];
   const problems = [...new Set(claim.marks.flatMap(({ problem }) => (problem ? [problem] : [])))];
   return (
@@ -52,7 +51,7 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
             <dt>printed</dt>
             <dd>
               {words.printed}
-              {claim.published && <small>“{micro(claim.published)}”</small>}
+              {claim.published && <small>“{claim.published}”</small>}
             </dd>
           </div>
           <div>
@@ -80,7 +79,7 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
             Not drawn: {text}.
           </p>
         ))}
-        {claim.note && <p className={styles.reading}>Why: {micro(claim.note)}.</p>}
+        {claim.note && <p className={styles.reading}>Why: {claim.note}.</p>}
         {claim.fitted.length > 0 && (
           <p className={styles.reading}>Chosen so that it agrees: {claim.fitted.join(", ")}.</p>
         )}

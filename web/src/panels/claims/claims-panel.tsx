@@ -1,6 +1,5 @@
 import { Checkbox } from "@mantine/core";
 import { useState } from "react";
-import { micro } from "../../api/micro";
 import type { ClaimList } from "../../api/types";
 import { showPrinted, usePrinted } from "../../bench/printed";
 import { useBench } from "../../stream/bench-store";
@@ -31,7 +30,7 @@ export function ClaimsPanel() {
   return (
     <section className={styles.panel} aria-label="Claims" data-over={value.is_over}>
       <header className={styles.top}>
-        <p className={styles.claim}>{micro(value.claim || value.title)}</p>
+        <p className={styles.claim}>{value.claim || value.title}</p>
         <div className={styles.line}>
           {value.is_over && <Verdict verdict={value.verdict} borneOut />}
           <span className={styles.progress}>

@@ -1,4 +1,3 @@
-import { micro } from "../../api/micro";
 import type { Claim, ClaimList } from "../../api/types";
 import { placeIn } from "../../bench/printed";
 import { paintLegend } from "../../picture/legend";
@@ -23,7 +22,7 @@ const LETTERS = 20;
 export function slideSvg(claim: Claim, list: ClaimList, shown: ScopeShown | undefined): string {
   const pen = new SvgPen();
   const words = claimWords(claim);
-  const title = micro(list.title);
+  const { title } = list;
   pen.textBaseline = "middle";
   write(pen, title, EDGE, 46, 34, 650, WIDTH - 2 * EDGE);
   const mark = claim.marks[0];
@@ -31,12 +30,9 @@ export function slideSvg(claim: Claim, list: ClaimList, shown: ScopeShown | unde
   const quoted = said.size === 1 || !claim.published ? (mark?.words ?? claim.published) : claim.published;
   const place = mark ? placeIn(mark) : list.source;
   pen.fillStyle = INK.muted;
-  write(pen, capital(micro(place)), EDGE, 88, 20, 560, WIDTH - 2 * EDGE, INK.muted);
+  write(pen, capital(place), EDGE, 88, 20, 560, WIDTH - 2 * EDGE, INK.muted);
   let top = 122;
-  for (const line of wrapped(pen, quoted ? `“${micro(quoted)}”` : micro(list.claim), 26, WIDTH - 2 * EDGE).slice(
-    0,
-    2,
-  )) {
+  for (const line of wrapped(pen, quoted ? `“${quoted}”` : list.claim, 26, WIDTH - 2 * EDGE).slice(0, 2)) {
     write(pen, line, EDGE, top, 26, 450, WIDTH - 2 * EDGE);
     top += 34;
   }

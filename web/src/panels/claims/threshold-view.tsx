@@ -8,7 +8,7 @@ import { send, showError } from "../../bench/send";
 import { Painted } from "../../picture/painted";
 import type { Box, Look, Pen } from "../../picture/pen";
 import { useBench } from "../../stream/bench-store";
-import { formatFigure, formatPercent, formatShort } from "../../ui/format";
+import { formatPercent, formatShort } from "../../ui/format";
 import { Knob } from "../../ui/knob";
 import { metricScale } from "../../ui/metric-name";
 import { unitText } from "../../ui/unit-scale";
@@ -71,7 +71,7 @@ function Turned({ claim, knob }: { claim: Claim; knob: ClaimKnob }) {
     if (found) place.current?.scrollIntoView({ block: "nearest" });
   }, [found]);
   const near = found && nearest(found.tried, value);
-  const scale = metricScale(claim.metric, [near?.measured]);
+  const scale = metricScale(claim.metric, []);
   const apply = (next: number) => {
     setValue(next);
     if (drives && knob.is_live) void send(commandFor(knob, next), `Set ${knob.label}`);
@@ -119,7 +119,7 @@ function Turned({ claim, knob }: { claim: Claim; knob: ClaimKnob }) {
         note={
           near?.measured === undefined || near.measured === null
             ? undefined
-            : `${scale.name} ${formatFigure(claim.metric, scale.shown(near.measured))} ${scale.unit}, measured at ` +
+            : `${scale.name} ${scale.say(near.measured)}, measured at ` +
               `${formatShort(near.value, unit ? knob.unit : "")}: ${near.holds ? "holds" : "does not hold"}`
         }
         onMove={setValue}

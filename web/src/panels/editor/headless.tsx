@@ -7,7 +7,6 @@ import { showError } from "../../bench/send";
 import { valuesOf } from "../../bench/unit-values";
 import { setPage } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
-import { formatFigure } from "../../ui/format";
 import { metricScale } from "../../ui/metric-name";
 import styles from "./editor.module.css";
 
@@ -85,11 +84,11 @@ function Outcome({ run, card }: { run: Run; card: BlockCard }) {
     <>
       <dl className={styles.list}>
         {figures.map(([name, value]) => {
-          const { title, shown } = metricScale(name, [value]);
+          const { name: words, say } = metricScale(name, []);
           return (
             <div key={name}>
-              <dt>{title}</dt>
-              <dd>{formatFigure(name, shown(value))}</dd>
+              <dt>{words}</dt>
+              <dd>{say(value)}</dd>
             </div>
           );
         })}

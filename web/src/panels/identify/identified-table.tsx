@@ -1,5 +1,5 @@
 import type { Identification } from "../../api/types";
-import { formatChange, formatSi, formatTick } from "../../ui/format";
+import { formatChange, formatSpread, formatTick } from "../../ui/format";
 import styles from "./identify.module.css";
 
 type Found = Identification["found"];
@@ -39,8 +39,7 @@ export function IdentifiedTable({ result }: { result: Identification }) {
       <thead>
         <tr>
           <th scope="col">At {formatTick(result.tick)}</th>
-          <th scope="col">Measured</th>
-          <th scope="col">Standard error</th>
+          <th scope="col">Measured ± standard error</th>
           <th scope="col">From nominal</th>
         </tr>
       </thead>
@@ -54,9 +53,8 @@ export function IdentifiedTable({ result }: { result: Identification }) {
             <tr key={value}>
               <th scope="row">{label}</th>
               <td>
-                <b>{formatSi(found, unit, 6)}</b>
+                <b>{formatSpread("", found, sigma, unit)}</b>
               </td>
-              <td>{formatSi(sigma, unit, 2)}</td>
               <td data-sure={sure}>{formatChange(change, "%", 2)}</td>
             </tr>
           );

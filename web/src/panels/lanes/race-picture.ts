@@ -1,3 +1,4 @@
+import { hypothesisWords } from "../../bench/hypothesis-words";
 import { paintColumns, timeAxis } from "../../picture/axes";
 import { eventAxis } from "../../picture/event-marks";
 import type { Box, Look, Pen } from "../../picture/pen";
@@ -23,7 +24,7 @@ export function racePicture(head: RaceShown | undefined, rows: { id: string; row
     ...pictureName(`Race of ${rows.length} diagnosers`),
     up: "probabilities, stacked from 0 to 1",
     legend: first.names.map((name, i) => ({
-      name,
+      name: hypothesisWords(name),
       colour: traceColour(hypothesisStyle(i), "light"),
       mark: "field",
     })),

@@ -1,5 +1,4 @@
 import { Checkbox } from "@mantine/core";
-import { micro } from "../../api/micro";
 import type { PrintedMark } from "../../api/types";
 import { placeIn, showPrinted, usePrinted } from "../../bench/printed";
 import styles from "./scope.module.css";
@@ -7,7 +6,7 @@ import styles from "./scope.module.css";
 /** What is printed of the signals of a scope, in words, and the switch that takes it out of the picture. */
 export function PrintedLine({ marks }: { marks: PrintedMark[] }) {
   const isShown = usePrinted((s) => s.isShown);
-  const said = [...new Set(marks.map((mark) => `“${micro(mark.words)}” (${placeIn(mark)})`))];
+  const said = [...new Set(marks.map((mark) => `“${mark.words}” (${placeIn(mark)})`))];
   return (
     <div className={styles.printed}>
       <Checkbox

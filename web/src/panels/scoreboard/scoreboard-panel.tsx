@@ -1,3 +1,4 @@
+import { diagnoserWords, hypothesisWords } from "../../bench/hypothesis-words";
 import { useBench } from "../../stream/bench-store";
 import { Confusion } from "../../ui/confusion";
 import { EmptyState } from "../../ui/empty-state";
@@ -41,7 +42,7 @@ export function ScoreboardPanel() {
             const [startUp] = score.delays;
             return (
               <tr key={id}>
-                <th scope="row">{id.replaceAll("_", " ")}</th>
+                <th scope="row">{diagnoserWords(id, diagnosers)}</th>
                 <td>{formatPercent(score.correct_fraction, 2)}</td>
                 <td>
                   {mean === undefined ? "–" : formatNumber(mean, 1)}
@@ -62,7 +63,12 @@ export function ScoreboardPanel() {
       {entries.map(
         ([id, score]) =>
           score.confusion && (
-            <Confusion key={id} id={id} names={score.names ?? diagnosers?.[id]?.names ?? []} counts={score.confusion} />
+            <Confusion
+              key={id}
+              title={diagnoserWords(id, diagnosers)}
+              names={(score.names ?? diagnosers?.[id]?.names ?? []).map((name) => hypothesisWords(name, diagnosers))}
+              counts={score.confusion}
+            />
           ),
       )}
     </section>

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from core.format import plain_scale, round_to
+from core.format import format_figure, format_spread, plain_scale, round_to
 
 NAMES: dict[str, Any] = json.loads((Path(__file__).parent / "metric_names.json").read_text("utf-8"))
 """Shared with the page: families that need not be said, words for parts of names, units by the ending of a name."""
@@ -24,6 +24,8 @@ class MetricScale(NamedTuple):
     name: str
     unit: str
     factor: float
+    metric: str
+    own: str  # the unit that the figures come in
 
     @property
     def title(self) -> str:
@@ -34,12 +36,26 @@ class MetricScale(NamedTuple):
         """Return a figure in that unit."""
         return value if self.factor == 1.0 else round_to(value * self.factor, 12)
 
+    def say(self, mean: float, std: float = 0.0) -> str:
+        """Write one figure by itself, with its deviation, in the unit and prefix that suit it."""
+        return format_spread(self.metric, mean, std, self.own) if std else metric_text(self.metric, mean)
+
 
 def metric_scale(metric: str, values: Iterable[Any] = ()) -> MetricScale:
     """Return the scale of some figures: in the unit the name ends in, with a prefix where they need one."""
     name, unit = _parts(metric)
     factor, text = plain_scale(unit, [value for value in values if isinstance(value, int | float)])
-    return MetricScale(name, text, factor)
+    return MetricScale(name, text, factor, metric, unit)
+
+
+def metric_text(metric: str, value: float | None, digits: int = 4) -> str:
+    """Write a figure with its unit, by the name of its metric."""
+    return format_figure(metric, value, digits, metric_unit(metric))
+
+
+def metric_unit(metric: str) -> str:
+    """Return the unit that a metric comes in."""
+    return _parts(metric)[1]
 
 
 def metric_limits(metric: str) -> tuple[float, float]:
@@ -49,9 +65,9 @@ def metric_limits(metric: str) -> tuple[float, float]:
     return (0.0 if set(NAMES["counted"]) & set(re.split("[._]", metric)) else -math.inf), math.inf
 
 
-def metric_title(metric: str) -> str:
-    """Return a metric in words with its unit: ``control.rms_error_um`` is "rms error, µm"."""
-    return metric_scale(metric).title
+def holds_zero(metric: str) -> bool:
+    """Whether the zero of a figure means something, as of a count, a delay or an error: its axis shows it."""
+    return metric_limits(metric)[0] == 0.0 or bool(set(NAMES["from_zero"]) & set(re.split("[._]", metric)))
 
 
 def _parts(metric: str) -> tuple[str, str]:
@@ -70,11 +86,6 @@ def _parts(metric: str) -> tuple[str, str]:
         unit = found or unit
         said.append(words)
     return ": ".join([*whose, *said]), unit
-
-
-def micro(text: str) -> str:
-    """Return a text of the library with its units as they are printed: "20 us" is "20 µs"."""
-    return re.sub(r"(\d)\s?u([msNVg])\b", "\\1\u00a0µ\\2", text)
 
 
 def _without_unit(piece: str) -> tuple[str, str]:

@@ -1,0 +1,44 @@
+import { type ReactNode, useState } from "react";
+import type { Scheme } from "../ui/palette";
+import { useScheme } from "../ui/use-canvas";
+import styles from "./figure.module.css";
+import type { LegendEntry } from "./legend";
+import { Legend } from "./legend-list";
+import { Painted } from "./painted";
+import type { Box, Look, Pen } from "./pen";
+import { fileStem } from "./picture";
+import { PictureMenu } from "./picture-menu";
+
+interface FigureProps<Shown> {
+  title: string;
+  /** What is seen, for who does not see it. */
+  label: string;
+  /** Of the plot, px. */
+  height: number;
+  paint(pen: Pen, box: Box, look: Look): Shown;
+  /** What the pointer reads at a place, px. */
+  read(at: { x: number; y: number }, shown: Shown): string | undefined;
+  legend?(scheme: Scheme): LegendEntry[];
+  children?: ReactNode;
+}
+
+/** A painted figure under its title, which the pointer reads and which is kept as a file. */
+export function Figure<Shown>({ title, label, height, paint, read, legend, children }: FigureProps<Shown>) {
+  const scheme = useScheme();
+  const [text, setText] = useState<string | undefined>(undefined);
+  const take = () => ({ title, stem: fileStem(title), height: 1.5 * height, legend: legend?.("light"), paint });
+  return (
+    <figure className={styles.figure}>
+      <figcaption>
+        {title}
+        <output>{text}</output>
+        <PictureMenu name={title} take={take} />
+      </figcaption>
+      <div style={{ height }}>
+        <Painted label={label} paint={paint} onPoint={(at, shown) => setText(at && read(at, shown))} />
+      </div>
+      {legend && <Legend entries={legend(scheme)} />}
+      {children}
+    </figure>
+  );
+}
