@@ -24,7 +24,6 @@ test("the editor and the difference of two versions lie right on a large screen 
   await paste(PI);
   for (const screen of [SCREENS[1], SCREENS[3]]) {
     await showOn(page, screen);
-    if (screen === SCREENS[3]) await page.getByRole("combobox", { name: "Another panel" }).selectOption("Editor");
     await expect(text).toBeVisible();
     await expectClean(page, `the editor at ${screen.width}`);
     expect.soft(await seriousViolations(page)).toEqual([]);

@@ -1,7 +1,7 @@
 import type { Page } from "@playwright/test";
 import { expect, HYPOTHESES, test } from "../lab";
 import type { LabServer } from "../lab-server";
-import { expectClean, expectReadable, isPhone, nameOf, SCHEMES, SCREENS, showOn } from "../screens";
+import { expectClean, expectReadable, isPhone, nameOf, openOnPhone, SCHEMES, SCREENS, showOn, viewsOnPhone } from "../screens";
 
 const RESONATOR = {
   scenario: "ch5-seven-step",
@@ -70,11 +70,9 @@ async function walkDock(page: Page, key: string, added: string[], look: (where: 
 
 /** Every panel that a phone can open. */
 async function walkPhone(page: Page, look: (where: string) => Promise<void>) {
-  const choice = page.getByRole("combobox", { name: "Another panel" });
-  const kinds = await choice.locator("option").evaluateAll((all) => all.map((o) => (o as HTMLOptionElement).value));
-  for (const kind of kinds) {
-    await choice.selectOption(kind);
-    await look(kind);
+  for (const view of await viewsOnPhone(page)) {
+    await openOnPhone(page, view);
+    await look(view);
   }
 }
 
@@ -115,7 +113,7 @@ test("an Allan deviation that has gathered for long fits too", async ({ page, se
   const figures = page.getByRole("region", { name: "Allan deviation" }).getByRole("row");
   for (const screen of SCREENS) {
     await showOn(page, screen);
-    if (isPhone(screen)) await page.getByRole("combobox", { name: "Another panel" }).selectOption("allan");
+    if (isPhone(screen)) await openOnPhone(page, "allan");
     else await page.getByRole("tab", { name: "Allan deviation" }).click();
     await expect(figures.nth(1)).toBeVisible();
     await expectClean(page, `Allan deviation at ${nameOf(screen)}`);
