@@ -22,7 +22,7 @@ from scenarios.sheets.quantity import parse_quantity
 from scenarios.sheets.sheet import Limits, Question
 
 DESKTOP_ALONE = re.compile(
-    r"(?i:space bar|keyboard|head of the page|header|tool ?bar|side ?bar|\btabs?\b|hover|right-click|mouse|dotted|dashed)"
+    r"(?i:space bar|keyboard|head of the page|header|tool ?bar|side ?bar|\btabs?\b|hover|right-click|mouse|dotted)"
     r"|(?:[Pp]ress|[Hh]old|[Tt]ype) [A-Z]\b|\b(?:Ctrl|Shift|Alt|Esc)\b|(?:left|right) of the (?:page|screen)"
 )
 """Keys and places that only a page of a desktop has, and dashes that depend on how many traces a scope shows."""

@@ -62,7 +62,9 @@ export async function expectReadable(
 export async function viewsOnPhone(page: Page): Promise<string[]> {
   await page.getByRole("button", { name: "More", exact: true }).click();
   await expect(page.getByRole("dialog", { name: "Panels" })).toBeVisible();
-  const views = await page.locator("[data-view]").evaluateAll((all) => all.map((one) => (one as HTMLElement).dataset.view));
+  const views = await page
+    .locator("[data-view]")
+    .evaluateAll((all) => all.map((one) => (one as HTMLElement).dataset.view));
   await page.keyboard.press("Escape");
   await expect(page.getByRole("dialog", { name: "Panels" })).toHaveCount(0);
   return views as string[];

@@ -85,9 +85,7 @@ def test_the_answer_says_what_a_sweep_shows_with_the_fault_and_without(live: Liv
         live.http.post(f"/api/v1/benches/{bench}/blind", json={"seed": seed})
         path = f"/api/v1/benches/{bench}/blind"
         shown = live.http.delete(path).json()
-        moved[shown["truth"]] = {
-            name: shown["faulty"][name] / value for name, value in shown["healthy"].items()
-        }
+        moved[shown["truth"]] = {name: shown["faulty"][name] / value for name, value in shown["healthy"].items()}
         device = live.service.benches.get(bench).board.spec.quoted
         assert shown["healthy"]["f0_hz"] == pytest.approx(device["f0_hz"])
         assert shown["healthy"]["rest_um_per_v"] == pytest.approx(abs(device["static_gain_um_per_v"]))

@@ -1,7 +1,17 @@
 import type { Page } from "@playwright/test";
 import { expect, HYPOTHESES, test } from "../lab";
 import type { LabServer } from "../lab-server";
-import { expectClean, expectReadable, isPhone, nameOf, openOnPhone, SCHEMES, SCREENS, showOn, viewsOnPhone } from "../screens";
+import {
+  expectClean,
+  expectReadable,
+  isPhone,
+  nameOf,
+  openOnPhone,
+  SCHEMES,
+  SCREENS,
+  showOn,
+  viewsOnPhone,
+} from "../screens";
 
 const RESONATOR = {
   scenario: "ch5-seven-step",

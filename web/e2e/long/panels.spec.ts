@@ -2,7 +2,16 @@ import type { Page } from "@playwright/test";
 import { benchOf } from "../classroom";
 import { expect, HYPOTHESES, test } from "../lab";
 import type { LabServer } from "../lab-server";
-import { expectClean, expectFits, expectReadable, openOnPhone, SCHEMES, SCREENS, showOn, viewsOnPhone } from "../screens";
+import {
+  expectClean,
+  expectFits,
+  expectReadable,
+  openOnPhone,
+  SCHEMES,
+  SCREENS,
+  showOn,
+  viewsOnPhone,
+} from "../screens";
 import { seriousViolations } from "../serious-violations";
 
 const command = (server: LabServer, id: string, body: object) => server.ask("POST", `/benches/${id}/commands`, body);

@@ -12,7 +12,7 @@ const { bench: hidden, asked } = await recordedAnswer("blind");
 const { bench: open } = await recordedBench("first-look");
 const catalog = await recordedAnswer("catalog");
 const sheets = await recordedAnswer("sheets");
-const { games } = await recordedAnswer("games");
+const { games, plays } = await recordedAnswer("games");
 const identification = await recordedAnswer("identification");
 const axes = (view: string) => (VIEW[view as ViewName].only === "axes" ? ["x", "y"] : []);
 const NAMES = Object.keys(VIEW) as ViewName[];
@@ -22,7 +22,10 @@ beforeEach(() => {
   server.on("GET", "/benches/:id/blind", asked);
   server.on("GET", "/sheets", sheets);
   server.on("GET", "/games", { games });
-  server.on("GET", "/me/vote", { vote: null });
+  server.on("GET", "/games/:id", ({ params }: { params: Record<string, string> }) => plays[params.id].before);
+  server.on("GET", "/classes", { classes: [] });
+  server.on("GET", "/votes", { votes: [] });
+  server.on("GET", "/benches/:id/printed", { marks: [] });
   server.on("POST", "/benches/:id/identification", identification);
 });
 
@@ -71,7 +74,10 @@ it("sweeps the device in place of the lanes, and has the lanes back after the an
 
 it("has no sweep in a game, on a gyroscope, or for somebody who only watches", () => {
   const tools = () => within(screen.getByRole("region", { name: "Faults, hidden" })).getAllByRole("button");
-  const names = () => tools().map((button) => button.textContent).slice(0, 3);
+  const names = () =>
+    tools()
+      .map((button) => button.textContent)
+      .slice(0, 3);
   const question = hidden.blind as NonNullable<typeof hidden.blind>;
   const board = connect({ ...hidden, blind: { ...question, game: { game: "g", seed: 1 } } });
   show("faults");

@@ -28,7 +28,11 @@ export function HiddenView({ view, question }: { view: ViewName; question: Quest
   const drives = useMay("drive");
   const [wanted, open] = useState(OPENS[view]);
   const measured = useMemo(
-    () => scopeConfig((signals ?? []).map(({ name }) => name).filter((name) => MEASURED.test(name)), { measure: true }),
+    () =>
+      scopeConfig(
+        (signals ?? []).map(({ name }) => name).filter((name) => MEASURED.test(name)),
+        { measure: true },
+      ),
     [signals],
   );
   const [params, setParams] = useState<PanelParams>({});

@@ -1,4 +1,4 @@
-import { act, fireEvent, screen, within } from "@testing-library/react";
+import { act, screen, within } from "@testing-library/react";
 import { beforeEach, expect, it } from "vitest";
 import { showPanel } from "../bench/dock";
 import { pickSample } from "../bench/why";
@@ -22,6 +22,7 @@ beforeEach(() => {
   server.on("GET", "/catalog", catalog);
   server.on("GET", "/sheets", sheets);
   server.on("GET", "/classes", { classes: [] });
+  server.on("GET", "/benches/:id/printed", { marks: [] });
   server.on("GET", "/benches/:id/blind", asked);
   server.on("GET", "/benches/:id/diagnosers/:name/explain", explanation);
   server.on("GET", "/benches/:id/diagnosers/:name/turn", turn);
@@ -36,13 +37,11 @@ it("has the scope above the lanes, and a bar for the thumb", () => {
   mount(<Phone />);
   expect(scope()).toHaveAccessibleName(/plant\.displacement, sensor\.displacement, model\.displacement/);
   expect(lanes()).toBeVisible();
-  expect(bar().getAllByRole("button").map((button) => button.textContent)).toEqual([
-    "Stop",
-    "Controller",
-    "Faults",
-    "Lab sheet",
-    "More",
-  ]);
+  expect(
+    bar()
+      .getAllByRole("button")
+      .map((button) => button.textContent),
+  ).toEqual(["Stop", "Controller", "Faults", "Lab sheet", "More"]);
   expect(screen.queryByRole("combobox", { name: /panel/i })).not.toBeInTheDocument();
 });
 
@@ -134,7 +133,11 @@ it("gives a watcher the views and nothing that changes the bench", () => {
   be("watcher");
   connect(bench);
   mount(<Phone />);
-  expect(bar().getAllByRole("button").map((button) => button.textContent)).toEqual(["More"]);
+  expect(
+    bar()
+      .getAllByRole("button")
+      .map((button) => button.textContent),
+  ).toEqual(["More"]);
   act(showSheet);
   expect(lanes()).toBeVisible();
 });
@@ -166,12 +169,12 @@ it("moves the divider by arrows, and remembers it", async () => {
   expect(height()).toBe(15);
 });
 
-it("drags the divider", () => {
+it("drags the divider", async () => {
   connect(bench);
-  mount(<Phone />);
-  fireEvent.pointerMove(divider(), { pointerId: 1, clientY: 240 });
+  const { user } = mount(<Phone />);
+  const at = (clientY: number) => ({ target: divider(), coords: { clientY } });
+  await user.pointer(at(240));
   expect(height()).toBe(45);
-  fireEvent.pointerDown(divider(), { pointerId: 1, clientY: 180 });
-  fireEvent.pointerMove(divider(), { pointerId: 1, clientY: 240 }); // of 400 px
+  await user.pointer([{ ...at(180), keys: "[MouseLeft>]" }, at(240)]); // of 400 px
   expect(height()).toBe(60);
 });

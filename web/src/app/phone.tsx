@@ -73,7 +73,7 @@ function Lower({ usual }: { usual: ViewName }) {
     if (sample) useView.setState({ extra: "" });
   }, [sample]);
   const panel = extra === "time" || (extra === "sheet" && !drives) ? undefined : panelOf(extra);
-  if (panel) return <Asked key={extra} panel={panel} view={extra as ViewName} />;
+  if (panel) return <Asked key={panel} panel={panel} view={extra as ViewName} />;
   return (
     <div className={styles.usual}>
       <div className={styles.lanes}>
@@ -105,7 +105,7 @@ function Asked({ panel, view }: { panel: PanelName; view: ViewName }) {
         <Close what={PANELS[panel].title} onClose={() => useView.setState({ extra: "" })} />
       </div>
       <div className={styles.body}>
-        <PanelBody view={view} params={params} setParams={setParams} />
+        <PanelBody key={view} view={view} params={params} setParams={setParams} />
       </div>
     </section>
   );
@@ -114,11 +114,7 @@ function Asked({ panel, view }: { panel: PanelName; view: ViewName }) {
 /** Why a sample was judged as it was, below the lanes it was chosen in. */
 function Why() {
   return (
-    <section
-      ref={(place) => place?.scrollIntoView({ block: "nearest" })}
-      className={styles.why}
-      aria-label="Why"
-    >
+    <section ref={(place) => place?.scrollIntoView({ block: "nearest" })} className={styles.why} aria-label="Why">
       <Close what="Why" onClose={() => useView.setState({ sample: undefined })} />
       <PanelBody view="why" params={{}} setParams={() => undefined} />
     </section>

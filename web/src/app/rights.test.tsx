@@ -109,7 +109,15 @@ it.each(changing)("has no view %s for a watcher", (view, kind) => {
   expect(screen.queryByRole("button")).not.toBeInTheDocument();
 });
 
-const question = { id: "q", game: null, answers: ["healthy", "m+5"], factors: [], shows: [], began_tick: 0, by_tick: 100 };
+const question = {
+  id: "q",
+  game: null,
+  answers: ["healthy", "m+5"],
+  factors: [],
+  shows: [],
+  began_tick: 0,
+  by_tick: 100,
+};
 const playing = { ...question, game: { game: "g", seed: 1 } };
 
 it.each(

@@ -175,7 +175,9 @@ it.each([
 ] as const)("says which measurement would have told %s, with its figures", async (truth, faulty, said, moved) => {
   const { user } = ended(truth, faulty);
   expect(await panel().findByText(said)).toBeVisible();
-  const rows = within(panel().getByRole("table", { name: "What a sweep shows" })).getAllByRole("row").slice(1);
+  const rows = within(panel().getByRole("table", { name: "What a sweep shows" }))
+    .getAllByRole("row")
+    .slice(1);
   const shown = rows.filter((row) => row.dataset.moved === "true").map((row) => [...row.children].map(plain).join(" "));
   expect(shown).toHaveLength(moved.length);
   moved.forEach((text, i) => void expect(shown[i]).toMatch(text));

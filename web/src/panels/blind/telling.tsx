@@ -1,6 +1,6 @@
 import type { HiddenAnswer } from "../../api/types";
-import { formatChange, formatSi } from "../../ui/format";
 import exercise from "../../ui/exercise.module.css";
+import { formatChange, formatSi } from "../../ui/format";
 import styles from "./blind.module.css";
 
 type Shown = NonNullable<HiddenAnswer["healthy"]>;
