@@ -48,9 +48,9 @@ it.each(NAMES)("shows nothing in the view %s that tells the hidden fault", async
 
 it("says in one line that a view is hidden, and opens a tool in its place", async () => {
   connect(hidden);
-  const { user } = show("schematic");
-  const hiddenView = screen.getByRole("region", { name: "Diagram, hidden" });
-  expect(hiddenView).toHaveTextContent(/^Diagram: hidden until you answer. Measure instead:/);
+  const { user } = show("card");
+  const hiddenView = screen.getByRole("region", { name: "Block, hidden" });
+  expect(hiddenView).toHaveTextContent(/^Block: hidden until you answer. Measure instead:/);
   expect(within(hiddenView).queryByRole("region")).not.toBeInTheDocument();
   await user.click(screen.getByRole("button", { name: "Spectrum" }));
   expect(screen.getByRole("region", { name: "Spectrum" })).toBeVisible();

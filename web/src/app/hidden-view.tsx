@@ -16,8 +16,13 @@ const TOOLS: { view: ViewName; words: string }[] = [
   { view: "time", words: "Cursors" },
 ];
 
-/** Wide views open with a tool in their place. */
-const OPENS: Partial<Record<ViewName, ViewName>> = { lanes: "identify", faults: "spectrum", view3d: "time" };
+/** The views that layouts have in front open with a tool in their place. */
+const OPENS: Partial<Record<ViewName, ViewName>> = {
+  lanes: "identify",
+  schematic: "identify",
+  faults: "spectrum",
+  view3d: "time",
+};
 
 const MEASURED = /^(sensor\.([xy]\.)?displacement|drive\.([xy]\.)?(voltage|force))$/;
 

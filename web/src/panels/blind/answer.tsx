@@ -37,8 +37,7 @@ export function Answer({ question, rule, onEnded }: AnswerProps) {
         <p className={exercise.text}>
           {hasCome
             ? "If there is a fault, it has come."
-            : `If there is a fault, it comes before ${formatSi(by_tick * dtMs, "ms", 3)}.`}{" "}
-          You may change the reference and the controller, and measure.
+            : `If there is a fault, it comes before ${formatSi(by_tick * dtMs, "ms", 3)}.`}
         </p>
         <Radio.Group label="What is hidden here?" value={said ?? ""} onChange={setSaid}>
           <div className={styles.answers}>
@@ -47,6 +46,7 @@ export function Answer({ question, rule, onEnded }: AnswerProps) {
             ))}
           </div>
         </Radio.Group>
+        <p className={exercise.text}>You may change the reference and the controller meanwhile.</p>
         {rule}
       </div>
       <footer className={styles.commit}>

@@ -163,13 +163,13 @@ it.each([
     "k+10",
     { f0_hz: 2605.3, rest_um_per_v: 0.27273 },
     /stiffness, not mass/,
-    ["Resonance f₀ 2.484 kHz 2.605 kHz +4.9 %", /^Displacement per volt, low frequencies .* −9.1 %$/],
+    ["Resonance f₀ 2.484 kHz 2.605 kHz +4.9 %", /^Gain at low frequencies .* −9.1 %$/],
   ],
   [
     "b+30",
     { quality_factor: 15.4, peak_um_per_v: 4.62 },
     /its peak has another height and width/,
-    ["Quality factor 20.00 15.40 −23.0 %", /^Displacement per volt, at the peak .* −23.0 %$/],
+    ["Quality factor 20.00 15.40 −23.0 %", /^Gain at the peak .* −23.0 %$/],
   ],
   ["healthy", {}, /a sweep finds every figure where it was/, []],
 ] as const)("says which measurement would have told %s, with its figures", async (truth, faulty, said, moved) => {

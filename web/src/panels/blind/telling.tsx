@@ -8,8 +8,8 @@ type Shown = NonNullable<HiddenAnswer["healthy"]>;
 const FIGURES: { key: keyof Shown; words: string; unit: string }[] = [
   { key: "f0_hz", words: "Resonance f₀", unit: "Hz" },
   { key: "quality_factor", words: "Quality factor", unit: "1" },
-  { key: "rest_um_per_v", words: "Displacement per volt, low frequencies", unit: "um/V" },
-  { key: "peak_um_per_v", words: "Displacement per volt, at the peak", unit: "um/V" },
+  { key: "rest_um_per_v", words: "Gain at low frequencies", unit: "um/V" },
+  { key: "peak_um_per_v", words: "Gain at the peak", unit: "um/V" },
 ];
 
 /** A smaller change is none. */
@@ -17,8 +17,8 @@ const LEAST = 0.002;
 
 /** What tells each kind of fault on a device with one displacement. */
 const SWEPT: Record<string, string> = {
-  mass: "the resonance moves, and the displacement at low frequencies stays: mass, not stiffness",
-  stiffness: "the resonance moves, and so does the displacement at low frequencies: stiffness, not mass",
+  mass: "the resonance moves, and the gain at low frequencies stays: mass, not stiffness",
+  stiffness: "the resonance moves, and so does the gain at low frequencies: stiffness, not mass",
   damping: "the resonance stays; its peak has another height and width",
   gain: "the whole curve moves up or down, and the resonance stays",
 };
