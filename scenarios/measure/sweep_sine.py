@@ -10,6 +10,7 @@ import numpy as np
 from core.block import FloatArray
 from core.board.board import Board
 from core.board.commands import Set
+from core.device.device import Device
 from core.device.frequency import figures
 from core.device.identification import Identified, Tone, identify, tone
 from core.errors import InputError
@@ -28,6 +29,10 @@ class Sweep:
     found: Identified
 
 
+class _Tripped(Exception):
+    """The board has stopped itself; the words are its reason."""
+
+
 def sweep_sine(
     board: Board,
     *,
@@ -38,6 +43,7 @@ def sweep_sine(
     start_hz: float | None = None,
     stop_hz: float | None = None,
     most_ticks: int | None = None,
+    believed: Device | None = None,
 ) -> Sweep:
     """Identify the device of a board in its present state, on a copy; the board itself does not change.
 
@@ -60,6 +66,9 @@ def sweep_sine(
         Range of the first pass instead of 0.25 to 2 natural frequencies.
     most_ticks : int, optional
         Refuse a pass that would take more ticks than this.
+    believed : Device, optional
+        The device as people know it, where faults are hidden: range, length and force per volt then follow from it
+        alone, and a trip keeps its reason.
 
     Raises
     ------
@@ -76,13 +85,16 @@ def sweep_sine(
         raise InputError(
             f"the plant moves along {', '.join(copy.spec.axes)}; a swept sine needs one displacement", "plant.model"
         )
-    device = copy.spec.device
+    device = believed or copy.spec.device
     nominal = figures(**device.resolved)
     if device.signed_force_n_per_v == 0.0:
         raise InputError(
             "the stators pull alike, so that nothing moves", "device.bias_v", "give them different voltages"
         )
-    decay_ms = nominal["decay_ms"] * copy.value("effects.mass_scale") / copy.value("effects.damping_scale")
+    if believed is None:
+        decay_ms = nominal["decay_ms"] * copy.value("effects.mass_scale") / copy.value("effects.damping_scale")
+    else:
+        decay_ms = nominal["decay_ms"] / copy.spec.surroundings[1]
     start = start_hz if start_hz is not None else WIDE[0] * nominal["f0_hz"]
     stop = stop_hz if stop_hz is not None else WIDE[1] * nominal["f0_hz"]
     if not start < stop:
@@ -98,7 +110,11 @@ def sweep_sine(
         if most_ticks is not None and ticks > most_ticks:
             hint = "fewer points or cycles, less settling, or a device that rings for a shorter time"
             raise InputError(f"would take {ticks:.3g} ticks, at most {most_ticks:.3g}", "study", hint)
-        return [_measure(copy, f, amplitude_v, cycles, settle * decay_ms, held) for f in frequencies.tolist()]
+        try:
+            return [_measure(copy, f, amplitude_v, cycles, settle * decay_ms, held) for f in frequencies.tolist()]
+        except _Tripped as trip:
+            reason = f": {trip}" if believed is None else ""
+            raise InputError(f"the board tripped{reason}", "study.amplitude_v", "lower the amplitude") from None
 
     tones = measure(np.geomspace(start, stop, points))
     first = identify(tones, device.signed_force_n_per_v)
@@ -129,7 +145,7 @@ def _record(board: Board, ticks: int) -> tuple[FloatArray, FloatArray]:
     while done < ticks:
         rows = board.advance(ticks - done)
         if board.trip is not None:
-            raise InputError(f"the board tripped: {board.trip.reason}", "study.amplitude_v", "lower the amplitude")
+            raise _Tripped(board.trip.reason)
         record[done : done + rows.count] = rows.outputs[:, columns]
         done += rows.count
     return record[:, 0], record[:, 1]

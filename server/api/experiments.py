@@ -13,6 +13,7 @@ from pydantic import BaseModel, Field
 from core.board.board import Board
 from core.board.flops import Budget, budget
 from core.board.stored import Stored, revived, stored
+from core.device.device import Device
 from core.device.frequency import response
 from core.device.identification import Identified
 from core.errors import InputError
@@ -22,7 +23,8 @@ from scenarios.measure.plant_cost import PlantCost, plant_costs
 from scenarios.measure.sweep_sine import sweep_sine
 from scenarios.measure.unstable_region import unstable_region
 from server.api.bodies import Body, StrictRoute
-from server.api.deps import RateLimited, ServiceDep, SessionDep
+from server.api.deps import RateLimited, SeenDep, ServiceDep, SessionDep
+from server.bench.hiding import BlindView
 from server.bench.session import Session
 from server.bench.tape import REFUSAL
 from server.computing.computing import LONGEST_S
@@ -71,7 +73,9 @@ class Identification(BaseModel):
 
     tick: int
     found: Identified
-    nominal: dict[str, float] = Field(description="Figures of the device in the air of the catalogue, without faults")
+    nominal: dict[str, float] = Field(
+        description="Figures of the device as it is meant to be, in the air of the catalogue, without faults"
+    )
     tones: list[MeasuredTone]
     curve: FittedCurve
 
@@ -118,9 +122,10 @@ class MeasuredPlants(BaseModel):
 
 
 @router.post("/identification", dependencies=[RateLimited])
-async def identification(body: SweptSine, session: SessionDep, service: ServiceDep) -> Identification:
-    """Identify the device by a swept sine, with the faults and the air it has now."""
-    return await _on_copy(session, service, _identify, body)
+async def identification(body: SweptSine, session: SessionDep, seen: SeenDep, service: ServiceDep) -> Identification:
+    """Identify the device by a swept sine, with the faults and the air it has now; a hidden fault is measured too."""
+    believed = seen.nominal() if isinstance(seen, BlindView) else None
+    return await _on_copy(session, service, _identify, body, believed)
 
 
 @router.get("/unstable-region", dependencies=[RateLimited])
@@ -172,11 +177,12 @@ def _plant_costs(board: Board) -> list[PlantCost]:
     return plant_costs(board.checkpoint())
 
 
-def _identify(board: Board, body: SweptSine) -> Identification:
-    sweep = sweep_sine(board, **body.model_dump(), most_ticks=MOST_TICKS)
-    force = board.spec.device.signed_force_n_per_v
+def _identify(board: Board, body: SweptSine, believed: Device | None) -> Identification:
+    sweep = sweep_sine(board, **body.model_dump(), most_ticks=MOST_TICKS, believed=believed)
+    device = believed or board.spec.device
+    force = device.signed_force_n_per_v
     sign = 1.0 if force > 0.0 else -1.0
-    identified, nominal = sweep.found, board.spec.device.metrics()
+    identified, nominal = sweep.found, device.metrics()
     grid = np.geomspace(sweep.tones[0].frequency_hz, sweep.tones[-1].frequency_hz, CURVE_POINTS)
     unit = abs(force) * UM_PER_M
     response_found = response(identified.mass_kg, identified.damping_ns_m, identified.stiffness_n_m, grid) * unit

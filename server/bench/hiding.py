@@ -9,15 +9,18 @@ from core.board.commands import Heal, Inject, Set, Switch, Trip
 from core.board.document import Document
 from core.board.history import History
 from core.board.rows import Rows
+from core.device.catalogue import device
+from core.device.device import Device
 from core.errors import unknown
 from core.signals import Signal
 from scenarios.narrator.doings import MEASURED
-from server.bench.blind import ACTOR, MAY_SET, Blind
+from server.bench.blind import ACTOR, GAME_HINT, MAY_SET, Blind
 from server.bench.captures import CapturedBench, Captures
 from server.bench.events import Event, EventLog
 from server.bench.narration import Narration
 from server.bench.portrait import ShownBench, bench_of, document_now
 from server.bench.status import Bench, BenchStatus
+from server.errors import ApiError
 from server.people.person import Person
 
 STOPPED = "the board has stopped itself"
@@ -174,6 +177,18 @@ class BlindView:
     def signals(self) -> Sequence[Signal]:
         """The signals that may be seen."""
         return [signal for signal in self._bench.signals if self.blind.may_see(signal.name)]
+
+    def nominal(self) -> Device:
+        """Return the device as it is meant to be, which a sweep takes for known.
+
+        Raises
+        ------
+        ApiError
+            In a game, whose device is to be found without a sweep.
+        """
+        if self.blind.question.game is not None:
+            raise ApiError(403, "blind", "a sweep is no part of the game", hint=GAME_HINT)
+        return device(self.blind.sheet["device"])
 
     def indices(self, names: Sequence[str]) -> list[int]:
         """Return the columns of signals; one that may not be seen is unknown."""

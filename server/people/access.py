@@ -119,7 +119,7 @@ _DOORS = {
     Need.MAY_DRIVE: f"""
         POST {BENCH}/reopen  *
         POST {BENCH}/driving  *
-        POST {BENCH}/identification
+        POST {BENCH}/identification  *
         POST {BENCH}/diagnosers/{{name}}/aliases
     """,
     Need.DRIVE: f"""

@@ -15,6 +15,7 @@ from sqlalchemy.orm import Session as DatabaseSession
 from core.errors import InputError, unknown
 from server.bench.blind import GAME_HINT, Blind, hide
 from server.bench.engine import Engine
+from server.bench.resonance import Resonance, resonance_of
 from server.bench.session import Session
 from server.errors import ApiError
 from server.people.brier import points
@@ -54,6 +55,8 @@ class Answer(BaseModel):
     ended_tick: int | None = None
     took_ms: float | None = Field(None, description="Device time from the fault to the answer; null: none had come")
     verdicts: dict[str, str] = Field({}, description="What each diagnoser said then")
+    healthy: Resonance | None = Field(None, description="What a sweep shows of the device without the fault")
+    faulty: Resonance | None = Field(None, description="What it shows with the fault; null for a device of two axes")
     began: datetime
     ended: datetime | None = None
 
@@ -206,7 +209,9 @@ class Blinds:
             came = blind.came_tick
             took = (tick - came) * session.dt_ms if came is not None and tick >= came else None
             ending = {"came_tick": came, "ended_tick": tick, "took_ms": took, "verdicts": verdicts, "ended": now()}
-            answer = answer.model_copy(update={**said, **ending})
+            spec, factors = session.board.spec, answer.factors[answer.truth]
+            told = {"healthy": resonance_of(spec, {}), "faulty": resonance_of(spec, factors)}
+            answer = answer.model_copy(update={**said, **ending, **told})
             await self._database.keep(self._keeping(answer))
         await self._engine.call(session.hiding.reveal, person.name)
         await self._turn_pages(session)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from importlib.resources import files
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -17,6 +20,12 @@ from scenarios.sheets.look import value_text, wanted_text
 from scenarios.sheets.progress import Progress
 from scenarios.sheets.quantity import parse_quantity
 from scenarios.sheets.sheet import Limits, Question
+
+DESKTOP_ALONE = re.compile(
+    r"(?i:space bar|keyboard|head of the page|header|tool ?bar|side ?bar|\btabs?\b|hover|right-click|mouse|dotted)"
+    r"|(?:[Pp]ress|[Hh]old|[Tt]ype) [A-Z]\b|\b(?:Ctrl|Shift|Alt|Esc)\b|(?:left|right) of the (?:page|screen)"
+)
+"""Keys and places that only a page of a desktop has, and dashes that depend on how many traces a scope shows."""
 
 HEAD = """+++
 schema = 1
@@ -254,3 +263,9 @@ def test_the_severity_of_a_fault_is_written_as_the_page_writes_it(fault: str, un
     limits = Limits(label="fault", fault=fault, between=(0.0, 1.0), unit=unit)
     assert value_text(limits, 0.05) == said
     assert wanted_text(limits, (0.0, 0.0)).startswith("0")
+
+
+@pytest.mark.parametrize("name", sheets.ids())
+def test_a_sheet_names_no_key_and_no_place_that_a_phone_lacks(name: str) -> None:
+    text = (files(sheets) / f"{name}.md").read_text("utf-8")
+    assert DESKTOP_ALONE.findall(text) == []

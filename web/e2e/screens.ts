@@ -58,12 +58,31 @@ export async function expectReadable(
   expect.soft(await faintLetters(page, within), `${where}, ${colorScheme}`).toEqual([]);
 }
 
+/** The views that a phone opens below its scope. */
+export async function viewsOnPhone(page: Page): Promise<string[]> {
+  await page.getByRole("button", { name: "More", exact: true }).click();
+  await expect(page.getByRole("dialog", { name: "Panels" })).toBeVisible();
+  const views = await page
+    .locator("[data-view]")
+    .evaluateAll((all) => all.map((one) => (one as HTMLElement).dataset.view));
+  await page.keyboard.press("Escape");
+  await expect(page.getByRole("dialog", { name: "Panels" })).toHaveCount(0);
+  return views as string[];
+}
+
+/** Open a view below the scope of a phone. */
+export async function openOnPhone(page: Page, view: string): Promise<void> {
+  await page.getByRole("button", { name: "More", exact: true }).click();
+  await page.locator(`[data-view="${view}"]`).click();
+  await expect(page.getByRole("dialog", { name: "Panels" })).toHaveCount(0);
+}
+
 /** A page, or a part of it, lies right on every screen and can be read; a phone shows a panel when it is chosen. */
 export async function expectFits(page: Page, what: string, within?: string, panel?: string): Promise<void> {
   const before = page.viewportSize() ?? SCREENS[0];
   for (const screen of SCREENS) {
     await showOn(page, screen);
-    if (panel && isPhone(screen)) await page.getByRole("combobox", { name: "Another panel" }).selectOption(panel);
+    if (panel && isPhone(screen)) await openOnPhone(page, panel);
     await expectClean(page, `${what} at ${nameOf(screen)}`, within);
   }
   await showOn(page, before);

@@ -78,6 +78,28 @@ def test_an_answer_ends_it_for_one_and_all_answers_for_all(live: Live, group: di
     assert other.status_code == 409 and ada.ask("POST", "/api/v1/benches", json={"scenario": "first-look"}).is_success
 
 
+def test_the_answer_says_what_a_sweep_shows_with_the_fault_and_without(live: Live) -> None:
+    moved = {}
+    for seed in range(40):
+        bench = live.bench("first-look", paused=True)["id"]
+        live.http.post(f"/api/v1/benches/{bench}/blind", json={"seed": seed})
+        path = f"/api/v1/benches/{bench}/blind"
+        shown = live.http.delete(path).json()
+        moved[shown["truth"]] = {name: shown["faulty"][name] / value for name, value in shown["healthy"].items()}
+        device = live.service.benches.get(bench).board.spec.quoted
+        assert shown["healthy"]["f0_hz"] == pytest.approx(device["f0_hz"])
+        assert shown["healthy"]["rest_um_per_v"] == pytest.approx(abs(device["static_gain_um_per_v"]))
+        if moved.keys() >= {"healthy", "m+10", "k+10", "b+30"}:
+            break
+    names = ("f0_hz", "quality_factor", "rest_um_per_v")
+    found = {truth: [ratios[name] for name in names] for truth, ratios in moved.items()}
+    assert found["healthy"] == [1.0, 1.0, 1.0]
+    assert found["m+10"] == pytest.approx([1.1**-0.5, 1.1**0.5, 1.0])
+    assert found["k+10"] == pytest.approx([1.1**0.5, 1.1**0.5, 1 / 1.1])
+    assert found["b+30"] == pytest.approx([1.0, 1 / 1.3, 1.0])
+    assert moved["b+30"]["peak_um_per_v"] < 1.0
+
+
 def test_the_teacher_reveals_for_all_and_is_not_blind(live: Live, group: dict[str, Any]) -> None:
     ada, ben = join(live, group, "Ada"), join(live, group, "Ben")
     hide(live, group, ada, ben)

@@ -16,6 +16,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
+from scenarios.library import get
 from server.bench import blind
 from server.bench.session import Session
 from server.people.access import ALL, DOORS, OPEN_WHILE_BLIND, SOCKET, Need
@@ -41,6 +42,11 @@ BODIES: dict[str, list[Any]] = {
         {"fault": "added_mass", "severity": 0.05, "when": "plant.displacement > 0"},
         {"kind": "fast_forward", "before_tick": 10**6},
     ],
+    "/api/v1/benches/{bench_id}/identification": [
+        {"points": 4, "cycles": 2, "settle": 1},
+        {"points": 200, "cycles": 1000, "settle": 100},
+        {"points": 4, "cycles": 2, "settle": 1, "amplitude_v": 1000},
+    ],
     "/api/v1/benches": [{"scenario": "first-look"}],
     "/api/v1/benches/{bench_id}/blind": [{"seed": 1}],
     "/api/v1/benches/{bench_id}/blind/answer": [{"said": "nothing", "confidence": 0.5}],
@@ -59,6 +65,7 @@ def live(serve: Any, monkeypatch: pytest.MonkeyPatch) -> Iterator[Live]:
     monkeypatch.setattr(Session, "begin", lambda self, _start: begin(self, False))
     monkeypatch.setattr("server.security.gate.REQUESTS_PER_S", 1e9)
     monkeypatch.setattr("server.security.gate.REQUESTS_AT_ONCE", 10**9)
+    monkeypatch.setattr("server.computing.computing.BUDGET_S", 1e9)
     monkeypatch.setattr("server.people.blind_class.secrets", SimpleNamespace(token_hex=lambda n: "e" * 2 * n))
     with serve(clock="manual") as live:
         yield live
@@ -112,6 +119,9 @@ def fetched(student: Somebody, left_out: Collection[tuple[str, str]] = ()) -> di
             text, key = answer.read().decode("utf-8", "replace"), f"{method} {path} {body}"
             if path.endswith("/trace") and answer.status == 200:
                 text = re.sub(r"\[[^\[\]]*\]", "[]", text)
+            if path.endswith("/identification") and answer.status == 200:
+                swept = json.loads(text)  # what is measured has a test of its own
+                text = json.dumps([*swept, swept["tick"], swept["nominal"]])
             found[key] = plain(f"{answer.status} {text}", student.bench)
             kept = {name: value for name, value in answer.getheaders() if name not in ("date", "content-length")}
             found[f"{key} headers"] = plain(json.dumps(kept), student.bench)
@@ -225,6 +235,33 @@ def test_files_of_the_trace_say_nothing_of_the_bench(live: Live, monkeypatch: py
             assert b"scenario" not in (file.schema.metadata or {})
         if kind == "npz":
             assert "scenario" not in str(dict(np.load(io.BytesIO(answer.content))))
+
+
+def test_a_sweep_measures_the_hidden_fault_once_it_acts_and_says_nothing_of_it_before(
+    live: Live, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    group = open_class(live)
+    student = join(live, group, "Ada")
+    early, late = [], []
+    for factor in (1.0, 1.2):
+        faults = [{"fault": "added_mass", "severity": factor - 1.0}] if factor > 1.0 else []
+        hide(live, group["id"], student, faults, monkeypatch)
+        early.append(sweep(student))
+        run(live, student.bench, AFTER)
+        late.append(sweep(student))
+    assert early[0] == early[1]
+    meant = get("ch5-seven-step").spec.device
+    assert early[0]["nominal"] == meant.metrics() != live.service.benches.get(student.bench).board.spec.device.metrics()
+    found = [one["found"] for one in (*early, *late)]
+    assert found[2]["f0_hz"] == pytest.approx(found[0]["f0_hz"], rel=2e-3)
+    assert found[3]["f0_hz"] == pytest.approx(found[0]["f0_hz"] / 1.2**0.5, rel=2e-3)
+
+
+def sweep(student: Somebody) -> dict[str, Any]:
+    answer = student.ask("POST", f"/api/v1/benches/{student.bench}/identification", json={"points": 12, "cycles": 10})
+    assert answer.status_code == 200, answer.text
+    found: dict[str, Any] = answer.json()
+    return found
 
 
 def test_doors_that_stay_open_are_in_the_table() -> None:

@@ -213,6 +213,8 @@ def test_on_the_bench_of_the_filter_only_the_knobs_turn(live: Live, group: dict[
         body = {"json": {"said": "healthy", "confidence": 0.5}} if method == "POST" else {}
         assert ada.ask(method, f"{path}/{door}", **body).status_code == 409
     assert ada.ask("GET", f"{path}/scenario").status_code == 403
+    swept = ada.ask("POST", f"{path}/identification", json={})
+    assert swept.status_code == 403 and "no part of the game" in swept.json()["error"]["message"]
     post(ada, f"{FILTER}/reveal", 200, seed=1)
     assert ada.ask("GET", f"{path}/scenario").status_code == 200
     left = ada.ask("POST", "/api/v1/benches", json={"scenario": "first-look"})

@@ -1,7 +1,17 @@
 import type { Page } from "@playwright/test";
 import { expect, front, HYPOTHESES, openPanel, test } from "../lab";
 import type { LabServer } from "../lab-server";
-import { expectClean, expectReadable, isPhone, nameOf, SCHEMES, SCREENS, showOn } from "../screens";
+import {
+  expectClean,
+  expectReadable,
+  isPhone,
+  nameOf,
+  openOnPhone,
+  SCHEMES,
+  SCREENS,
+  showOn,
+  viewsOnPhone,
+} from "../screens";
 
 const RESONATOR = {
   scenario: "ch5-seven-step",
@@ -90,11 +100,9 @@ async function turnTo(page: Page, rank: number): Promise<string> {
 
 /** Every panel that a phone can open. */
 async function walkPhone(page: Page, look: (where: string) => Promise<void>) {
-  const choice = page.getByRole("combobox", { name: "Another panel" });
-  const kinds = await choice.locator("option").evaluateAll((all) => all.map((o) => (o as HTMLOptionElement).value));
-  for (const kind of kinds) {
-    await choice.selectOption(kind);
-    await look(kind);
+  for (const view of await viewsOnPhone(page)) {
+    await openOnPhone(page, view);
+    await look(view);
   }
 }
 
@@ -135,7 +143,7 @@ test("an Allan deviation that has gathered for long fits too", async ({ page, se
   const figures = page.getByRole("region", { name: "Allan deviation" }).getByRole("row");
   for (const screen of SCREENS) {
     await showOn(page, screen);
-    if (isPhone(screen)) await page.getByRole("combobox", { name: "Another panel" }).selectOption("allan");
+    if (isPhone(screen)) await openOnPhone(page, "allan");
     else await front(page, "Rate");
     await expect(figures.nth(1)).toBeVisible();
     await expectClean(page, `Allan deviation at ${nameOf(screen)}`);

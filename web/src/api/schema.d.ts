@@ -470,7 +470,7 @@ export interface paths {
         put?: never;
         /**
          * Identification
-         * @description Identify the device by a swept sine, with the faults and the air it has now.
+         * @description Identify the device by a swept sine, with the faults and the air it has now; a hidden fault is measured too.
          */
         post: operations["identification"];
         delete?: never;
@@ -3056,6 +3056,10 @@ export interface components {
             verdicts?: {
                 [key: string]: string;
             };
+            /** @description What a sweep shows of the device without the fault */
+            healthy?: components["schemas"]["Resonance"] | null;
+            /** @description What it shows with the fault; null for a device of two axes */
+            faulty?: components["schemas"]["Resonance"] | null;
             /**
              * Began
              * Format: date-time
@@ -5200,7 +5204,7 @@ export interface components {
             found: components["schemas"]["Identified"];
             /**
              * Nominal
-             * @description Figures of the device in the air of the catalogue, without faults
+             * @description Figures of the device as it is meant to be, in the air of the catalogue, without faults
              */
             nominal: {
                 [key: string]: number;
@@ -7001,6 +7005,26 @@ export interface components {
              * @constant
              */
             reset_trip: true;
+        };
+        /**
+         * Resonance
+         * @description The figures that a sweep shows, in the air of the bench.
+         */
+        Resonance: {
+            /** F0 Hz */
+            f0_hz: number;
+            /** Quality Factor */
+            quality_factor: number;
+            /**
+             * Rest Um Per V
+             * @description Displacement per volt far below the resonance
+             */
+            rest_um_per_v: number;
+            /**
+             * Peak Um Per V
+             * @description Displacement per volt at the peak
+             */
+            peak_um_per_v: number;
         };
         /**
          * Response

@@ -114,12 +114,12 @@ export function App() {
         </EmptyState>
       ) : (
         <div className="body">
-          {!present && <Rail />}
+          {!present && !(phone && page === "bench") && <Rail />}
           {phone && page === "bench" ? <Phone /> : <Page />}
           {!phone && <View3dHost />}
         </div>
       )}
-      {!failure && page === "bench" && <Caption />}
+      {!failure && !phone && page === "bench" && <Caption />}
       {!failure && !phone && page === "bench" && <TimeBar />}
       {!failure && <LectureStrip />}
       <KeySheet />

@@ -3,15 +3,15 @@ import type { ViewName } from "../bench/panel-views";
 import { useBench } from "../stream/bench-store";
 import { EmptyState } from "../ui/empty-state";
 import { ErrorFence } from "../ui/error-fence";
-import { type PanelProps, suits, VIEW } from "./panels";
+import { HiddenView } from "./hidden-view";
+import { type PanelProps, servedIn, suits, VIEW } from "./panels";
 
-/** A view, fenced; what changes a bench has no place on a recording that is played, what needs more than is served none while a fault is hidden. */
+/** A view, fenced; what changes a bench has no place on a recording that is played, tools take the place of what is hidden. */
 export function PanelBody({ view, params, setParams }: PanelProps & { view: ViewName }) {
   const kind = VIEW[view];
   const fitting = useBench((s) => suits(kind, s.bench));
   const replay = useBench((s) => s.bench?.replay_of);
-  const blind = useBench((s) => s.blind);
-  const playing = useBench((s) => s.bench?.blind?.game);
+  const question = useBench((s) => s.bench?.blind);
   const drives = useMay("drive");
   return (
     <ErrorFence name={kind.title}>
@@ -21,14 +21,8 @@ export function PanelBody({ view, params, setParams }: PanelProps & { view: View
             ? `${kind.title} is for a gyroscope. Choose one in the designer and use it on the bench.`
             : `${kind.title} is for a device with one displacement; this one moves along several axes.`}
         </EmptyState>
-      ) : playing && !kind.whileBlind ? (
-        <EmptyState title="Hidden while the game is played">
-          The server hides what this panel shows until you have handed in for the last time in Lesson › Games.
-        </EmptyState>
-      ) : blind && !kind.whileBlind ? (
-        <EmptyState title="Hidden while you look for the fault">
-          The server hides what this panel shows until you answer in Lesson › Hidden fault.
-        </EmptyState>
+      ) : question && !servedIn(kind, question) ? (
+        <HiddenView key={view} view={view} question={question} />
       ) : replay && kind.changes ? (
         <EmptyState title="The past cannot be changed">
           A recording is played here; what was done then is listed in Log. Leave the replay to go on.

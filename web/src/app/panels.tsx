@@ -1,6 +1,6 @@
 import type { ComponentType } from "react";
 import { hasAxes } from "../api/fits";
-import type { Bench } from "../api/types";
+import type { Bench, Question } from "../api/types";
 import { type PanelName, panelOf, VIEWS, type ViewName } from "../bench/panel-views";
 import { AdaptationPanel } from "../panels/adaptation/adaptation-panel";
 import { AllanPanel } from "../panels/allan/allan-panel";
@@ -50,8 +50,8 @@ export interface View {
   title: string;
   /** It does something to the bench, which a recording that is played does not allow. */
   changes?: boolean;
-  /** It works with what the server serves while a fault is to be found. */
-  whileBlind?: boolean;
+  /** It works with what the server serves while a fault is to be found, or of some questions. */
+  whileBlind?: true | ((question: Question) => boolean);
   /** The benches it is for, unless for all: those with one displacement, or those with axes. */
   only?: "displacement" | "axes";
   component: ComponentType<PanelProps>;
@@ -99,9 +99,15 @@ export const VIEW: Record<ViewName, View> = {
   time: { title: "Time", whileBlind: true, component: Scope },
   spectrum: { title: "Spectrum", whileBlind: true, component: SpectrumPanel },
   phase: { title: "Phase plane", component: PhasePanel },
-  identify: { title: "Frequency response", only: "displacement", changes: true, component: IdentifyPanel },
+  identify: {
+    title: "Frequency response",
+    only: "displacement",
+    whileBlind: ({ game }) => !game,
+    changes: true,
+    component: IdentifyPanel,
+  },
   view3d: { title: "3D", component: View3dPanel },
-  lanes: { title: "Lanes", whileBlind: true, component: LanesPanel },
+  lanes: { title: "Lanes", whileBlind: ({ shows }) => shows.length > 0, component: LanesPanel },
   hypotheses: { title: "Hypotheses", only: "displacement", changes: true, component: HypothesesPanel },
   labs: { title: "Noise and memory", only: "displacement", changes: true, component: LabsPanel },
   scores: { title: "Scoreboard", component: ScoreboardPanel },
@@ -125,6 +131,10 @@ type Benchlike = Pick<Bench, "axes"> | undefined;
 /** Whether a view has something to show on a bench; before there is one, all may. */
 export const suits = ({ only }: Pick<View, "only">, bench: Benchlike): boolean =>
   only === undefined || bench === undefined || (only === "axes") === hasAxes(bench);
+
+/** Whether a view shows what it should while the answer to a question is hidden. */
+export const servedIn = ({ whileBlind }: Pick<View, "whileBlind">, question: Question): boolean =>
+  typeof whileBlind === "function" ? whileBlind(question) : whileBlind === true;
 
 /** The views of a panel that suit a bench. */
 export const viewsOn = (panel: PanelName, bench: Benchlike): ViewName[] =>

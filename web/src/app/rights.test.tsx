@@ -8,7 +8,7 @@ import { recordedAnswer, recordedBench } from "../testing/recorded";
 import { be, mount } from "../testing/render";
 import { Header } from "./header/header";
 import { PanelBody } from "./panel-body";
-import { VIEW } from "./panels";
+import { servedIn, VIEW } from "./panels";
 import { Rail } from "./rail";
 
 const { bench } = await recordedBench("first-look");
@@ -103,7 +103,7 @@ it("has these views that change the bench, and these that show no more than is s
   );
   const served = Object.entries(VIEW).filter(([, kind]) => kind.whileBlind);
   expect(served.map(([name]) => name).join(" ")).toBe(
-    "controllers time spectrum lanes narrator events sheet vote blind games",
+    "controllers time spectrum identify lanes narrator events sheet vote blind games",
   );
 });
 
@@ -115,17 +115,33 @@ it.each(changing)("has no view %s for a watcher", (view, kind) => {
   expect(screen.queryByRole("button")).not.toBeInTheDocument();
 });
 
+const question = {
+  id: "q",
+  game: null,
+  answers: ["healthy", "m+5"],
+  factors: [],
+  shows: [],
+  began_tick: 0,
+  by_tick: 100,
+};
+const playing = { ...question, game: { game: "g", seed: 1 } };
+
 it.each(
-  Object.entries(VIEW).filter(([, kind]) => !kind.whileBlind),
+  Object.entries(VIEW).filter(([, kind]) => !servedIn(kind, question)),
 )("hides the view %s while a fault is hidden, and while a game is played", (view, kind) => {
   const shown = { ...bench, axes: kind.only === "axes" ? ["x", "y"] : [], diagnosers: {}, faults: [], events: [] };
-  const question = { id: "q", answers: ["healthy", "m+5"], factors: [], shows: [], began_tick: 0, by_tick: 100 };
   const board = connect({ ...shown, blind: question } as never);
   mount(<PanelBody view={view as ViewName} params={{}} setParams={() => undefined} />);
-  expect(screen.getByText("Hidden while you look for the fault")).toBeVisible();
-  board.status({ blind: { ...question, game: { game: "g", seed: 1 } } } as never);
-  expect(screen.getByText("Hidden while the game is played")).toBeVisible();
+  expect(screen.getByText(`${kind.title}: hidden until you answer. Measure instead:`)).toBeVisible();
+  board.status({ blind: playing } as never);
+  expect(screen.getByText(`${kind.title}: hidden until the game is over. Measure instead:`)).toBeVisible();
   expect(server.requests).toEqual([]);
+});
+
+it("hides the sweep in a game alone, and the lanes unless they may be looked at", () => {
+  expect([servedIn(VIEW.identify, question), servedIn(VIEW.identify, playing)]).toEqual([true, false]);
+  const shows = { ...question, shows: ["kalman"] };
+  expect([servedIn(VIEW.lanes, question), servedIn(VIEW.lanes, shows)]).toEqual([false, true]);
 });
 
 it.each(changing)("has no view %s on a bench that plays a recording", (view, kind) => {

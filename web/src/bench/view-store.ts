@@ -30,10 +30,8 @@ interface ViewStore {
   /** The sample of a diagnoser that was clicked, to be explained. */
   sample: { diagnoser: string; tick: number } | undefined;
   dialog: "none" | "keys" | "bench" | "mine" | "share" | "layouts" | "editor";
-  /** On a phone: the panel shown beside those it always has. */
+  /** On a phone: the view below the scope, unless it is the usual one. */
   extra: string;
-  /** On a phone: the lab sheet is in front, the bench a tab away. */
-  sheet: boolean;
   /** Whether the layout is in large type. */
   large: boolean;
   /** Size of the letters on canvases, px: lectures are read from the last row. */
@@ -56,7 +54,6 @@ export const useView = create<ViewStore>(() => ({
   sample: undefined,
   dialog: "none",
   extra: "",
-  sheet: false,
   large: firstLayout() === "lecture",
   fontPx: NORMAL_PX,
   present: new URLSearchParams(window.location.search).get("present") === "1",

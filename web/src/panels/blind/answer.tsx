@@ -33,45 +33,48 @@ export function Answer({ question, rule, onEnded }: AnswerProps) {
   };
   return (
     <>
-      <p className={exercise.text}>
-        {hasCome
-          ? "If there is a fault, it has come."
-          : `If there is a fault, it comes before ${formatSi(by_tick * dtMs, "ms", 3)}.`}{" "}
-        Look at the measurement and the voltage. You may change the reference and the controller.
-      </p>
-      <Radio.Group label="What is hidden here?" value={said ?? ""} onChange={setSaid}>
-        <div className={styles.answers}>
-          {answers.map((name) => (
-            <Radio key={name} value={name} label={hypothesisWords(name, known)} />
-          ))}
-        </div>
-      </Radio.Group>
-      <label className={styles.confidence} htmlFor="confidence">
-        How sure are you? <strong>{formatPercent(confidence / 100, 0)}</strong>
-      </label>
-      <Slider
-        id="confidence"
-        thumbLabel="How sure are you, percent"
-        min={Math.ceil(100 / answers.length)}
-        max={100}
-        label={null}
-        value={confidence}
-        onChange={setConfidence}
-      />
-      <div className={exercise.bar}>
+      <div className={styles.question}>
+        <p className={exercise.text}>
+          {hasCome
+            ? "If there is a fault, it has come."
+            : `If there is a fault, it comes before ${formatSi(by_tick * dtMs, "ms", 3)}.`}
+        </p>
+        <Radio.Group label="What is hidden here?" value={said ?? ""} onChange={setSaid}>
+          <div className={styles.answers}>
+            {answers.map((name) => (
+              <Radio key={name} value={name} label={hypothesisWords(name, known)} />
+            ))}
+          </div>
+        </Radio.Group>
+        <p className={exercise.text}>You may change the reference and the controller meanwhile.</p>
+        {rule}
+      </div>
+      <footer className={styles.commit}>
+        <label htmlFor="confidence">
+          How sure are you? <strong>{formatPercent(confidence / 100, 0)}</strong>
+        </label>
+        <Slider
+          id="confidence"
+          className={styles.slider}
+          thumbLabel="How sure are you, percent"
+          min={Math.ceil(100 / answers.length)}
+          max={100}
+          label={null}
+          value={confidence}
+          onChange={setConfidence}
+        />
         <Button
-          size="sm"
+          size="xs"
           loading={busy}
           disabled={said === undefined}
           onClick={() => said && end(blind.answer(bench, said, confidence / 100))}
         >
           Commit the answer
         </Button>
-        <Button size="sm" variant="subtle" disabled={busy} onClick={() => end(blind.giveUp(bench))}>
+        <Button size="xs" variant="subtle" disabled={busy} onClick={() => end(blind.giveUp(bench))}>
           Give up
         </Button>
-      </div>
-      {rule}
+      </footer>
     </>
   );
 }

@@ -1,12 +1,14 @@
 import { Button } from "@mantine/core";
 import { answersOf } from "../../api/blind";
 import type { HiddenAnswer } from "../../api/types";
+import { showPanel } from "../../bench/dock";
 import { hypothesisWords } from "../../bench/hypothesis-words";
 import { useBench } from "../../stream/bench-store";
 import exercise from "../../ui/exercise.module.css";
 import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { jump } from "../../ui/hover";
 import styles from "./blind.module.css";
+import { Telling } from "./telling";
 
 const points = (value: number) => formatCount(Math.round(value), "point");
 
@@ -37,9 +39,15 @@ export function Outcome({ answer }: { answer: HiddenAnswer }) {
           : ""}
         {when}; {told.join(", ")}.
       </p>
+      <Telling answer={answer} />
       {came_tick !== null && came_tick <= head && (
         <Button size="compact-sm" variant="default" onClick={() => jump.to({ tick: came_tick })}>
           Show the moment it came
+        </Button>
+      )}
+      {answer.healthy && (
+        <Button size="compact-sm" variant="default" onClick={() => showPanel("identify")}>
+          Sweep the device
         </Button>
       )}
     </div>

@@ -6,6 +6,7 @@ import { connect } from "../../testing/fake-transport";
 import { recordedAnswer, recordedBench } from "../../testing/recorded";
 import { mount } from "../../testing/render";
 import { jump } from "../../ui/hover";
+import styles from "./blind.module.css";
 import { BlindPanel } from "./blind-panel";
 
 const { bench: hidden, asked, answered } = await recordedAnswer("blind");
@@ -77,7 +78,7 @@ it("commits what was chosen with how sure one is, and then tells truth, points a
   expect(plain(panel().getByRole("status"))).toContain(
     "You said healthy with 70 %. The fault had not come; kalman said healthy.",
   );
-  const [, row] = panel().getAllByRole("row");
+  const [, row] = within(panel().getByRole("table", { name: /answer/ })).getAllByRole("row");
   expect(within(row).getAllByRole("cell").map(plain)).toEqual(["healthy", "damping +30 %", "70 %", "−67"]);
 });
 
@@ -128,9 +129,70 @@ it("counts every answer, those that were not given too", async () => {
   connect(free);
   mount(<BlindPanel />);
   expect(await panel().findByText(/^Right: it is damping \+30\s%\. 100\spoints$/)).toBeVisible();
-  expect(plain(panel().getByRole("table").querySelector("caption") as Element)).toBe("3 answers, 11 points on average");
-  expect(panel().getAllByRole("row")).toHaveLength(4);
+  const answers = panel().getByRole("table", { name: /^3.answers, 11.points on average$/ });
+  expect(within(answers).getAllByRole("row")).toHaveLength(4);
   expect(panel().getByText("nothing")).toBeVisible();
+});
+
+it("begins with the button that hides a fault, and keeps confidence and Commit beside what scrolls", () => {
+  const board = connect(free);
+  mount(<BlindPanel />);
+  expect(panel().getAllByRole("button")[0]).toHaveAccessibleName("Hide a fault");
+  expect(screen.getByRole("region", { name: "Blind diagnosis" }).firstElementChild).toContainElement(
+    panel().getByRole("button", { name: "Hide a fault" }),
+  );
+  board.hello(hidden);
+  const [scrolls] = document.getElementsByClassName(styles.question);
+  expect(scrolls).toContainElement(panel().getAllByRole("radio")[0]);
+  for (const one of [panel().getByRole("slider"), panel().getByRole("button", { name: "Commit the answer" })])
+    expect(scrolls).not.toContainElement(one);
+});
+
+const SHOWN = { f0_hz: 2484, quality_factor: 20, rest_um_per_v: 0.3, peak_um_per_v: 6 };
+const ended = (truth: string, faulty: Partial<typeof SHOWN>) => {
+  const { said, confidence } = { said: truth, confidence: 0.7 };
+  const told = { ...given, truth, said, confidence, healthy: SHOWN, faulty: { ...SHOWN, ...faulty } };
+  server.on("GET", "/benches/:id/blind", { ...answered, answers: [told] });
+  connect(free);
+  return mount(<BlindPanel />);
+};
+
+it.each([
+  ["m+10", { f0_hz: 2368.4 }, /mass, not stiffness/, ["Resonance f₀ 2.484 kHz 2.368 kHz −4.7 %"]],
+  [
+    "k+10",
+    { f0_hz: 2605.3, rest_um_per_v: 0.27273 },
+    /stiffness, not mass/,
+    ["Resonance f₀ 2.484 kHz 2.605 kHz +4.9 %", /^Gain at low frequencies .* −9.1 %$/],
+  ],
+  [
+    "b+30",
+    { quality_factor: 15.4, peak_um_per_v: 4.62 },
+    /its peak has another height and width/,
+    ["Quality factor 20.00 15.40 −23.0 %", /^Gain at the peak .* −23.0 %$/],
+  ],
+  ["healthy", {}, /a sweep finds every figure where it was/, []],
+] as const)("says which measurement would have told %s, with its figures", async (truth, faulty, said, moved) => {
+  const { user } = ended(truth, faulty);
+  expect(await panel().findByText(said)).toBeVisible();
+  const rows = within(panel().getByRole("table", { name: "What a sweep shows" }))
+    .getAllByRole("row")
+    .slice(1);
+  const shown = rows.filter((row) => row.dataset.moved === "true").map((row) => [...row.children].map(plain).join(" "));
+  expect(shown).toHaveLength(moved.length);
+  moved.forEach((text, i) => void expect(shown[i]).toMatch(text));
+  await user.click(panel().getByRole("button", { name: "Sweep the device" }));
+  expect(useView.getState().extra).toBe("identify");
+});
+
+it("names the measurement on a gyroscope, which no sweep measures", async () => {
+  const factors = { ...given.factors, "sense+1": { second_stiffness: 1.01 } };
+  const told = { ...given, truth: "sense+1", factors, healthy: null, faulty: null };
+  server.on("GET", "/benches/:id/blind", { ...answered, answers: [told] });
+  connect(free);
+  mount(<BlindPanel />);
+  expect(await panel().findByText(/along y: its resonance moves/)).toBeVisible();
+  expect(panel().queryByRole("button", { name: "Sweep the device" })).not.toBeInTheDocument();
 });
 
 it("has nothing to hide on a bench without a bank, and while a game is played", () => {

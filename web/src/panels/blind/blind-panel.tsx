@@ -12,6 +12,7 @@ import { NumberField } from "../../ui/number-field";
 import { Stale } from "../../ui/stale";
 import { Answer } from "./answer";
 import { Attempts, Outcome } from "./attempts";
+import styles from "./blind.module.css";
 
 /** Blind diagnosis: the server hides a fault; answer with a confidence, then see the truth and the points. */
 export function BlindPanel() {
@@ -37,7 +38,7 @@ export function BlindPanel() {
   const rule = value && <p className={exercise.text}>{value.rule}</p>;
   if (question)
     return (
-      <section className={exercise.panel} aria-label="Blind diagnosis">
+      <section className={styles.asked} aria-label="Blind diagnosis">
         <Stale error={error} since={since} onRetry={again} />
         <Answer key={question.id} question={question} rule={rule} onEnded={again} />
       </section>
@@ -53,21 +54,21 @@ export function BlindPanel() {
   return (
     <section className={exercise.panel} aria-label="Blind diagnosis">
       <Stale error={error} since={since} onRetry={again} />
-      {last && <Outcome answer={last} />}
-      <p className={exercise.text}>
-        The server hides a fault, or none. Until you answer you see the reference, the measurement and the voltage: no
-        log, no diagnosers, no 3D. The same seed hides the same fault.
-      </p>
-      {rule}
       <div className={exercise.bar}>
+        <Button size="sm" onClick={hide}>
+          {last ? "Hide another fault" : "Hide a fault"}
+        </Button>
         <span className={exercise.field}>
           seed
           <NumberField label="Seed" unit="" integer value={seed} minimum={0} maximum={2 ** 31} onCommit={setSeed} />
         </span>
-        <Button size="sm" onClick={hide}>
-          Hide a fault
-        </Button>
       </div>
+      {last && <Outcome answer={last} />}
+      <p className={exercise.text}>
+        The server hides a fault, or none. Until you answer you see the reference, the measurement and the voltage, and
+        you may sweep the device: no log, no diagnosers, no 3D. The same seed hides the same fault.
+      </p>
+      {rule}
       {answers.length > 0 && <Attempts answers={answers} />}
     </section>
   );

@@ -44,13 +44,13 @@ export function IdentifyPanel() {
   return (
     <section className={styles.panel} aria-label="Frequency response">
       <div className={styles.bar}>
+        {button}
         {FIELDS.map(({ name, ...field }) => (
           <span key={name} className={styles.field}>
             {field.label}
             <NumberField {...field} value={how[name]} onCommit={(value) => setHow({ ...how, [name]: value })} />
           </span>
         ))}
-        {result && button}
       </div>
       {result ? (
         <div className={styles.result}>
@@ -60,7 +60,7 @@ export function IdentifyPanel() {
           <IdentifiedTable result={result} />
         </div>
       ) : (
-        <EmptyState title="Not measured yet" action={button}>
+        <EmptyState title="Not measured yet">
           Sines are played on a copy of this bench, with the faults and the air it has now; the bench itself runs on. A
           mass, a damper and a spring are fitted to what the sensor sees.
         </EmptyState>

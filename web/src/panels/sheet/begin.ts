@@ -27,6 +27,6 @@ export async function hideInStep(id: string, step: string): Promise<void> {
 
 /** Bring the sheet to the front, in a column of its own. */
 export function showSheet(): void {
-  useView.setState({ sheet: true });
+  useView.setState({ extra: "sheet" });
   showAtEdge("sheet", SHEET_PX);
 }
