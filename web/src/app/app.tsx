@@ -119,8 +119,8 @@ export function App() {
           {!phone && <View3dHost />}
         </div>
       )}
-      {!failure && page === "bench" && <Caption />}
-      {!failure && !phone && page === "bench" && <TimeBar />}
+      {!failure && !present && page === "bench" && <Caption />}
+      {!failure && !present && !phone && page === "bench" && <TimeBar />}
       {!failure && <LectureStrip />}
       <KeySheet />
       <NewBench />
