@@ -8311,7 +8311,7 @@ export interface components {
              * @description The library, the folder of this server, or a file it was started with
              * @enum {string}
              */
-            origin: "library" | "folder" | "command line";
+            origin: "starter" | "library" | "folder" | "command line";
             /**
              * Hash
              * @description SHA-256 of its text
@@ -8367,7 +8367,7 @@ export interface components {
              * @description The library, the folder of this server, or a file it was started with
              * @enum {string}
              */
-            origin: "library" | "folder" | "command line";
+            origin: "starter" | "library" | "folder" | "command line";
             /**
              * Hash
              * @description SHA-256 of its text
