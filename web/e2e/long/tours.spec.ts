@@ -10,7 +10,7 @@ const TOURS: Record<string, string[]> = {
     "The motion",
     "A fault",
     "The verdict",
-    "Where to go on",
+    "Where to go next",
   ],
   Faults: ["The list of faults", "Damping +30 %", "Found", "Where it acts", "Heal all"],
   Controllers: ["A device that has changed", "Who drives", "MRAC drives", "What it learns", "Back to the open loop"],
@@ -77,5 +77,5 @@ test("every tour drives the page, does what it says, and puts all back, at its e
   expect(await runs()).toEqual(ran);
 
   await page.setViewportSize({ width: 390, height: 844 });
-  await expect(page.getByRole("button", { name: "Show me round" })).toHaveCount(0);
+  await expect(page.getByRole("button", { name: "Take the tour" })).toHaveCount(0);
 });

@@ -23,15 +23,15 @@ export function PanelBody({ view, params, setParams }: PanelProps & { view: View
         </EmptyState>
       ) : playing && !kind.whileBlind ? (
         <EmptyState title="Hidden while the game is played">
-          The server hides what this panel shows until you have handed in for the last time in Lesson, Games.
+          The server hides this panel until your last attempt in Lesson, Games.
         </EmptyState>
       ) : blind && !kind.whileBlind ? (
         <EmptyState title="Hidden while you look for the fault">
-          The server hides what this panel shows until you answer in Lesson, Hidden fault.
+          The server hides this panel until you answer in Lesson, Hidden fault.
         </EmptyState>
       ) : replay && kind.changes ? (
         <EmptyState title="The past cannot be changed">
-          A recording is played here; what was done then is listed in Log. Leave the replay to go on.
+          A recording is played here; its commands are listed in Log. Leave the replay to go on.
         </EmptyState>
       ) : !drives && kind.changes ? (
         <EmptyState title="You watch this bench">The commands of its driver are listed in Log.</EmptyState>

@@ -41,7 +41,7 @@ function Share() {
     );
   return (
     <EmptyState title="Answer first">
-      A link holds all that was done on this bench, what is hidden too. Give your answer in Blind diagnosis, or end the
+      A link contains every command on this bench, hidden faults included. Give your answer in Blind diagnosis, or end the
       game in Games, then share.
     </EmptyState>
   );
@@ -75,7 +75,7 @@ function MadeLink() {
   };
 
   if (error) return <EmptyState title={error.body.message}>{error.body.hint}</EmptyState>;
-  if (!made) return <EmptyState title="Making the link">The server stores what was done on this bench.</EmptyState>;
+  if (!made) return <EmptyState title="Making the link">The server stores every command on this bench.</EmptyState>;
   return (
     <>
       <p className={styles.remark}>

@@ -114,7 +114,7 @@ export function JobList({ jobs, chosen, onChoose, onChanged }: JobListProps) {
                 title={
                   job.kind === "run"
                     ? "Cancel"
-                    : "Stop; finished runs are kept, and the campaign can go on from them later"
+                    : "Stop; finished runs are kept, and the campaign can continue later"
                 }
                 onClick={() => cancel(job)}
               >

@@ -81,7 +81,7 @@ export function Tools() {
       needs: "drive",
       run: actions.record,
     },
-    { label: "Save what happened as a scenario (S)", icon: <IconDeviceFloppy size={19} />, run: actions.saveScenario },
+    { label: "Save these events as a scenario (S)", icon: <IconDeviceFloppy size={19} />, run: actions.saveScenario },
     {
       label: "Fork: a copy of this bench from now on (F)",
       icon: <IconGitFork size={19} />,
@@ -105,7 +105,7 @@ export function Tools() {
   const keep = all.filter(({ needs }) => !needs || may(needs, role));
   const page: Tool[] = [
     {
-      label: narrates ? "Narrator off (Q)" : "Narrator on: say in sentences what happens (Q)",
+      label: narrates ? "Narrator off (Q)" : "Narrator on: describe events in sentences (Q)",
       icon: narrates ? <IconMessageOff size={19} /> : <IconMessage size={19} />,
       run: toggleNarrator,
     },

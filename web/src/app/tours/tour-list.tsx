@@ -42,7 +42,7 @@ export function OfferTour() {
   if ((width || window.innerWidth) < TOUR_PX) return null;
   return (
     <Button size="compact-sm" variant="default" onClick={() => void startTour(TOURS[0])}>
-      Show me round
+      Take the tour
     </Button>
   );
 }

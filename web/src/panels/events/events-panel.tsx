@@ -53,7 +53,7 @@ function Events() {
   if (events.length === 0)
     return (
       <EmptyState title="Nothing has happened yet">
-        Every command, fault, finding and trip will stand here with its tick.
+        Every command, fault, finding and trip is listed here with its tick.
       </EmptyState>
     );
   return (

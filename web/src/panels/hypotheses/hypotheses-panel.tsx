@@ -90,10 +90,10 @@ export function HypothesesPanel() {
             loading={busy}
             disabled={!changed || wrong !== undefined}
             onClick={() =>
-              begin({ [`diagnosers.${id}.hypotheses`]: list }, "The bench begins again with the new list.")
+              begin({ [`diagnosers.${id}.hypotheses`]: list }, "The bench restarts with the new list.")
             }
           >
-            Begin again with this list
+            Restart with this list
           </Button>
         )}
         {teaches && (
@@ -113,7 +113,7 @@ export function HypothesesPanel() {
               if (kind)
                 begin(
                   { [`diagnosers.${kind}`]: { kind, hypotheses: list } },
-                  "The bench begins again with another method.",
+                  "The bench restarts with another method.",
                 );
             }}
           />
