@@ -43,12 +43,11 @@ test("a lecture is run by keys, forwards and back with the same bits, and leaves
   expect(await digestOf(stage)).toEqual(there);
   expect(benchOf(page)).toBe(stage);
 
-  const [window] = await Promise.all([
-    context.waitForEvent("page"),
-    page.keyboard.press("i"),
-  ]);
+  const [window] = await Promise.all([context.waitForEvent("page"), page.keyboard.press("i")]);
   await expect(window.getByRole("heading", { level: 1 })).toHaveText("4 of 10 Why?");
-  await expect(window.getByRole("region", { name: "Notes of the speaker" })).toContainText("click the lane where it turns");
+  await expect(window.getByRole("region", { name: "Notes of the speaker" })).toContainText(
+    "click the lane where it turns",
+  );
   await window.keyboard.press("PageDown");
   await expect(window.getByRole("heading", { level: 1 })).toContainText("5 of 10");
   await expect(strip).toContainText("5 of 10");

@@ -108,7 +108,11 @@ function Shown() {
   return all
     .filter(({ shown }) => shown === bench)
     .map(({ id, name }) => (
-      <Line key={id} title={`All of ${name} see this bench.`} text="They cannot change it; their own benches keep running.">
+      <Line
+        key={id}
+        title={`All of ${name} see this bench.`}
+        text="They cannot change it; their own benches keep running."
+      >
         <Button size="compact-sm" onClick={() => classes.endShowing(id).then(again, showError)}>
           End showing
         </Button>

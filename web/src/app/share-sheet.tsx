@@ -41,8 +41,8 @@ function Share() {
     );
   return (
     <EmptyState title="Answer first">
-      A link contains every command on this bench, hidden faults included. Give your answer in Blind diagnosis, or end the
-      game in Games, then share.
+      A link contains every command on this bench, hidden faults included. Give your answer in Blind diagnosis, or end
+      the game in Games, then share.
     </EmptyState>
   );
 }

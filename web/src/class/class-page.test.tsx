@@ -150,7 +150,15 @@ it("does nothing for all while nobody is there, and says so", async () => {
   server.on("GET", "/classes/:id/members", { members: [] });
   const { all } = await mountClass();
   expect(screen.getByText("Nobody has joined yet")).toBeVisible();
-  for (const name of ["Freeze", "Release", "Start all together", "Inject", "Heal all", "Begin on all", "Set hidden faults"])
+  for (const name of [
+    "Freeze",
+    "Release",
+    "Start all together",
+    "Inject",
+    "Heal all",
+    "Begin on all",
+    "Set hidden faults",
+  ])
     expect(all.getByRole("button", { name })).toBeDisabled();
 });
 

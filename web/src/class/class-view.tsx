@@ -78,7 +78,9 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
   );
   const end = () => {
     if (
-      window.confirm(`End the class ${name}? The names of its students, their benches and the log are deleted for good.`)
+      window.confirm(
+        `End the class ${name}? The names of its students, their benches and the log are deleted for good.`,
+      )
     )
       void classes.end(id).then(onChanged, showError);
   };

@@ -23,7 +23,9 @@ export function HideForAll({ group, count, chosen, carryOut }: HideForAllProps) 
   const hide = () => {
     const whom = chosen.length > 0 ? `the ${chosen.length} chosen` : `all ${count}`;
     if (window.confirm(`Give ${whom} a new bench with a hidden fault? What is on their benches now is gone.`))
-      carryOut("Set hidden faults", () => blind.hideForAll(group, scenario, shows, chosen.length > 0 ? [...chosen] : null));
+      carryOut("Set hidden faults", () =>
+        blind.hideForAll(group, scenario, shows, chosen.length > 0 ? [...chosen] : null),
+      );
   };
   return (
     <fieldset className={styles.group} aria-label="Hidden faults for all">

@@ -142,8 +142,8 @@ export function LectureStrip() {
       )}
       {notes && <Notes cue={cue} next={lecture.script[at + 1]?.title} />}
       <p className={styles.keys}>
-        Space, → or a clicker: next cue; ← back. R runs and pauses. {cue.vote && "A opens the vote, X reveals it. "}W asks
-        why. I opens the notes. P hides all buttons.
+        Space, → or a clicker: next cue; ← back. R runs and pauses. {cue.vote && "A opens the vote, X reveals it. "}W
+        asks why. I opens the notes. P hides all buttons.
       </p>
     </section>
   );

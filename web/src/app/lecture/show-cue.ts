@@ -1,5 +1,5 @@
 import type { Cue } from "../../api/types";
-import { dockNow, panelWith, showPanel, viewOf } from "../../bench/dock";
+import { dockNow, panelWith, showBeside, showPanel, viewOf } from "../../bench/dock";
 import { layoutAt } from "../../bench/lecture";
 import { panelOf } from "../../bench/panel-views";
 import { pickSample, weighingDiagnosers } from "../../bench/why";
@@ -34,7 +34,11 @@ export function showCue(script: readonly Cue[], { at, tick }: Place, diagnoses: 
   if (!diagnoses) panelWith("lanes")?.api.close();
   if (present) keepOnly([...FOR_AUDIENCE, ...panels]);
   const among = BESIDE.find(panelWith);
-  for (const panel of panels) showPanel(panel, among);
+  panels.forEach((view, i) => {
+    showPanel(view, among);
+    const hidden = panels.slice(0, i).find((other) => panelWith(other)?.group === panelWith(view)?.group);
+    if (hidden) showBeside(view, hidden);
+  });
   const [diagnoser] = weighingDiagnosers();
   if (diagnoser && panels.includes("why")) pickSample(diagnoser, tick - 1);
 }

@@ -38,7 +38,9 @@ export function AllanPanel() {
           teaches && (
             <Button
               size="xs"
-              onClick={() => openVariant({ "readouts.allan.kind": "allan" }, "Bench with an Allan read-out").catch(showError)}
+              onClick={() =>
+                openVariant({ "readouts.allan.kind": "allan" }, "Bench with an Allan read-out").catch(showError)
+              }
             >
               Restart with an Allan read-out
             </Button>

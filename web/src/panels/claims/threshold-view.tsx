@@ -102,8 +102,8 @@ function Turned({ claim, knob }: { claim: Claim; knob: ClaimKnob }) {
             <Painted label={`${claim.metric} over ${knob.label}: ${found.words}`} paint={paint} />
           </div>
           <p className={styles.hint}>
-            Hatched: {claim.is_published ? "agrees with the print" : "nothing is printed"}. Dashed: our bounds.
-            Points: runs of the scenario with this value and its seed.
+            Hatched: {claim.is_published ? "agrees with the print" : "nothing is printed"}. Dashed: our bounds. Points:
+            runs of the scenario with this value and its seed.
           </p>
         </>
       )}

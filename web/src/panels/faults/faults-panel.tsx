@@ -36,11 +36,7 @@ export function FaultsPanel() {
   return (
     <section className={styles.panel} aria-label="Faults">
       <div className={styles.top}>
-        <span>
-          {acting.length === 0
-            ? "The device is healthy"
-            : formatCount(acting.length, "active fault")}
-        </span>
+        <span>{acting.length === 0 ? "The device is healthy" : formatCount(acting.length, "active fault")}</span>
         <Button size="compact-sm" variant="default" disabled={acting.length === 0} onClick={actions.healAll}>
           Heal all
         </Button>

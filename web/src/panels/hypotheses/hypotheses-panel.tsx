@@ -89,9 +89,7 @@ export function HypothesesPanel() {
             size="compact-sm"
             loading={busy}
             disabled={!changed || wrong !== undefined}
-            onClick={() =>
-              begin({ [`diagnosers.${id}.hypotheses`]: list }, "The bench restarts with the new list.")
-            }
+            onClick={() => begin({ [`diagnosers.${id}.hypotheses`]: list }, "The bench restarts with the new list.")}
           >
             Restart with this list
           </Button>

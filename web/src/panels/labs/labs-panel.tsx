@@ -25,7 +25,8 @@ export function LabsPanel() {
   if (!parameters || !id)
     return (
       <EmptyState title="No diagnoser on this bench">
-        Here you set the assumptions of a diagnoser apart from the real noise. Open a scenario of chapter 5 from New bench.
+        Here you set the assumptions of a diagnoser apart from the real noise. Open a scenario of chapter 5 from New
+        bench.
       </EmptyState>
     );
   const labs = labsOf({ parameters }, id, block);

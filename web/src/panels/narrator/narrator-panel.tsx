@@ -19,7 +19,9 @@ export function NarratorPanel() {
   }, [said]);
   if (voting)
     return (
-      <EmptyState title="Not while a vote is open">Events would reveal the answer. They are listed here afterwards.</EmptyState>
+      <EmptyState title="Not while a vote is open">
+        Events would reveal the answer. They are listed here afterwards.
+      </EmptyState>
     );
   if (sentences.length === 0)
     return (
