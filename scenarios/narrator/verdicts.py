@@ -141,7 +141,8 @@ class Verdicts:
         """Say whether a verdict is right, and how long after the change."""
         numbers["truth"] = float(true)
         if true != new:
-            return f"Wrong: {f'the truth is {self._words[true]}' if true >= 0 else 'no hypothesis matches the real fault'}."
+            why = f"the truth is {self._words[true]}" if true >= 0 else "no hypothesis matches the real fault"
+            return f"Wrong: {why}."
         if changed is None:
             return "Correct."
         numbers["since_ms"] = self._since * self._dt_ms
