@@ -2,11 +2,10 @@ import type { DockviewApi } from "dockview-react";
 import { scopeConfig } from "../stream/scope-config";
 import { addTo, type Layouts, LIST_PX, LOOP_PX, size, THREE_COLUMNS_PX } from "./built-in-layouts";
 
-/** The rate over a window that holds a step of it and its effect: a window behind the step reads as drift. */
-const RATE = scopeConfig(["rate.rate", "@active.rate"], { windowMs: 2000 });
+const RATE = scopeConfig(["rate.rate", "@active.rate"], { windowMs: 500 });
 const MOTION = scopeConfig(["plant.x", "plant.y"], { windowMs: 2 });
 const FORCES = scopeConfig(["drive.x.force", "drive.y.force"], { windowMs: 2 });
-const QUADRATURE = scopeConfig(["@active.quadrature"], { windowMs: 2000 });
+const QUADRATURE = scopeConfig(["@active.quadrature"], { windowMs: 500 });
 
 /** Below the rate: the path of the mass, and the forces that move it. */
 function addBelow(api: DockviewApi, beside: boolean): void {

@@ -24,7 +24,7 @@ export { linearTicks as timeSplits } from "./ticks";
 
 /** Lengths of device time that panels offer, ms. */
 export const TIME_WINDOWS_MS = {
-  scope: [0.2, 0.5, 1, 2, 4, 10, 20, 50, 100, 200, 500, 1000, 2000],
+  scope: [0.2, 0.5, 1, 2, 4, 10, 20, 50, 100, 200, 500, 1000],
   lanes: [2, 4, 10, 20, 50, 100, 200, 500],
   phase: [1, 2, 4, 10, 20, 40],
 } as const satisfies Record<string, readonly number[]>;

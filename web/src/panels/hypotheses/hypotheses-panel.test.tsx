@@ -75,12 +75,12 @@ it("adds the hypothesis that is not there yet, and renames it by what it changes
   await waitFor(() => expect(sentHypotheses().at(-1)).toMatchObject({ name: "k-3,25", mass: 1, stiffness: 0.9675 }));
 });
 
-it("says that a name is there twice, and begins no bench with it", async () => {
+it("says that a name appears twice, and begins no bench with it", async () => {
   const { user } = mountPanel();
   await user.click(add());
   await user.clear(field("Name of hypothesis 7"));
   await user.type(field("Name of hypothesis 7"), "m+5");
-  expect(screen.getByRole("alert")).toHaveTextContent("m+5 is there twice.");
+  expect(screen.getByRole("alert")).toHaveTextContent("m+5 appears twice.");
   expect(screen.getByRole("button", { name: "Restart with this list" })).toBeDisabled();
 });
 

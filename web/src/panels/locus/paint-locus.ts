@@ -29,7 +29,7 @@ export const tiltText = (degrees: number | undefined) =>
 /** By how much y is drawn larger than x, in one digit that does not flicker; nothing where both have one scale. */
 function stretchText({ x, y }: LocusAxes): string {
   const stretch = (x[1] - x[0]) / (y[1] - y[0]);
-  return stretch < 1.5 ? "" : ` (drawn ${formatNumber(Number(stretch.toPrecision(1)), 0)}× larger than x)`;
+  return stretch < 1.5 ? "" : ` (×${formatNumber(Number(stretch.toPrecision(1)), 0)})`;
 }
 
 /** The path of the mass in its plane, and the line along which it swings. */
