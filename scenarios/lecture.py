@@ -22,8 +22,11 @@ Panel = Literal[
     "adaptation",
     "allan",
     "behaviour",
+    "board",
     "card",
+    "claims",
     "controllers",
+    "device",
     "environment",
     "events",
     "faults",
@@ -31,15 +34,18 @@ Panel = Literal[
     "identify",
     "lanes",
     "locus",
+    "narrator",
+    "parameters",
     "phase",
     "schematic",
     "scores",
+    "sensor",
     "spectrum",
     "twins",
     "view3d",
     "why",
 ]
-"""Views of the page that a lecture can show; each was a panel once."""
+"""Views of the panels of the page that a lecture can show; each belongs to one panel."""
 MOST_CUES = 40
 LONGEST_TICKS = 5_000_000
 """Ticks of an experiment: a cue is reached from tick 0 while a class waits."""
@@ -94,7 +100,7 @@ class Cue(Table):
     until_ms: float | None = Field(None, ge=0, le=LONGEST_MS, description="where it ends; it stands still without one")
     pace_ms_per_s: float | None = Field(None, ge=1e-3, le=1000, description="device time for each second of the room")
     layout: Literal["lecture", "lab", "research"] | None = Field(None, description="that of the cue before")
-    panels: list[Panel] = Field([], max_length=6, description="views brought to the front")
+    panels: list[Panel] = Field([], max_length=6, description="views of panels brought to the front")
     signals: list[str] = Field([], max_length=6, description="on the first scope")
     window_ms: float | None = Field(None, gt=0, le=LONGEST_MS, description="of the first scope")
     metrics: Stretch | None = Field(None, description="the part of the run that the expectations speak of")

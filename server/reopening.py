@@ -87,7 +87,7 @@ class Reopening:
                 return found
             link = await self._links.let_go(bench_id)
             if link is None:
-                raise not_found("bench", bench_id, "it was closed, or let go too long ago")
+                raise not_found("bench", bench_id, "it was closed")
             session = await self.open_link(link, bench_id)
             try:
                 await self._links.delete(bench_id)

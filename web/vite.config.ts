@@ -15,7 +15,7 @@ export default defineConfig({
   ],
   server: {
     host: "127.0.0.1",
-    fs: { allow: [".", "../scenarios/report", "../scenarios/library"] },
+    fs: { allow: [".", ...["report", "library", "lectures"].map((name) => `../scenarios/${name}`)] },
     proxy: {
       "/api": { target: board, ws: true },
       "/benches": { target: board, ws: true },

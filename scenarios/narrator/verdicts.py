@@ -1,4 +1,4 @@
-"""When the belief of a diagnoser turns to another hypothesis for good."""
+"""When a diagnoser favours another hypothesis for good."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Verdicts:
         models = section.params.hypotheses
         self._models, self._words = [one.name for one in models], [hypothesis_words(one) for one in models]
         self._name, self._every, self._dt_ms = name, every, dt_ms
-        self._whose = "belief turns to the lane" if alone else f"the belief of {name} turns to the lane"
+        self._whose = "the bank now favours" if alone else f'bank "{name}" now favours'
         self._nominal = next((at for at, one in enumerate(models) if one.is_nominal), None)
         self._held: int | None = None
         self._winner, self._since = -1, 0
@@ -141,12 +141,13 @@ class Verdicts:
         """Say whether a verdict is right, and how long after the change."""
         numbers["truth"] = float(true)
         if true != new:
-            return f"That is wrong: {f'the truth is {self._words[true]}' if true >= 0 else 'no lane has the truth'}."
+            why = f"the truth is {self._words[true]}" if true >= 0 else "no hypothesis matches the real fault"
+            return f"Wrong: {why}."
         if changed is None:
-            return "That is right."
+            return "Correct."
         numbers["since_ms"] = self._since * self._dt_ms
         numbers["delay_samples"] = float(max(0, self._since - changed))
         if self._since <= changed:
-            return "That is right: it said so before the change."
+            return "Correct: chosen before the change."
         after = f"{format_count(numbers['delay_samples'], 'sample')} ({length(numbers['delay_samples'] * self._dt_ms)})"
-        return f"That is right, and has been since {moment(numbers['since_ms'])}, {after} after the change."
+        return f"Correct; first chosen at {moment(numbers['since_ms'])}, {after} after the change."

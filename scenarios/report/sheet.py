@@ -68,7 +68,7 @@ def sheet_html(
 
 
 def _points(points: float | None) -> str:
-    return "not told yet" if points is None else format_short(points, "", 4)
+    return "not shown yet" if points is None else format_short(points, "", 4)
 
 
 def _charts(trace: Mapping[str, Any]) -> list[Markup]:

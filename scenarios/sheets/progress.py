@@ -83,7 +83,7 @@ class Progress(BaseModel):
         if not isinstance(step, Answered):
             raise InputError("is done at the bench, not answered", "step", code="conflict")
         if not can_judge(step, self.facts):
-            raise InputError("is about what was not measured: go on without it", "step", code="conflict")
+            raise InputError("is about an unmeasured quantity: skip this question", "step", code="conflict")
         verdict, state = judge(step, text, self.facts), self.of(step)
         lost = step.costs if verdict.share == 0.0 else 0.0
         state.answers.append(Given(text=text, share=verdict.share, lost=lost, reason=verdict.reason, tick=tick))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Iterator
 from contextlib import suppress
 from typing import Annotated, Literal
 
@@ -16,6 +17,7 @@ from core.own.admission import check_admitted, refusal
 from core.own.text import UnitError
 from core.own.unit import Unit, unit
 from scenarios.own import copies
+from scenarios.starters import starters
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import ComputingDep, RateLimited, ServiceDep
 from server.bench.making import prepare
@@ -24,7 +26,7 @@ from server.errors import not_found
 router = APIRouter(prefix="/units", tags=["units"], route_class=StrictRoute)
 
 USUAL = "first-look"
-Origin = Literal["library", "folder", "command line"]
+Origin = Literal["starter", "library", "folder", "command line"]
 Name = Annotated[str, Field(pattern=IDENTIFIER.pattern, description="Small letters, digits and _, a letter first")]
 NamePath = Annotated[str, Path(pattern=IDENTIFIER.pattern, description="Name of a unit")]
 
@@ -35,12 +37,14 @@ class UnitEntry(BaseModel):
     family: str
     name: str
     title: str
-    origin: Origin = Field(description="The library, the folder of this server, or a file it was started with")
+    origin: Origin = Field(
+        description="A text to begin with, the library, the folder of this server, or a file it was started with"
+    )
     hash: str = Field(description="SHA-256 of its text")
 
 
 class UnitList(BaseModel):
-    """Units one may begin with: those of this server, then those of the library."""
+    """Units to begin with: of this server, then the starters, then the library."""
 
     units: list[UnitEntry]
     refusal: str = Field(description="Why this person may not bring units of their own; empty: they may")
@@ -90,9 +94,9 @@ class UnitCheck(BaseModel):
 
 @router.get("")
 def list_units(service: ServiceDep) -> UnitList:
-    """List the units one may begin with, and say whether one may bring any."""
+    """List the units to begin with, and say whether this person may bring any."""
     own = [_entry(one, "folder" if service.units.is_kept(one.name) else "command line") for one in service.units.all()]
-    return UnitList(units=[*own, *(_entry(one, "library") for one in copies())], refusal=refusal())
+    return UnitList(units=[*own, *(_entry(one, origin) for one, origin in _offered())], refusal=refusal())
 
 
 @router.get("/{name}")
@@ -101,10 +105,10 @@ def get_unit(name: NamePath, service: ServiceDep) -> UnitText:
     one = service.units.find(name)
     if one is not None:
         return _text(one, "folder" if service.units.is_kept(name) else "command line")
-    for one in copies():
+    for one, origin in _offered():
         if one.name == name:
-            return _text(one, "library")
-    known = (one.name for one in (*service.units.all(), *copies()))
+            return _text(one, origin)
+    known = (one.name for one in (*service.units.all(), *(one for one, _ in _offered())))
     raise not_found("unit", name, "list them at /api/v1/units", known=known)
 
 
@@ -154,6 +158,12 @@ def _tried(own: dict[str, str]) -> None:
 def delete_unit(name: NamePath, service: ServiceDep) -> None:
     """Delete a unit from the folder of this server; benches that have it keep it."""
     service.units.remove(name)
+
+
+def _offered() -> Iterator[tuple[Unit, Origin]]:
+    """Return the texts that come with CombBench."""
+    yield from ((one, "starter") for one in starters())
+    yield from ((one, "library") for one in copies())
 
 
 def _entry(one: Unit, origin: Origin) -> UnitEntry:

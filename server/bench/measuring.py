@@ -125,7 +125,7 @@ class Measuring:
         for rows in track.onward(board, end).walk(board):
             samples.add(rows.outputs[:, places])
         if not self._is_same(run, track, board):
-            return Figures(reason="something was done to this bench that no command says, so its run cannot be told")
+            return Figures(reason="a change of this bench was no command, so its run cannot be repeated")
         if end:
             columns = dict(zip(names, samples.columns(), strict=True))
             self._figures = Figures(end, all_figures(board, columns, run.scenario), is_over)

@@ -47,6 +47,6 @@ class Room:
         if self._live() + self._coming < most:
             return
         after = format_count(math.ceil(minutes), "minute")
-        wait = f"; one that nobody watches is let go after {after}" if minutes else ""
+        wait = f"; a bench without watchers is closed after {after}" if minutes else ""
         text = f"the server is full: {most} of {most} benches are live (max_benches)"
         raise ApiError(409, "too_many_benches", text, hint=f"join one that runs, or close one{wait}")

@@ -163,7 +163,7 @@ class Running:
     def _finish(self) -> None:
         """Pause at the end of the scenario; starting again goes beyond it."""
         self.is_started, self.ends_at = False, None
-        self._bench.note("scenario", "finished", "scenario finished; start again to go on")
+        self._bench.note("scenario", "finished", "scenario finished; run to continue")
         self._bench.refresh_status()
 
     def _ahead(self, tick: int | None) -> int | None:

@@ -183,7 +183,7 @@ class Classes:
                 )
             name = clean(name)
             if self.is_called(class_id, name):
-                raise ApiError(409, "conflict", f"somebody is called {name} here already", "name", "add a letter to it")
+                raise ApiError(409, "conflict", f"another student has the name {name}", "name", "add a letter to it")
             return await self.admit(row, name)
 
     async def admit(

@@ -100,7 +100,7 @@ class Driving:
         if lease is None:
             return
         if lease.driver is None:
-            self._give(bench_id, lease, person, "drives the bench, which nobody did")
+            self._give(bench_id, lease, person, "now drives the bench")
         elif not lease.is_of(person):
             raise lease.refusal(person)
         lease.renew(self._clock())
@@ -120,8 +120,8 @@ class Driving:
         """Go on driving although somebody has asked."""
         lease = self._held(bench_id, person)
         if (asked := lease.asking.pop(whom, None)) is None:
-            raise ApiError(422, "invalid", "nobody of this id has asked", "to")
-        self._note(bench_id, person, f"goes on driving, although {asked.name} has asked")
+            raise ApiError(422, "invalid", "no person of this id has asked", "to")
+        self._note(bench_id, person, f"keeps the bench, although {asked.name} asked for it")
         self._pages.tell(bench_id)
 
     def hand_over(self, bench_id: str, person: Person, whom: str) -> None:
@@ -133,7 +133,7 @@ class Driving:
             lease.lent_by = person.id
             return self._give(bench_id, lease, present, f"was handed the bench by {person.name}")
         if not person.is_teacher:
-            raise ApiError(422, "invalid", "nobody of this id is here who may drive", "to")
+            raise ApiError(422, "invalid", "no person of this id is here and may drive", "to")
         self._lend(bench_id, whom)
 
     def _lend(self, bench_id: str, whom: str) -> None:
@@ -292,7 +292,7 @@ def go_without_driver(session: Session, why: str) -> None:
     if board.spec.frame.without_driver == "safe" and board.trip is None and not session.replay_of:
         session.execute(MakeSafe(make_safe=why), "board")
     else:
-        session.note("board", "driving", f"{why}; the bench goes on as it was set")
+        session.note("board", "driving", f"{why}; the bench keeps its settings and runs on")
 
 
 def _shown(person: Person) -> Somebody:

@@ -66,7 +66,7 @@ def grades_of(students: list[Person], sheets: Sheets) -> list[Grade]:
                         lost=state.lost,
                         of=step.points,
                         answers=[words.get(given.text, given.text) for given in state.answers],
-                        reasons=[given.reason if told else "not told yet" for given in state.answers],
+                        reasons=[given.reason if told else "not shown yet" for given in state.answers],
                         tick=state.tick,
                     )
                 )

@@ -12,6 +12,7 @@ import pytest
 
 from core import registry
 from core.block import Block
+from scenarios.starters import starters
 from tests.lab import RICH, do, make, play
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -67,3 +68,10 @@ def test_every_name_is_declared_once():
         assert len(re.findall(rf"^\s+{name}: float", declared, re.MULTILINE)) == places
         assert re.search(rf"[psx]\.{name}\b", step)
     assert len([line for line in CODE.splitlines() if line.strip()]) <= 60
+
+
+def test_both_documents_show_the_file_that_the_page_offers():
+    shown = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "own-units.md").read_text("utf-8"), re.DOTALL)[0]
+    offered = (ROOT / "scenarios" / "starters" / "pi.py").read_text("utf-8")
+    assert offered == CODE == shown
+    assert {one.name: one.source for one in starters()}["pi"] == offered

@@ -127,9 +127,10 @@ def test_an_error_names_the_cue_and_the_field() -> None:
     assert [(cues, found) for cues, said in WRONG if not (found := refusal(*cues)).startswith(said)] == []
 
 
-def test_the_panels_a_lecture_can_show_are_those_of_the_page() -> None:
-    text = (Path(__file__).parents[2] / "web/src/app/panels.tsx").read_text()
-    assert set(get_args(Panel)) <= set(re.findall(r"^  (\w+): \{ title:", text, re.M))
+def test_the_panels_a_lecture_can_show_are_views_of_the_page() -> None:
+    text = (Path(__file__).parents[2] / "web" / "src" / "bench" / "panel-views.ts").read_text("utf-8")
+    (table,) = re.findall(r"export const VIEWS = {(.*?)} as const;", text, re.DOTALL)
+    assert set(get_args(Panel)) <= set(re.findall(r'"(\w+)"', table))
 
 
 def test_the_command_line_lists_and_checks_lectures(tmp_path: Path) -> None:

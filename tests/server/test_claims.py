@@ -147,7 +147,7 @@ def test_what_was_hidden_is_withheld_and_then_cannot_be_told(live: Any) -> None:
     step(live, bench, 9_000)
     assert live.http.delete(f"{path}/blind").status_code in (200, 204)
     found = claims(live, bench)
-    assert found["reason"] == "something was done to this bench that no command says, so its run cannot be told"
+    assert found["reason"] == "a change of this bench was no command, so its run cannot be repeated"
     assert live.command(bench, "reset", values={}).status_code == 200
     step(live, bench, 100)
     assert claims(live, bench)["reason"] == ""

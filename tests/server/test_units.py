@@ -8,14 +8,16 @@ import linecache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from core.own.unit import unit
 from scenarios.library import get
+from scenarios.run import run
 from server.cli import app
-from tests.core.own.test_own_units import COPIED, source_of
-from tests.core.own.texts import PI, odd
+from tests.core.own.test_own_units import COPIED, source_of, with_unit
+from tests.core.own.texts import PI, ROOT, odd
 from tests.server.people.group import join, open_class
 from tests.server.runs.test_runs import wait
 
@@ -37,6 +39,26 @@ def test_one_may_begin_with_the_files_of_the_library_that_are_units(live: Any) -
     assert text["source"] == source_of("control", "pid") and text["hash"] == unit("pid", text["source"]).hash
     refused = live.http.get(f"{DOOR}/mrac")
     assert refused.status_code == 404 and "mrac" in refused.json()["error"]["message"]
+
+
+def test_the_list_has_a_blank_of_three_lines_and_the_pi_of_the_documents(live: Any) -> None:
+    listed = live.http.get(DOOR).json()["units"]
+    assert [one["name"] for one in listed if one["origin"] == "starter"] == ["blank", "pi"]
+    for name in ("blank", "pi"):
+        text = live.http.get(f"{DOOR}/{name}").json()
+        assert text["source"] == (ROOT / "scenarios" / "starters" / f"{name}.py").read_text("utf-8")
+    step = live.http.get(f"{DOOR}/blank").json()["source"].split('"""')[-1]
+    assert len(step.strip().splitlines()) == 3
+
+
+def test_the_blank_unit_runs_and_does_what_its_lines_say(live: Any) -> None:
+    """u = r - 2 e, with the error of the same sample."""
+    source = live.http.get(f"{DOOR}/blank").json()["source"]
+    assert check(live, source, "blank")["error"] is None
+    result = run(with_unit("blank", source, {"controller.kind": "blank", "samples": 300}, "first-look"))
+    error = result.signal("model.displacement") - result.signal("sensor.displacement")
+    reference, voltage = result.signal("reference.voltage"), result.signal("blank.voltage")
+    np.testing.assert_allclose(voltage, reference - 2.0 * error, rtol=0, atol=1e-12)
 
 
 def test_a_checked_unit_comes_with_all_the_page_shows(live: Any) -> None:

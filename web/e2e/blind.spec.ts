@@ -69,8 +69,8 @@ test("a class looks for hidden faults: no panel tells, a wrong and sure answer l
   const tile = (name: string) => page.getByRole("listitem", { name, exact: true });
   const all = page.getByRole("region", { name: "For all benches" });
   await expect(tile("Ben")).toBeVisible();
-  await all.getByRole("button", { name: "Blind faults" }).click();
-  await expect(all.getByText("Blind faults: 2 done.")).toBeVisible();
+  await all.getByRole("button", { name: "Set hidden faults" }).click();
+  await expect(all.getByText("Set hidden faults: 2 done.")).toBeVisible();
   for (const one of [ada, ben]) await expect(one.getByText(HIDDEN)).toBeVisible();
   await expect(tile("Ada").getByText(/^hidden: /)).toBeVisible();
   const { answers } = await server.ask<Answers>("GET", `/classes/${group.id}/blind`);
@@ -110,11 +110,11 @@ test("a class looks for hidden faults: no panel tells, a wrong and sure answer l
   await expect(tile("Ben").getByText(/^−140\spoints$/)).toBeVisible();
 
   await page.getByRole("checkbox", { name: "Choose Ben" }).check();
-  await all.getByRole("button", { name: "Blind faults" }).click();
-  await expect(all.getByText("Blind faults: 1 done.")).toBeVisible();
+  await all.getByRole("button", { name: "Set hidden faults" }).click();
+  await expect(all.getByText("Set hidden faults: 1 done.")).toBeVisible();
   await expect(ben.getByText(HIDDEN)).toBeVisible();
-  await all.getByRole("button", { name: "Reveal all" }).click();
-  await expect(all.getByText("Reveal all: 1 done.")).toBeVisible();
+  await all.getByRole("button", { name: "Reveal answers" }).click();
+  await expect(all.getByText("Reveal answers: 1 done.")).toBeVisible();
   await expect(ben.getByText(HIDDEN)).toHaveCount(0);
   await expect(tile("Ben").getByText(/^no answer/)).toBeVisible();
 });

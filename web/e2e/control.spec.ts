@@ -59,7 +59,7 @@ test("a fault, a healing, a closed panel and a reset are taken back and made aga
 }) => {
   await openBench();
   const faults = page.getByRole("region", { name: "Faults" });
-  const acting = faults.getByText("1 fault acts");
+  const acting = faults.getByText(/^1\sactive fault$/);
   const body = page.locator("body");
   await faults.getByRole("button", { name: /^Inject .*Added mass/ }).click();
   await expect(acting).toBeVisible();

@@ -80,7 +80,7 @@ test("a gyroscope has its loops and its tilt, and its fault is injected, found a
   await server.advance(1);
   await expect(says).toHaveText("healthy");
   await faults.getByRole("button", { name: /^Inject .*: Quadrature$/ }).click();
-  await expect(faults.getByText("1 fault acts")).toBeVisible();
+  await expect(faults.getByText(/^1\sactive fault$/)).toBeVisible();
   await server.advance(3);
   await expect(says).toHaveText(/^quadrature \+500\s/);
   await faults.getByRole("listitem").filter({ hasText: "Quadrature" }).getByRole("button", { name: "Heal" }).click();

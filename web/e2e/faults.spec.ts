@@ -13,7 +13,7 @@ test("an injected fault is found and explained, the delay is printed, and healin
   await server.advance(2);
   await expect(lanes.getByText("healthy", { exact: true })).toBeVisible();
   await page.getByRole("button", { name: /^Inject \+5.*Added mass$/ }).click();
-  await expect(page.getByText("1 fault acts")).toBeVisible();
+  await expect(page.getByText(/^1\sactive fault$/)).toBeVisible();
   await server.advance(5);
   await expect(lanes.getByText(/^mass \+5\s%$/)).toBeVisible();
   await expect(lanes.getByText(/^\d+\ssamples · [1-9]\d{0,2}(\.\d+)?\s(µs|ms)$/)).toBeVisible();
@@ -64,14 +64,14 @@ test("a fault is set exactly and waits for its moment; a fault that no hypothesi
   const steps = page.getByRole("region", { name: "Steps of the scenario" });
   await expect(steps).toContainText(/2 of 2: Damping \+55\s%, when plant displacement > 500\snm/);
   await server.advance(3);
-  await expect(faults.getByText("1 fault acts")).toBeVisible();
+  await expect(faults.getByText(/^1\sactive fault$/)).toBeVisible();
   await faults.getByRole("button", { name: "Heal all" }).click();
   await expect(faults.getByText("The device is healthy")).toBeVisible();
 
   await faults.getByRole("button", { name: "Added mass", exact: true }).click();
   await faults.getByRole("textbox", { name: "Severity of Added mass, exact" }).fill("900");
   await faults.getByRole("button", { name: /^Inject \+900.*Added mass$/ }).click();
-  await expect(faults.getByText("1 fault acts")).toBeVisible();
+  await expect(faults.getByText(/^1\sactive fault$/)).toBeVisible();
   await server.advance(5);
   await expect(lanesOf(page).getByText("fits none")).toBeVisible();
   await expect(lanesOf(page).getByText("not among the hypotheses")).toBeVisible();

@@ -19,7 +19,7 @@ test("a lecture is run by keys, forwards and back with the same bits, and leaves
   await page.getByRole("menuitem", { name: /^Fault diagnosis/ }).click();
   await expect(strip).toContainText("1 of 10Six filters listen");
   await expect(page.locator("html")).toHaveAttribute("data-size", "large");
-  await expect(notes).toContainText("six Kalman filters watch");
+  await expect(notes).toBeHidden();
   await expect.poll(() => stateOf(before)).toBe("paused");
 
   const stage = benchOf(page);
@@ -43,12 +43,11 @@ test("a lecture is run by keys, forwards and back with the same bits, and leaves
   expect(await digestOf(stage)).toEqual(there);
   expect(benchOf(page)).toBe(stage);
 
-  const [window] = await Promise.all([
-    context.waitForEvent("page"),
-    page.getByRole("button", { name: "Notes in a window of their own" }).click(),
-  ]);
+  const [window] = await Promise.all([context.waitForEvent("page"), page.keyboard.press("i")]);
   await expect(window.getByRole("heading", { level: 1 })).toHaveText("4 of 10 Why?");
-  await expect(notes).toBeHidden();
+  await expect(window.getByRole("region", { name: "Notes of the speaker" })).toContainText(
+    "click the lane where it turns",
+  );
   await window.keyboard.press("PageDown");
   await expect(window.getByRole("heading", { level: 1 })).toContainText("5 of 10");
   await expect(strip).toContainText("5 of 10");
@@ -60,6 +59,8 @@ test("a lecture is run by keys, forwards and back with the same bits, and leaves
   await expect(strip).toHaveText("Heavier still, then a stiffer spring5 of 10");
   await expect(rail).toBeHidden();
   await expect(page.getByRole("timer")).toBeVisible();
+  for (const name of ["Timeline", "What happens now"]) await expect(page.getByRole("region", { name })).toBeHidden();
+  await expect(page.getByRole("tab", { name: "Faults" })).toHaveCount(0);
   await page.reload();
   await expect(strip).toHaveText("Heavier still, then a stiffer spring5 of 10");
   await page.keyboard.press("Escape");

@@ -27,7 +27,7 @@ test("a student on a phone runs, switches, injects and works at a sheet with the
 
   await bar.getByRole("button", { name: "Faults" }).tap();
   await page.getByRole("button", { name: /^Inject \+5.*Added mass$/ }).tap();
-  await expect(page.getByText("1 fault acts")).toBeVisible();
+  await expect(page.getByText(/^1\sactive fault$/)).toBeVisible();
   await expect(scope).toBeInViewport();
   await server.advanceTicks(benchOf(page), 1500);
   await bar.getByRole("button", { name: "Faults" }).tap();

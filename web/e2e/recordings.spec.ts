@@ -93,9 +93,9 @@ test("a replay has the sentences of the narrator as its captions, wherever it is
   await expect(caption).toContainText("Each lane of Diagnosis is one guess at the device");
   const go = (tick: number) => server.ask("POST", `/benches/${replay.id}/commands`, { kind: "seek", tick });
   await go(3100);
-  await expect(caption).toContainText("belief turns to the lane mass +10\u00a0%");
+  await expect(caption).toContainText("the bank now favours mass +10\u00a0%");
   await go(2050);
-  await expect(caption).toContainText("belief turns to the lane mass +5\u00a0%");
+  await expect(caption).toContainText("the bank now favours mass +5\u00a0%");
   await go(100);
   await expect(caption).toContainText("Each lane of Diagnosis");
 

@@ -39,7 +39,7 @@ test("a run is started from the page and its files are offered; a campaign is st
 
   await page.goto(`${server.origin}/?page=runs`);
   await page.getByText("Campaign", { exact: true }).click();
-  await form.getByRole("combobox", { name: "Every combination of 1: path" }).fill("sensor.noise_um");
+  await form.getByRole("combobox", { name: "Grid over 1: path" }).fill("sensor.noise_um");
   await value.fill("0.05, 0.2");
   const seeds = form.getByRole("textbox", { name: "Seeds", exact: true });
   await seeds.fill("2000");

@@ -26,14 +26,14 @@ test("a tour drives the page and puts all back at its end, and by Escape while i
     await expect(bubble).toContainText(title);
     await next.press("Enter");
   }
-  await expect(page.getByText("1 fault acts")).toBeVisible();
+  await expect(page.getByText(/^1\sactive fault$/)).toBeVisible();
   expect(benchOf(page)).not.toBe(bench);
   await server.advance(5);
   await expect(bubble).toContainText("The verdict");
   await expect(bubble).toContainText("5 of 6");
   await expect(page.getByText("+5 %", { exact: false }).first()).toBeVisible();
   await next.press("Enter");
-  await expect(bubble).toContainText("Where to go on");
+  await expect(bubble).toContainText("Where to go next");
   await bubble.getByRole("button", { name: "Done" }).press("Enter");
   await asBefore();
   await expect(offer).toHaveCount(0);

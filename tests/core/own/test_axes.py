@@ -88,7 +88,7 @@ def test_a_read_out_concludes_from_the_rate_and_from_nothing_else() -> None:
     values = {"readouts.mean": {"kind": "mean", "skip_ms": 5.0}, "duration_ms": 30.0, "events": []}
     scenario = with_unit("mean", MEAN, values, "gyro-first-look")
     result = run(scenario)
-    rate, mean = result.signal("force_to_rebalance.rate"), result.signal("mean.mean")
+    rate, mean = result.signal("open_loop_rate.rate"), result.signal("mean.mean")
     begun = scenario.spec.dt_ms * np.arange(len(rate)) >= 5.0
     assert (mean[~begun] == 0.0).all()
     np.testing.assert_allclose(mean[begun], np.cumsum(rate[begun]) / np.arange(1, begun.sum() + 1), rtol=1e-9)

@@ -53,7 +53,7 @@ def test_a_report_tells_what_happened(tmp_path: Path) -> None:
     assert call(*SHORT, "--out", str(tmp_path))[0] == 0
     (report,) = tmp_path.glob("*.html")
     text = report.read_text()
-    assert "<h2>What happened</h2>" in text and text.count("belief turns to the lane") == 2
+    assert "<h2>What happened</h2>" in text and text.count("the bank now favours") == 2
     (summary,) = tmp_path.glob("*.json")
     assert "narration" not in json.loads(summary.read_text())
 

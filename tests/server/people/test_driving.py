@@ -243,7 +243,7 @@ def test_what_cannot_be_handed_over_is_said() -> None:
     for person, whom, words in (
         (TEACHER, "ben", "the bench of a student"),
         (TEACHER, "nobody", "no student"),
-        (ADA, "ben", "nobody of this id is here"),
+        (ADA, "ben", "no person of this id is here"),
         (ADA, "ada", "needs no driver"),
     ):
         with pytest.raises(ApiError, match=words):

@@ -68,7 +68,7 @@ test("four faults of a gyroscope are injected, found and healed from the page", 
   for (const [title, hypothesis] of KNOWN) {
     await later(server, () => says.innerText()).toBe("healthy");
     await faults.getByRole("button", { name: new RegExp(`^Inject .*: ${title}$`) }).click();
-    await expect(faults.getByText("1 fault acts")).toBeVisible();
+    await expect(faults.getByText(/^1\sactive fault$/)).toBeVisible();
     await later(server, () => says.innerText()).toMatch(hypothesis);
     await faults.getByRole("listitem").filter({ hasText: title }).getByRole("button", { name: "Heal" }).click();
     await expect(faults.getByText("The device is healthy")).toBeVisible();
@@ -185,7 +185,7 @@ test("a rate that the motion does not tell is not trusted; the faults of any dev
   const faults = page.locator("section[aria-label='Faults']");
   for (const title of COMMON) {
     await faults.getByRole("button", { name: new RegExp(`^Inject .*: ${title}$`) }).click();
-    await expect(faults.getByText("1 fault acts")).toBeVisible();
+    await expect(faults.getByText(/^1\sactive fault$/)).toBeVisible();
     await faults.getByRole("listitem").filter({ hasText: title }).getByRole("button", { name: "Heal" }).click();
     await expect(faults.getByText("The device is healthy")).toBeVisible();
   }

@@ -38,7 +38,7 @@ test("units of one's own stand on the page as those of the library: chosen, tune
   await expect(card.getByLabel(/proportional/i).first()).toBeVisible();
   await page.getByRole("tab", { name: "Faults" }).click();
   await page.getByRole("button", { name: /^Inject .* Added mass$/ }).click();
-  await expect(page.getByText("1 fault acts")).toBeVisible();
+  await expect(page.getByText(/^1\sactive fault$/)).toBeVisible();
   const says = page.getByRole("region", { name: "Diagnosis by mine" }).locator("dd").first();
   const later = async () => {
     await server.advance(1);

@@ -86,7 +86,7 @@ test("the narrator fits every screen, before anything is said and with a verdict
   await expect(caption).toContainText("Each lane of Diagnosis is one guess at the device");
   await expectFits(page, "the narrator", "section[aria-label='What happens now']");
   await command(server, id, { kind: "step", ticks: 2100 });
-  await expect(caption).toContainText("belief turns to the lane mass +5\u00a0%");
+  await expect(caption).toContainText("the bank now favours mass +5\u00a0%");
   await expectFits(page, "a verdict as a caption", "section[aria-label='What happens now']");
   await command(server, id, { kind: "step", ticks: 6900 });
   await page.keyboard.press("3");

@@ -50,7 +50,7 @@ test("the page of a class and those of its students fit their screens", async ({
   await expect(classLine(emmy)).toHaveCount(0);
 
   await page.keyboard.press("m");
-  await page.getByRole("button", { name: "Blind faults" }).click();
+  await page.getByRole("button", { name: "Set hidden faults" }).click();
   await expect(emmy.getByText("A fault is hidden here, or none")).toBeVisible();
   expect(await seriousViolations(page)).toEqual([]);
   await expectFits(emmy, "a student with a hidden fault");

@@ -65,7 +65,7 @@ test("spectrum, phase plane and lanes are kept with titled axes, and lanes with 
   };
   const lanes = page.getByRole("region", { name: "Diagnosis by kalman" });
   await page.getByRole("button", { name: /^Inject \+5.*Added mass$/ }).click();
-  await expect(page.getByText("1 fault acts")).toBeVisible();
+  await expect(page.getByText(/^1\sactive fault$/)).toBeVisible();
   await server.advance(4);
   await expect(lanes.getByText(/^mass \+5/).first()).toBeVisible();
   const told = await svgOf(page, lanes);

@@ -10,7 +10,7 @@ const TOURS: Record<string, string[]> = {
     "The motion",
     "A fault",
     "The verdict",
-    "Where to go on",
+    "Where to go next",
   ],
   Faults: ["The list of faults", "Damping +30 %", "Found", "Where it acts", "Heal all"],
   Controllers: ["A device that has changed", "Who drives", "MRAC drives", "What it learns", "Back to the open loop"],

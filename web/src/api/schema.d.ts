@@ -8474,7 +8474,7 @@ export interface components {
              * @description The library, the folder of this server, or a file it was started with
              * @enum {string}
              */
-            origin: "library" | "folder" | "command line";
+            origin: "starter" | "library" | "folder" | "command line";
             /**
              * Hash
              * @description SHA-256 of its text
@@ -8530,7 +8530,7 @@ export interface components {
              * @description The library, the folder of this server, or a file it was started with
              * @enum {string}
              */
-            origin: "library" | "folder" | "command line";
+            origin: "starter" | "library" | "folder" | "command line";
             /**
              * Hash
              * @description SHA-256 of its text

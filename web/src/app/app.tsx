@@ -119,8 +119,8 @@ export function App() {
           {!phone && <View3dHost />}
         </div>
       )}
-      {!failure && !phone && page === "bench" && <Caption />}
-      {!failure && !phone && page === "bench" && <TimeBar />}
+      {!failure && !present && !phone && page === "bench" && <Caption />}
+      {!failure && !present && !phone && page === "bench" && <TimeBar />}
       {!failure && <LectureStrip />}
       <KeySheet />
       <NewBench />

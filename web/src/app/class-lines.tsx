@@ -67,7 +67,7 @@ function Place() {
     );
   if (at === me.shown && at !== me.bench)
     return (
-      <Line title="Your teacher shows this bench to all." text="You look on; your own bench goes on.">
+      <Line title="Your teacher shows this bench to all." text="You are watching; your own bench keeps running.">
         <Button size="compact-sm" variant="default" onClick={goHome}>
           My own bench
         </Button>
@@ -108,7 +108,11 @@ function Shown() {
   return all
     .filter(({ shown }) => shown === bench)
     .map(({ id, name }) => (
-      <Line key={id} title={`All of ${name} see this bench.`} text="They cannot change it; their own benches go on.">
+      <Line
+        key={id}
+        title={`All of ${name} see this bench.`}
+        text="They cannot change it; their own benches keep running."
+      >
         <Button size="compact-sm" onClick={() => classes.endShowing(id).then(again, showError)}>
           End showing
         </Button>

@@ -4,7 +4,8 @@ import { SideSheet } from "./side-sheet";
 
 const Editor = lazy(() => import("../panels/editor/editor").then(({ Editor }) => ({ default: Editor })));
 
-const WIDTH = 920;
+/** The bench keeps more than a third of the page; a narrow page gives all it has. */
+const WIDTH = "clamp(min(100vw, 30rem), 62vw, 920px)";
 
 /** The editor of units of one's own, in a wide drawer; the editor of texts is loaded when it is opened first. */
 export function EditorDrawer() {

@@ -25,7 +25,7 @@ export function Ended({ role }: { role: Me["role"] }) {
           The class is over, or the teacher has sent you away. Your bench is closed.
         </EmptyState>
       ) : (
-        <EmptyState title="The link to watch has ended">Ask for a new one if you want to go on.</EmptyState>
+        <EmptyState title="The link to watch has ended">Ask for a new one to continue.</EmptyState>
       )}
     </main>
   );

@@ -38,7 +38,7 @@ export async function openLink(id: string, replace = false): Promise<void> {
       id: notice,
       loading: true,
       autoClose: false,
-      title: "Repeating what was done",
+      title: "Replaying the commands",
       message: `${title}, to ${formatTick(tick ?? 0)}.`,
     });
   const bench = await api.openLink(id).finally(() => notifications.hide(notice));
@@ -101,7 +101,7 @@ async function unlessGone(answer: Promise<Bench>): Promise<Bench | undefined> {
     return await answer;
   } catch (error) {
     if (!(error instanceof ApiError) || error.body.code === "too_many_benches") throw error;
-    if (error.status === 409) notifications.show({ title: "This bench was let go", message: error.body.message });
+    if (error.status === 409) notifications.show({ title: "This bench was closed", message: error.body.message });
     else if (error.status !== 404) throw error;
     return undefined;
   }

@@ -22,7 +22,7 @@ export function FullServer({ onJoin, onRetry }: FullServerProps) {
         It has {benches.length === 1 ? "one bench" : `${benches.length} benches`}, which is its limit.{" "}
         {leaving.length > 0
           ? `Nobody watches ${leaving.length} of them; the next one is let go in ${formatCount(Math.ceil(Math.min(...leaving) / 60), "minute")}, unless somebody comes back to it.`
-          : "All of them are watched or have something to finish; wait until somebody closes one, or ask the person who runs the server."}{" "}
+          : "All benches are watched or busy. Wait until one is closed, or ask the administrator of the server."}{" "}
         Meanwhile you can join one and watch.
       </p>
       <Button onClick={onRetry}>Try again</Button>

@@ -2,12 +2,13 @@ import { may, type Right } from "../api/me";
 import { actions } from "../bench/actions";
 import { focusNextGroup } from "../bench/dock";
 import { openEditor } from "../bench/edit-unit";
-import { cueBefore, lectureRuns, nextCue } from "../bench/lecture";
+import { lectureRuns } from "../bench/lecture";
 import { toggleNarrator } from "../bench/narrator";
 import type { PageName } from "../bench/view-store";
-import { askCue } from "../bench/vote";
 import { askLatest } from "../bench/why";
 import { setLayout } from "./layouts";
+import { LECTURE_KEYS } from "./lecture/lecture-keys";
+import { openPresenter } from "./lecture/presenter";
 import { PAGES } from "./pages";
 import { togglePresent } from "./present";
 import { takeBack } from "./take-back";
@@ -29,18 +30,18 @@ export interface KeyBinding {
 /** The keys of the person at the page; the sheet and the listener read the same list. */
 export const keymap = (): KeyBinding[] => {
   const keys = KEYS.filter(({ needs }) => !needs || may(needs));
-  return lectureRuns() ? [...LECTURE, ...keys.filter(({ key }) => key !== " ")] : keys;
+  if (!lectureRuns()) return keys;
+  const lecture = [...LECTURE_KEYS, NOTES];
+  return [...lecture, ...keys.filter(({ key }) => !lecture.some((one) => one.key === key))];
 };
 
-/** Those of a lecture, while one runs; a clicker sends the middle ones. */
-const LECTURE: KeyBinding[] = [
-  { key: " ", shown: "Space", does: "next cue of the lecture", group: "Run", run: nextCue },
-  { key: "PageDown", shown: "Page Down", does: "next cue", group: "Run", run: nextCue },
-  { key: "ArrowRight", shown: "→", does: "next cue", group: "Run", run: nextCue },
-  { key: "PageUp", shown: "Page Up", does: "cue before", group: "Run", run: cueBefore },
-  { key: "ArrowLeft", shown: "←", does: "cue before", group: "Run", run: cueBefore },
-  { key: "a", shown: "A", does: "open the vote of the cue", group: "Run", run: () => void askCue() },
-];
+const NOTES: KeyBinding = {
+  key: "i",
+  shown: "I",
+  does: "notes of the speaker in a window of their own",
+  group: "Look",
+  run: openPresenter,
+};
 
 const KEYS: KeyBinding[] = [
   { key: " ", shown: "Space", does: "run or pause", group: "Run", needs: "drive", run: actions.toggle },

@@ -25,7 +25,7 @@ export function PanelBody({ view, params, setParams }: PanelProps & { view: View
         <HiddenView key={view} view={view} question={question} />
       ) : replay && kind.changes ? (
         <EmptyState title="The past cannot be changed">
-          A recording is played here; what was done then is listed in Log. Leave the replay to go on.
+          A recording is played here; its commands are listed in Log. Leave the replay to go on.
         </EmptyState>
       ) : !drives && kind.changes ? (
         <EmptyState title="You watch this bench">The commands of its driver are listed in Log.</EmptyState>

@@ -75,7 +75,7 @@ function MadeLink() {
   };
 
   if (error) return <EmptyState title={error.body.message}>{error.body.hint}</EmptyState>;
-  if (!made) return <EmptyState title="Making the link">The server stores what was done on this bench.</EmptyState>;
+  if (!made) return <EmptyState title="Making the link">The server stores every command on this bench.</EmptyState>;
   return (
     <>
       <p className={styles.remark}>

@@ -5,7 +5,7 @@ import { Sheet } from "../ui/sheet";
 interface SideSheetProps {
   name: Exclude<ReturnType<typeof useView.getState>["dialog"], "none">;
   title: string;
-  size: number;
+  size: number | string;
   children: ReactNode;
 }
 

@@ -80,12 +80,12 @@ function Card({ vote }: { vote: OpenVote }) {
         {results
           ? right
             ? `The right answer: ${nameOf(right)}.`
-            : "This is what was said."
+            : "These are the answers."
           : !open
             ? "The vote is closed; the answer comes soon."
             : mine
               ? "Your answer is in. You can change it until the vote is closed."
-              : "One tap is your answer; nobody sees it."}
+              : "Tap to vote; votes are anonymous."}
       </p>
     </section>
   );

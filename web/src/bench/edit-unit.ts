@@ -1,7 +1,7 @@
 import { units } from "../api/units";
 import { useBench } from "../stream/bench-store";
 import { showError } from "./send";
-import { beginWith } from "./unit-draft";
+import { beginWith, nameOfClass } from "./unit-draft";
 import { sourceOnBench } from "./unit-values";
 import { setPage, useView } from "./view-store";
 
@@ -11,11 +11,12 @@ export function openEditor(): void {
   useView.setState({ dialog: "editor" });
 }
 
-/** Begin with a copy of a unit of the library, under a name of its own, or with one this server keeps. */
+/** Begin with a copy of a unit of the library, under a name of its own; with a starter, named as its class; or with a unit of the server. */
 export async function editCopy(name: string): Promise<void> {
   try {
     const { source, origin } = await units.text(name);
-    beginWith(origin === "library" ? `my_${name}`.slice(0, 32) : name, source);
+    const own = origin === "library" ? `my_${name}`.slice(0, 32) : origin === "starter" ? nameOfClass(source) : name;
+    beginWith(own, source);
     openEditor();
   } catch (error) {
     showError(error);

@@ -20,6 +20,7 @@ it("says a fault with its severity", () => {
 it("says what else was done and found", () => {
   expect(words({ kind: "switch", command: { switch: "vsc", cold: false } })).toBe("Variable structure");
   expect(words({ kind: "set", command: { set: { "controllers.pid.pole": 1 } } })).toBe("pole changed");
+  expect(words({ kind: "set", command: { set: { "rate.deg_per_s": 100 } } })).toBe("angular rate 100\u00a0deg/s");
   expect(words({ kind: "heal", command: { heal: "all" } })).toBe("healed");
   expect(words({ kind: "recognised", new: "m+5" })).toBe("found m+5");
   expect(words({ kind: "tripped" })).toBe("stopped");

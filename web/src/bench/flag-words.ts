@@ -1,7 +1,10 @@
 import type { LogEntry } from "../api/types";
 import { cardOf } from "../api/use-catalog";
+import { formatShort } from "../ui/format";
 import { hypothesisWords } from "./hypothesis-words";
 import { severityScale, severityText } from "./severity";
+
+const RATE = "rate.deg_per_s";
 
 /** What an event says on its flag: a few words. */
 export function flagWords({ kind, command, new: value }: LogEntry): string {
@@ -10,6 +13,8 @@ export function flagWords({ kind, command, new: value }: LogEntry): string {
   if (kind in WORDS || !command) return WORDS[kind] ?? kind.replaceAll("_", " ");
   if ("fault" in command) return faultWords(command.fault, command.severity);
   if ("switch" in command) return titleOf("control", command.switch);
+  if ("set" in command && typeof command.set[RATE] === "number")
+    return `angular rate ${formatShort(command.set[RATE], "deg/s")}`;
   if ("set" in command) return `${Object.keys(command.set).map(leaf).join(", ")} changed`;
   return kind.replaceAll("_", " ");
 }
@@ -31,7 +36,7 @@ function faultWords(name: string, severity: number): string {
   return `${titleOf("faults", name)} ${severityText(severity, scale, parameter?.unit ?? "")}`;
 }
 
-const titleOf = (family: string, name: string) => cardOf(family, name)?.title ?? name.replaceAll("_", " ");
+export const titleOf = (family: string, name: string) => cardOf(family, name)?.title ?? name.replaceAll("_", " ");
 
 const leaf = (path: string) => path.slice(path.lastIndexOf(".") + 1).replaceAll("_", " ");
 

@@ -17,6 +17,8 @@ interface LectureStore {
   lecture: Lecture | undefined;
   /** The cue the page is at, from 0. */
   at: number;
+  /** The tick the cue begins at. */
+  tick: number;
   /** Wall time at which the lecture began, ms. */
   began: number;
   /** The bench the cues are put on. */
@@ -25,7 +27,7 @@ interface LectureStore {
   busy: boolean;
 }
 
-const NONE = { lecture: undefined, at: 0, began: 0, stage: undefined, before: undefined, busy: false };
+const NONE = { lecture: undefined, at: 0, tick: 0, began: 0, stage: undefined, before: undefined, busy: false };
 
 /** The lecture that runs on this page. */
 export const useLecture = create<LectureStore>(() => NONE);
@@ -85,7 +87,7 @@ export async function goTo(cue: number): Promise<void> {
 
 async function put(lecture: Lecture, at: number): Promise<void> {
   const { stage } = useLecture.getState();
-  const { bench } = await lectures.put(lecture.id, at + 1, stage ?? null).catch((error: unknown) => {
+  const { bench, tick } = await lectures.put(lecture.id, at + 1, stage ?? null).catch((error: unknown) => {
     // a stage that somebody has closed is made anew
     if (stage && error instanceof ApiError && error.status === 404) return lectures.put(lecture.id, at + 1, null);
     throw error;
@@ -94,7 +96,7 @@ async function put(lecture: Lecture, at: number): Promise<void> {
   useView.setState({ sample: undefined });
   if (bench.id !== stage || bench.id !== useBench.getState().bench?.id) openBench(bench.id, true);
   if (stage && bench.id !== stage) await remove(stage);
-  useLecture.setState({ at, stage: bench.id });
+  useLecture.setState({ at, tick, stage: bench.id });
   keep();
   announce(`Cue ${at + 1} of ${lecture.script.length}: ${lecture.script[at].title}`);
 }
@@ -132,8 +134,8 @@ export async function resumeLecture(): Promise<void> {
 }
 
 function keep(): void {
-  const { lecture, at, began, stage, before } = useLecture.getState();
-  if (lecture) sessionStorage.setItem(KEPT, JSON.stringify({ id: lecture.id, at, began, stage, before }));
+  const { lecture, at, tick, began, stage, before } = useLecture.getState();
+  if (lecture) sessionStorage.setItem(KEPT, JSON.stringify({ id: lecture.id, at, tick, began, stage, before }));
 }
 
 const remove = (bench: string) => api.removeBench(bench).catch(unless(404));

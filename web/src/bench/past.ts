@@ -112,7 +112,7 @@ export async function goOn(name: string, change?: () => Promise<boolean>): Promi
     const id = await standHere();
     if (!id || (change && !(await change()))) return;
     await api.nameBench(id, name.slice(0, LONGEST_NAME)).catch(showError);
-    if (await send({ kind: "start" }, "A branch goes on from here")) openOwn(id, true);
+    if (await send({ kind: "start" }, "A branch starts here")) openOwn(id, true);
   } catch (error) {
     showError(error);
   }
@@ -130,7 +130,7 @@ export async function goOnHaving(name: string, set: Record<string, unknown>): Pr
     await helloOf(made.id);
     await addBehind(isPast && bench.origin ? bench.origin.bench : bench.id);
     if (isPast) await api.removeBench(bench.id);
-    await send({ kind: "start" }, "A branch goes on from here; what was done was done again");
+    await send({ kind: "start" }, "A branch starts here; all commands were replayed");
   } catch (error) {
     showError(error);
   }

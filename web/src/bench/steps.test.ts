@@ -19,7 +19,7 @@ it("counts what the bench begins with, what was done and what waits; one moment 
   expect(steps.map(({ words, tick, done }) => [words.replace(/\u00a0/g, " "), tick, done])).toEqual([
     ["start", 0, true],
     ["added mass", 2000, true],
-    ["stiffness instead", 3000, false],
+    ["added mass removed, stiffness", 3000, false],
   ]);
 });
 

@@ -3,7 +3,7 @@ import type { Bench, Command, LogEntry } from "../api/types";
 import { useCatalog } from "../api/use-catalog";
 import { useBench } from "../stream/bench-store";
 import { currentEvents } from "../stream/event-log";
-import { flagWords } from "./flag-words";
+import { flagWords, titleOf } from "./flag-words";
 
 /** What is done to a bench at one moment of its scenario. */
 export interface BenchStep {
@@ -85,17 +85,22 @@ export function stepsOf(events: readonly LogEntry[], pending: Bench["pending"]):
 
 function stepOf(acts: Act[]): BenchStep {
   const [{ tick, when, done }] = acts;
-  const healed = acts.some(({ command }) => "heal" in command);
+  const healed = acts.flatMap(({ command }) => ("heal" in command ? healedBy(command) : []));
   const others = acts.filter(({ command }) => !("heal" in command));
   const words = (others.length > 0 ? others : acts).map(({ command }) => wordsOf(command)).join(", ");
+  const replaces = healed.length > 0 && others.some(({ command }) => "fault" in command);
   return {
-    words: healed && others.some(({ command }) => "fault" in command) ? `${words} instead` : words,
+    words: replaces ? `${healed.join(", ")} removed, ${words.charAt(0).toLowerCase()}${words.slice(1)}` : words,
     tick,
     when,
     done,
     ofScenario: acts.every(({ actor }) => actor === SCENARIO),
   };
 }
+
+/** The faults that a command heals, by their titles. */
+const healedBy = ({ heal }: Extract<Command, { heal: unknown }>): string[] =>
+  heal === "all" ? ["All faults"] : (heal as string[]).map((name) => titleOf("faults", name));
 
 const wordsOf = (command: Command) =>
   flagWords({ kind: "heal" in command ? "heal" : "", command } as unknown as LogEntry);

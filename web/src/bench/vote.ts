@@ -38,3 +38,15 @@ export async function askCue(): Promise<void> {
     showError(error);
   }
 }
+
+/** Show the answers of the vote that the page has, with those that are right. */
+export async function revealVote(): Promise<void> {
+  const { vote } = useVote.getState();
+  if (!vote || vote.results) return;
+  try {
+    await votes.reveal(vote.id);
+    await queryClient.invalidateQueries({ queryKey: ["votes"] });
+  } catch (error) {
+    showError(error);
+  }
+}

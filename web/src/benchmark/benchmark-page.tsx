@@ -58,8 +58,8 @@ function Track({ track, benchmark }: { track: Benchmark["results"][number]; benc
         <ResultsTable rows={track.rows} costs={benchmark.costs} label={`Results of ${track.title}`} />
         <p>
           {formatNumber(benchmark.cases, 0)} cases from public seeds; thresholds give one false alarm in{" "}
-          {formatNumber(benchmark.false_alarm_samples, 0)} healthy samples on average. The rank is that of the log
-          score, then of the Brier score. Diagnosers without probabilities have no rank.
+          {formatNumber(benchmark.false_alarm_samples, 0)} healthy samples on average. Ranked by log score, then by
+          Brier score. Diagnosers without probabilities have no rank.
           {out.map((one) => ` ${one.unit} is not scored: it ${one.reason}.`)} <code>{benchmark.command}</code> computes
           the table again, to the bit; the times are those of the machine that computed it, with their ratio to the
           Kalman bank.

@@ -56,7 +56,7 @@ const COLUMNS: Column[] = [
 ];
 
 const COST =
-  "Time of a sample, and over that of the Kalman bank in the same run. Measured on the machine that computed the table.";
+  "Time per sample, and its ratio to the Kalman bank in the same run, on the machine that computed the table.";
 
 interface Results {
   rows: readonly BenchmarkRow[];

@@ -95,11 +95,11 @@ it("begins a scenario on all, and on none while some are chosen", async () => {
 
 it("hides a fault from all or from those chosen, with the bank or without, and reveals all", async () => {
   const { user, all, sent } = await mountClass();
-  await user.click(all.getByRole("button", { name: "Blind faults" }));
+  await user.click(all.getByRole("button", { name: "Set hidden faults" }));
   await user.click(screen.getByRole("checkbox", { name: "Choose Ben" }));
   await user.click(all.getByRole("checkbox", { name: "Show the bank" }));
-  await user.click(all.getByRole("button", { name: "Blind faults" }));
-  await user.click(all.getByRole("button", { name: "Reveal all" }));
+  await user.click(all.getByRole("button", { name: "Set hidden faults" }));
+  await user.click(all.getByRole("button", { name: "Reveal answers" }));
   expect(sent("blind")).toEqual([
     { scenario: "ch5-seven-step", shows: false, members: null },
     { scenario: "ch5-seven-step", shows: true, members: [ben.id] },
@@ -150,7 +150,15 @@ it("does nothing for all while nobody is there, and says so", async () => {
   server.on("GET", "/classes/:id/members", { members: [] });
   const { all } = await mountClass();
   expect(screen.getByText("Nobody has joined yet")).toBeVisible();
-  for (const name of ["Freeze", "Release", "Start all together", "Inject", "Heal all", "Begin on all", "Blind faults"])
+  for (const name of [
+    "Freeze",
+    "Release",
+    "Start all together",
+    "Inject",
+    "Heal all",
+    "Begin on all",
+    "Set hidden faults",
+  ])
     expect(all.getByRole("button", { name })).toBeDisabled();
 });
 

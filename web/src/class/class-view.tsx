@@ -78,7 +78,9 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
   );
   const end = () => {
     if (
-      window.confirm(`End the class ${name}? The names of its students, their benches and the log are gone for good.`)
+      window.confirm(
+        `End the class ${name}? The names of its students, their benches and the log are deleted for good.`,
+      )
     )
       void classes.end(id).then(onChanged, showError);
   };
@@ -117,7 +119,7 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
       </header>
       {shown && (
         <p className={styles.shown}>
-          <b>All see one bench{shown === here?.id ? `: ${here.title}` : ""}.</b> Their own benches go on.
+          <b>All see one bench{shown === here?.id ? `: ${here.title}` : ""}.</b> Their own benches keep running.
           <Button size="xs" onClick={() => void classes.endShowing(id).then(onChanged, showError)}>
             End showing
           </Button>

@@ -47,7 +47,7 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
   const stopped = chosen.length > 0 ? tripped.filter((id) => chosen.includes(id)) : [...tripped];
   const begin = () => {
     const title = library.find(({ id }) => id === scenario)?.title ?? scenario;
-    if (window.confirm(`Begin ${title} on all ${count} benches? What is on them now is gone.`))
+    if (window.confirm(`Begin ${title} on all ${count} benches? Their present state is lost.`))
       void carryOut(title, () => classes.begin(group, { scenario, paused: false, quiet_lead: true }));
   };
 
@@ -85,10 +85,10 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
           variant="default"
           loading={busy === "Start all together"}
           disabled={count === 0}
-          title="Every bench goes back to tick 0 and stands; then all start at once. One that stands there keeps what was set."
+          title="Every bench returns to tick 0, then all start at once. A bench at tick 0 keeps its settings."
           onClick={() =>
             window.confirm(
-              "Start all together? Every bench that is not at tick 0 is reset first: what is on it now is gone.",
+              "Start all together? Every bench that is not at tick 0 is reset first: its present state is lost.",
             ) &&
             carryOut("Start all together", () => classes.startTogether(group, chosen.length > 0 ? [...chosen] : null))
           }
@@ -100,7 +100,7 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
             size="xs"
             color="alarm"
             loading={busy === "Reset trips"}
-            title="Benches that have tripped stand again where they were; Release lets them run."
+            title="Tripped benches are reset and stay frozen; Release lets them run."
             onClick={() => carryOut("Reset trips", () => classes.command(group, { reset_trip: true }, stopped))}
           >
             Reset {formatCount(stopped.length, "trip")}

@@ -23,10 +23,12 @@ export function HideForAll({ group, count, chosen, carryOut }: HideForAllProps) 
   const hide = () => {
     const whom = chosen.length > 0 ? `the ${chosen.length} chosen` : `all ${count}`;
     if (window.confirm(`Give ${whom} a new bench with a hidden fault? What is on their benches now is gone.`))
-      carryOut("Blind faults", () => blind.hideForAll(group, scenario, shows, chosen.length > 0 ? [...chosen] : null));
+      carryOut("Set hidden faults", () =>
+        blind.hideForAll(group, scenario, shows, chosen.length > 0 ? [...chosen] : null),
+      );
   };
   return (
-    <fieldset className={styles.group} aria-label="Blind faults for all">
+    <fieldset className={styles.group} aria-label="Hidden faults for all">
       <span className={styles.what}>Hidden fault</span>
       <NativeSelect
         className={styles.choice}
@@ -39,20 +41,20 @@ export function HideForAll({ group, count, chosen, carryOut }: HideForAllProps) 
       <Checkbox
         size="xs"
         label="Show the bank"
-        title="Students see what the diagnosers say, but not whether it is true"
+        title="Students see the verdicts of the diagnosers, but not the real fault"
         checked={shows}
         onChange={(e) => setShows(e.currentTarget.checked)}
       />
       <Button size="xs" variant="default" disabled={count === 0} onClick={hide}>
-        Blind faults
+        Set hidden faults
       </Button>
       <Button
         size="xs"
         variant="default"
         disabled={count === 0}
-        onClick={() => carryOut("Reveal all", () => blind.revealAll(group))}
+        onClick={() => carryOut("Reveal answers", () => blind.revealAll(group))}
       >
-        Reveal all
+        Reveal answers
       </Button>
     </fieldset>
   );

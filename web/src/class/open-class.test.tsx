@@ -24,8 +24,8 @@ it("opens a class with its name, its scenario and its times", async () => {
   expect(open).toBeDisabled();
   await user.type(screen.getByLabelText(/^Name of the class/), " Tuesday ");
   await user.selectOptions(screen.getByLabelText("Benches begin with"), "ch5-seven-step");
-  await user.clear(screen.getByLabelText("The class lasts"));
-  await user.type(screen.getByLabelText("The class lasts"), "3");
+  await user.clear(screen.getByLabelText("Duration"));
+  await user.type(screen.getByLabelText("Duration"), "3");
   await user.click(open);
   expect(server.asked("POST", "/classes")[0].body).toEqual({
     name: "Tuesday",
@@ -39,7 +39,7 @@ it("opens a class with its name, its scenario and its times", async () => {
 it("does not open one that lasts no time or too long, and says so at its field", async () => {
   const { user, open } = await mountForm();
   await user.type(screen.getByLabelText(/^Name of the class/), "Tuesday");
-  const hours = screen.getByLabelText("The class lasts");
+  const hours = screen.getByLabelText("Duration");
   await user.clear(hours);
   await user.type(hours, "400");
   expect(hours).toBeInvalid();

@@ -56,8 +56,8 @@ export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
         />
         <ScenarioSelect label="Benches begin with" value={scenario} onChange={setScenario} />
         <NumberInput
-          label="The class lasts"
-          description="Then benches, names and the log are gone."
+          label="Duration"
+          description="Everything is deleted when it ends."
           inputWrapperOrder={BELOW}
           suffix=" h"
           min={0.1}

@@ -57,8 +57,8 @@ export function AxesView({ metrics, title }: AxesViewProps) {
       <p className={styles.source}>
         {isDrawn &&
           "The frames are not to scale: a folded flexure yields along one axis alone, so each axis has its frame, and the plate, which the rate acts on, moves along both. "}
-        Angles are as large as they are. Stiffness and damping along other axes than x and y are what a gyroscope reads
-        as a rate that is not there.
+        Angles are as large as they are. A gyroscope reads stiffness and damping along other axes than x and y as a
+        false rate.
       </p>
     </>
   );

@@ -27,7 +27,8 @@ export function SensitivityTable({ evaluation }: { evaluation: Evaluation }) {
       <>
         <h2 className={styles.heading}>Sensitivity to the process</h2>
         <p className={styles.source}>
-          This device is given by its figures. Choose one with a drawing, LCR-350, to see what the process does to it.
+          This device is given by its figures. Choose a device with a drawing, such as LCR-350, to see the effect of the
+          process.
         </p>
       </>
     );

@@ -58,7 +58,7 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
       {points.length === 0 ? (
         !error && (
           <EmptyState title={active ? "No run is done yet" : "No result"}>
-            The first results of a campaign appear here while the rest is under way.
+            The first results of a campaign appear here while it runs.
           </EmptyState>
         )
       ) : (

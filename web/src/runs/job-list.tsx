@@ -112,9 +112,7 @@ export function JobList({ jobs, chosen, onChoose, onChanged }: JobListProps) {
                 color="alarm"
                 aria-label={`Cancel ${job.title}`}
                 title={
-                  job.kind === "run"
-                    ? "Cancel"
-                    : "Stop; finished runs are kept, and the campaign can go on from them later"
+                  job.kind === "run" ? "Cancel" : "Stop; finished runs are kept, and the campaign can continue later"
                 }
                 onClick={() => cancel(job)}
               >

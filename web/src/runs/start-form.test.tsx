@@ -80,7 +80,7 @@ it("does not say a field twice", async () => {
 it("starts a campaign over a grid, and counts its runs", async () => {
   const { user, form, campaign, type, onStarted } = mountForm();
   await campaign();
-  await user.type(form.getByRole("combobox", { name: "Every combination of 1: path" }), "sensor.noise_um");
+  await user.type(form.getByRole("combobox", { name: "Grid over 1: path" }), "sensor.noise_um");
   await type("sensor.noise_um: value", "0.05, 0.2");
   await type("Seeds", "3");
   expect(form.getByText(/^2\spoints with 3\sseeds each\./)).toBeVisible();
@@ -115,7 +115,7 @@ it("starts a campaign over a hypercube, its last range included, with devices of
   await user.click(form.getByRole("checkbox", { name: "c.d: logarithmic" }));
   await type("Points", "4");
   await type("Seed of the points", "9");
-  await type("Devices drawn from the process", "2");
+  await type("Random devices", "2");
   await user.click(form.getByRole("button", { name: /^Start 8\sruns$/ }));
   expect(server.asked("POST", "/sweeps")[0].body).toMatchObject({
     sweep: {

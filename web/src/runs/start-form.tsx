@@ -81,7 +81,7 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
       <TextInput
         size="xs"
         label="Name"
-        placeholder="none: the title of the scenario"
+        placeholder="Default: scenario title"
         maxLength={120}
         value={draft.label}
         onChange={(e) => set({ label: e.currentTarget.value })}
@@ -110,7 +110,7 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
           />
           {draft.vary === "grid" && (
             <ValueRows
-              label="Every combination of"
+              label="Grid over"
               more="Vary another value"
               placeholder="0.05, 0.2  or  1:10:4"
               rows={draft.grid}
@@ -122,8 +122,8 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
           <NumberInput
             size="xs"
             allowDecimal={false}
-            label="Devices drawn from the process"
-            description="0: the scenario's own. Needs a device with a drawing, such as lcr-350."
+            label="Random devices"
+            description="0 = use the scenario's device. Needs a device with a drawing, such as lcr-350."
             min={0}
             max={100_000}
             value={draft.devices}

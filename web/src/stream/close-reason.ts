@@ -37,12 +37,12 @@ const REASONS: Record<number, CloseReason> = {
     retry: false,
     offer: "bench",
     title: "This bench is not yours",
-    advice: "Another one took its place, or it belongs to somebody else.",
+    advice: "Another bench replaced it, or it belongs to another person.",
   },
   4404: {
     retry: false,
     offer: "bench",
-    title: "This bench is gone",
+    title: "This bench was closed",
     advice: "It was closed, or the server was restarted: benches live as long as the server runs.",
   },
   4408: {
@@ -59,7 +59,7 @@ const REASONS: Record<number, CloseReason> = {
 const LOST: CloseReason = {
   retry: true,
   title: "Connection lost",
-  advice: "The page tries again by itself; the board does not wait for it.",
+  advice: "The page reconnects by itself; the simulation keeps running.",
 };
 
 /** What a WebSocket close code means to the person at the page. */

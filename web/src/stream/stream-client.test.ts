@@ -106,7 +106,7 @@ describe("StreamClient", () => {
     await vi.advanceTimersByTimeAsync(60_000);
     expect(FakeChannel.made).toHaveLength(1);
     expect(handlers.onClose).toHaveBeenCalledWith(
-      expect.objectContaining({ title: "This bench is gone" }),
+      expect.objectContaining({ title: "This bench was closed" }),
       4404,
       undefined,
     );

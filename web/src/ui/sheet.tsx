@@ -4,7 +4,7 @@ import type { ReactNode } from "react";
 interface SheetProps {
   opened: boolean;
   title: string;
-  size: number;
+  size: number | string;
   onClose(): void;
   children: ReactNode;
 }

@@ -26,7 +26,7 @@ export function BenchMenu() {
   const drives = useMay("drive");
   const teaches = useMay("teach");
   const [benches, setBenches] = useState<Bench[]>([]);
-  const now = stale ? staleWords(stale) : slow ? "this page is slow" : `${watchers} watching`;
+  const now = stale ? staleWords(stale) : slow ? "display lagging, simulation on time" : `${watchers} watching`;
   const load = () => api.benches().then(setBenches, showError);
 
   return (

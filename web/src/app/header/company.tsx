@@ -97,7 +97,7 @@ function Others({ company }: { company: Company }) {
     <>
       <Menu.Item disabled={asked} onClick={() => changeDriver("ask")}>
         {asked ? "You have asked to drive" : "Ask to drive"}
-        <small className={styles.menuNote}>{nameOf(driver)} is told, and hands over or goes on</small>
+        <small className={styles.menuNote}>{nameOf(driver)} receives your request and can hand over</small>
       </Menu.Item>
       {(teaches || lent_by === me?.id) && (
         <Menu.Item onClick={() => changeDriver("take")}>{teaches ? "Take the bench" : "Take the bench back"}</Menu.Item>

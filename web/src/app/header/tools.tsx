@@ -65,7 +65,7 @@ export function Tools() {
   ];
   const page: Tool[] = [
     {
-      label: narrates ? "Narrator off (Q)" : "Narrator on: say in sentences what happens (Q)",
+      label: narrates ? "Narrator off (Q)" : "Narrator on: describe events in sentences (Q)",
       run: toggleNarrator,
     },
     {

@@ -21,23 +21,27 @@ import { LectureClock, Notes } from "./notes";
 import { openPresenter, usePresenter } from "./presenter";
 import { showCue } from "./show-cue";
 
-/** The cues of a lecture along the bottom of the page, with what the speaker says; an audience sees the title alone. */
+/** The cues of a lecture along the bottom of the page. The notes have a window of their own; here they are shown on request. */
 export function LectureStrip() {
   const lecture = useLecture((s) => s.lecture);
   const at = useLecture((s) => s.at);
   const busy = useLecture((s) => s.busy);
   const present = useView((s) => s.present);
   const page = useView((s) => s.page);
-  const diagnoses = useBench((s) => s.bench && Object.keys(s.bench.diagnosers).length > 0);
+  const stage = useLecture((s) => s.stage);
+  const tick = useLecture((s) => s.tick);
+  const diagnoses = useBench(({ bench }) =>
+    bench && bench.id === stage ? Object.keys(bench.diagnosers).length > 0 : undefined,
+  );
   const dock = useDock((s) => s.dock);
   const place = useRef<HTMLElement>(null);
-  const [notes, setNotes] = useState(true);
+  const [notes, setNotes] = useState(false);
   usePresenter();
   useEffect(() => void resumeLecture(), []);
   useEffect(() => {
     if (lecture && at >= 0 && diagnoses !== undefined && dock && page === "bench")
-      showCue(lecture.script, at, diagnoses);
-  }, [lecture, at, diagnoses, dock, page]);
+      showCue(lecture.script, { at, tick }, diagnoses, present);
+  }, [lecture, at, tick, diagnoses, dock, page, present]);
   // a button that has the keyboard would take the space bar for itself
   const shown = lecture?.script[at] !== undefined;
   useEffect(() => {
@@ -107,27 +111,24 @@ export function LectureStrip() {
         )}
         <LectureClock />
         <span className={styles.tools}>
+          <Button
+            size="compact-md"
+            variant="light"
+            leftSection={<IconExternalLink size={17} />}
+            title="Notes of the speaker in a window of their own, for a second screen (I)"
+            onClick={openPresenter}
+          >
+            Notes in a window
+          </Button>
           <ActionIcon
             size={34}
             variant="subtle"
-            aria-label={notes ? "Hide the notes" : "Show the notes"}
-            title={notes ? "Hide the notes" : "Show the notes"}
+            aria-label={notes ? "Hide the notes" : "Show the notes here, on the projector too"}
+            title={notes ? "Hide the notes" : "Show the notes here, on the projector too"}
             aria-expanded={notes}
             onClick={() => setNotes(!notes)}
           >
             {notes ? <IconNotesOff size={19} /> : <IconNotes size={19} />}
-          </ActionIcon>
-          <ActionIcon
-            size={34}
-            variant="subtle"
-            aria-label="Notes in a window of their own"
-            title="Notes in a window of their own, for a second screen"
-            onClick={() => {
-              openPresenter();
-              setNotes(false);
-            }}
-          >
-            <IconExternalLink size={19} />
           </ActionIcon>
           <Button size="compact-md" variant="subtle" leftSection={<IconX size={16} />} onClick={() => void leave()}>
             Leave
@@ -141,8 +142,8 @@ export function LectureStrip() {
       )}
       {notes && <Notes cue={cue} next={lecture.script[at + 1]?.title} />}
       <p className={styles.keys}>
-        Space, → or a clicker: next cue; ← back. {cue.vote && "A: ask by a vote. "}The button in the header runs and
-        pauses. P hides the notes and all buttons from the audience.
+        Space, → or a clicker: next cue; ← back. R runs and pauses. {cue.vote && "A opens the vote, X reveals it. "}W
+        asks why. I opens the notes. P hides all buttons.
       </p>
     </section>
   );

@@ -23,13 +23,13 @@ export function Notes({ cue, next }: { cue: Cue; next: string | undefined }) {
         )}
         {cue.see && (
           <p>
-            <b>To be seen: </b>
+            <b>Watch for: </b>
             {cue.see}
           </p>
         )}
         {cue.vote && (
           <p>
-            <b>Vote, by A: </b>
+            <b>Vote (A opens it, X reveals it): </b>
             {cue.vote.text}
           </p>
         )}

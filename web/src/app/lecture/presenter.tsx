@@ -1,15 +1,15 @@
 import { Button } from "@mantine/core";
 import { useEffect, useState } from "react";
 import type { Cue } from "../../api/types";
-import { cueBefore, nextCue, plannedTo, useLecture } from "../../bench/lecture";
-import { askCue } from "../../bench/vote";
+import { plannedTo, useLecture } from "../../bench/lecture";
 import styles from "./lecture.module.css";
+import { LECTURE_KEYS } from "./lecture-keys";
 import { ClockFace, Notes, useMinutesSince } from "./notes";
 
 const CHANNEL = "combbench.lecture";
 const PARAMETER = "notes";
 
-/** What the window of the speaker is told, and what it asks for. */
+/** The place of the lecture, for the window of the speaker. */
 interface Told {
   cue: Cue | undefined;
   next: string | undefined;
@@ -18,7 +18,13 @@ interface Told {
   planned: number;
   whole: number;
 }
-type Asked = "tell" | "next" | "back" | "vote";
+/** A key of the lecture, or nothing but where it is. */
+interface Asked {
+  key?: string;
+}
+type Message = Told | Asked;
+
+const isAsked = (message: Message): message is Asked => !("place" in message);
 
 /** Whether this window is that of the speaker. */
 export const isPresenter = (): boolean => new URLSearchParams(window.location.search).get(PARAMETER) === "1";
@@ -26,17 +32,17 @@ export const isPresenter = (): boolean => new URLSearchParams(window.location.se
 export const openPresenter = () =>
   void window.open(`./?${PARAMETER}=1`, "combbench-notes", "popup,width=720,height=620");
 
-/** Tell the window of the speaker, if there is one, where the lecture is; and do what is asked there. */
+/** Send the place of the lecture to the window of the speaker, if there is one, and run the keys that are pressed there. */
 export function usePresenter(): void {
   const runs = useLecture((s) => s.lecture !== undefined);
   useEffect(() => {
     if (!runs) return;
     const channel = new BroadcastChannel(CHANNEL);
     const tell = () => channel.postMessage(told());
-    channel.onmessage = ({ data }: MessageEvent<Asked>) => {
-      if (data === "next") nextCue();
-      else if (data === "back") cueBefore();
-      else if (data === "vote") void askCue();
+    channel.onmessage = ({ data }: MessageEvent<Message>) => {
+      if (!isAsked(data)) return;
+      const binding = LECTURE_KEYS.find(({ key }) => key === data.key);
+      if (binding) binding.run();
       else tell();
     };
     tell();
@@ -61,15 +67,6 @@ function told(): Told {
   };
 }
 
-const KEYS: Record<string, Asked> = {
-  " ": "next",
-  PageDown: "next",
-  ArrowRight: "next",
-  PageUp: "back",
-  ArrowLeft: "back",
-  a: "vote",
-};
-
 /** The window of the speaker: the notes in large letters, on a screen that the audience does not see. */
 export function Presenter() {
   const [now, setNow] = useState<Told | undefined>(undefined);
@@ -77,16 +74,17 @@ export function Presenter() {
   const used = useMinutesSince(now?.began ?? 0);
   useEffect(() => {
     document.title = "Notes of the speaker";
-    const ask = (what: Asked) => channel.postMessage(what);
-    channel.onmessage = ({ data }: MessageEvent<Told | Asked>) => typeof data === "object" && setNow(data);
+    channel.onmessage = ({ data }: MessageEvent<Message>) => !isAsked(data) && setNow(data);
     const press = (event: KeyboardEvent) => {
-      const asked = KEYS[event.key];
-      if (!asked || (event.key === " " && (event.target as HTMLElement).closest("button"))) return;
+      const { key, target } = event;
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      if (!LECTURE_KEYS.some((one) => one.key === key)) return;
+      if (key === " " && (target as HTMLElement).closest("button")) return;
       event.preventDefault();
-      ask(asked);
+      channel.postMessage({ key });
     };
     window.addEventListener("keydown", press);
-    ask("tell");
+    channel.postMessage({});
     return () => window.removeEventListener("keydown", press);
   }, [channel]);
   if (!now?.cue)
@@ -104,10 +102,17 @@ export function Presenter() {
       <ClockFace used={used} planned={now.planned} whole={now.whole} />
       <Notes cue={now.cue} next={now.next} />
       <p className={styles.bar}>
-        <Button variant="default" onClick={() => channel.postMessage("back")}>
+        <Button variant="default" onClick={() => channel.postMessage({ key: "PageUp" })}>
           Back
         </Button>
-        <Button onClick={() => channel.postMessage("next")}>Next</Button>
+        <Button onClick={() => channel.postMessage({ key: "PageDown" })}>Next</Button>
+      </p>
+      <p className={styles.keys}>
+        {LECTURE_KEYS.map(({ shown, does }) => (
+          <span key={shown}>
+            <kbd>{shown}</kbd> {does}{" "}
+          </span>
+        ))}
       </p>
     </main>
   );

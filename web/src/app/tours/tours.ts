@@ -75,7 +75,7 @@ export const TOURS: Tour[] = [
       },
       {
         title: "The motion",
-        text: "The plate, what the sensor says, and the model. Drag to look at the past; LIVE comes back to now.",
+        text: "The plate, the sensor and the model. Drag to look at the past; LIVE comes back to now.",
         at: panel("time"),
       },
       {
@@ -91,7 +91,7 @@ export const TOURS: Tour[] = [
         until: found("m+5"),
       },
       {
-        title: "Where to go on",
+        title: "Where to go next",
         text: "The gallery has every experiment of the text. The key ? opens the keys, and the other tours.",
         at: find("nav[aria-label=Pages]"),
       },
@@ -115,7 +115,7 @@ export const TOURS: Tour[] = [
       },
       {
         title: "Found",
-        text: "The bank says damping +30 %. The band below shows what is true, so you see when the two agree.",
+        text: "The bank says damping +30 %. The band below shows the real fault, so you see when the two agree.",
         at: panel("lanes"),
         until: found("b+30"),
       },
@@ -126,7 +126,7 @@ export const TOURS: Tour[] = [
       },
       {
         title: "Heal all",
-        text: "All faults are gone again. Log lists every command with its tick, and who gave it.",
+        text: "All faults are healed. Log lists every command with its author and tick.",
         at: panel("events"),
         does: async () => {
           await send({ heal: "all" } as Command);
@@ -160,7 +160,7 @@ export const TOURS: Tour[] = [
       },
       {
         title: "What it learns",
-        text: "Each gain beside its ideal value. When the errors are gone the gains stop moving.",
+        text: "Each gain beside its ideal value. When the errors vanish, the gains stop moving.",
         at: panel("adaptation"),
         does: show("adaptation"),
       },
@@ -198,7 +198,7 @@ export const TOURS: Tour[] = [
       },
       {
         title: "The score",
-        text: "The share of correct verdicts, their delays, and which hypotheses the bank confuses.",
+        text: "How often the bank was right, its delays, and the hypotheses it confused.",
         at: panel("scores"),
         does: show("scores"),
       },
@@ -243,7 +243,7 @@ export const TOURS: Tour[] = [
       },
       {
         title: "Back to the bench",
-        text: "The run of the tour is removed, and your bench goes on as it was.",
+        text: "The run of the tour is removed, and your bench continues.",
         at: panel("time"),
         does: () => setPage("bench"),
         until: () => dockNow() !== undefined,

@@ -66,7 +66,7 @@ it("gives a controller in shadow the drive, and says that it drives", async () =
 
 it("begins again with an excitation monitor", async () => {
   const { user } = await mountPanel();
-  await user.click(screen.getByRole("button", { name: "Begin again with an excitation monitor" }));
+  await user.click(screen.getByRole("button", { name: "Restart with an excitation monitor" }));
   await waitFor(() => expect(server.asked("POST", "/benches/first-look/variant")).toHaveLength(1));
   expect(server.asked("POST", "/benches/first-look/variant")[0].body).toEqual({
     set: { "identifiers.excitation": { kind: "excitation" } },
@@ -78,13 +78,13 @@ it("begins again with an excitation monitor", async () => {
 it("says why a bench cannot begin again", async () => {
   server.on("POST", "/benches/:id/variant", new Refusal(409, "There is no room for another bench."));
   const { user } = await mountPanel();
-  await user.click(screen.getByRole("button", { name: "Begin again with an excitation monitor" }));
+  await user.click(screen.getByRole("button", { name: "Restart with an excitation monitor" }));
   expect(await screen.findByText("There is no room for another bench.")).toBeVisible();
 });
 
 it.each([
-  [1, 0.02, /^20\.?0?\sm?: tells all parameters apart|^0\.020: tells all parameters apart/],
-  [0, 1e-7, /the parameters cannot be told apart from this input$/],
+  [1, 0.02, /^20\.?0?\sm?: identifies all parameters|^0\.020: identifies all parameters/],
+  [0, 1e-7, /this input cannot identify the parameters$/],
 ])("says how much the input tells: identifiable %d", async (identifiable, relative, said) => {
   const { board } = await mountPanel({ ...bench, signals: [...bench.signals, ...MONITOR] });
   board.frame(

@@ -43,7 +43,7 @@ export function ExcitationMeter() {
       fill.current.style.setProperty("--share", `${100 * meterShare(relative)}%`);
       fill.current.dataset.enough = String(identifiable > 0);
       words.current.textContent = `${formatSi(Math.max(0, relative), "", 2)}: ${
-        identifiable > 0 ? "tells all parameters apart" : "the parameters cannot be told apart from this input"
+        identifiable > 0 ? "identifies all parameters" : "this input cannot identify the parameters"
       }`;
     },
     EVERY_MS,
@@ -54,17 +54,17 @@ export function ExcitationMeter() {
       setBusy(true);
       openVariant(
         { "identifiers.excitation": { kind: "excitation" } },
-        "The bench begins again with an excitation monitor.",
+        "The bench restarts with an excitation monitor.",
       )
         .catch(showError)
         .finally(() => setBusy(false));
     };
     return (
       <p className={styles.nometer}>
-        Nothing on this bench measures how much the input tells.{" "}
+        This bench has no excitation monitor.{" "}
         {teaches && (
           <Button size="compact-xs" variant="light" loading={busy} onClick={add}>
-            Begin again with an excitation monitor
+            Restart with an excitation monitor
           </Button>
         )}
       </p>

@@ -73,7 +73,7 @@ it("says why there is no read-out", async () => {
 it("begins again with a read-out, for who teaches", async () => {
   server.on("POST", "/benches/:id/variant", { ...bench, id: "next" });
   const { user, unmount } = mountPanel(bench);
-  await user.click(screen.getByRole("button", { name: "Begin again with one" }));
+  await user.click(screen.getByRole("button", { name: "Restart with an Allan read-out" }));
   await waitFor(() => expect(server.asked("POST", "/benches/gyroscope/variant")).toHaveLength(1));
   expect(server.asked("POST", "/benches/gyroscope/variant")[0].body).toEqual({
     set: { "readouts.allan.kind": "allan" },
@@ -82,7 +82,7 @@ it("begins again with a read-out, for who teaches", async () => {
   unmount();
   be("student");
   mountPanel(bench);
-  expect(screen.queryByRole("button", { name: "Begin again with one" })).not.toBeInTheDocument();
+  expect(screen.queryByRole("button", { name: "Restart with an Allan read-out" })).not.toBeInTheDocument();
 });
 
 it("offers a watcher no other speed", async () => {

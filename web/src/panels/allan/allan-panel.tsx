@@ -33,20 +33,22 @@ export function AllanPanel() {
   if (!name)
     return (
       <EmptyState
-        title="No read-out on this bench"
+        title="No Allan read-out on this bench"
         action={
           teaches && (
             <Button
               size="xs"
-              onClick={() => openVariant({ "readouts.allan.kind": "allan" }, "Bench with a read-out").catch(showError)}
+              onClick={() =>
+                openVariant({ "readouts.allan.kind": "allan" }, "Bench with an Allan read-out").catch(showError)
+              }
             >
-              Begin again with one
+              Restart with an Allan read-out
             </Button>
           )
         }
       >
         {teaches
-          ? "An Allan deviation gathers the rate from the first tick on, so the bench begins again from tick 0; the one before stays."
+          ? "An Allan deviation gathers the rate from the first tick on, so a new bench starts from tick 0; this bench is kept."
           : "An Allan deviation gathers the rate from the first tick on; the scenario of this bench has no read-out."}
       </EmptyState>
     );

@@ -108,7 +108,7 @@ it.each([
   ["regions of performance", "regions"],
 ])("begins again with %s", async (words, kind) => {
   const { user } = mountPanel(bench);
-  await user.click(screen.getByRole("button", { name: `Begin again with ${words}` }));
+  await user.click(screen.getByRole("button", { name: `Restart with ${words}` }));
   await waitFor(() => expect(server.asked("POST", "/benches/first-look/variant")).toHaveLength(1));
   expect(server.asked("POST", "/benches/first-look/variant")[0].body).toEqual({
     set: { [`diagnosers.${kind}`]: { kind } },

@@ -67,17 +67,17 @@ export function BehaviourPanel() {
               <Button
                 size="xs"
                 loading={busy}
-                onClick={() => begin("consistency", "The bench begins again with a test of consistency.")}
+                onClick={() => begin("consistency", "The bench restarts with a test of consistency.")}
               >
-                Begin again with a test of consistency
+                Restart with a test of consistency
               </Button>
               <Button
                 size="xs"
                 variant="default"
                 loading={busy}
-                onClick={() => begin("regions", "The bench begins again with regions of performance.")}
+                onClick={() => begin("regions", "The bench restarts with regions of performance.")}
               >
-                Begin again with regions of performance
+                Restart with regions of performance
               </Button>
             </>
           )

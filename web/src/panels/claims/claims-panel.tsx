@@ -18,13 +18,13 @@ export function ClaimsPanel() {
   if (!value)
     return (
       <EmptyState title={error ? "The claims cannot be measured" : "Measuring"}>
-        {error?.body.message ?? "What is printed, what is expected and what is measured come here."}
+        {error?.body.message ?? "Printed, expected and measured figures appear here."}
       </EmptyState>
     );
   if (value.claims.length === 0)
     return (
       <EmptyState title="This experiment makes no claim">
-        Open one of chapters 1 to 6 from the gallery: here is then what is printed of it, beside what is measured.
+        Open one of chapters 1 to 6 from the gallery: its printed figures appear here beside the measured ones.
       </EmptyState>
     );
   return (

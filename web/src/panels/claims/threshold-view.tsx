@@ -102,8 +102,8 @@ function Turned({ claim, knob }: { claim: Claim; knob: ClaimKnob }) {
             <Painted label={`${claim.metric} over ${knob.label}: ${found.words}`} paint={paint} />
           </div>
           <p className={styles.hint}>
-            Hatched: {claim.is_published ? "agrees with what is printed" : "nothing is printed"}. Dashed: our bounds.
-            Points: runs of the scenario with this value and its seed.
+            Hatched: {claim.is_published ? "agrees with the print" : "nothing is printed"}. Dashed: our bounds. Points:
+            runs of the scenario with this value and its seed.
           </p>
         </>
       )}
@@ -132,7 +132,7 @@ function Turned({ claim, knob }: { claim: Claim; knob: ClaimKnob }) {
           </Button>
           <p className={styles.hint}>
             {knob.is_live
-              ? "The slider changes the bench as it runs. What has run before counts too, until it begins again."
+              ? "The slider changes the bench as it runs. Earlier samples count too, until a restart."
               : "This number cannot change while the bench runs."}
           </p>
         </div>

@@ -39,7 +39,9 @@ interface Candidates {
 export function BehindView() {
   const bench = useBench((s) => s.bench);
   if (!bench)
-    return <EmptyState title="No bench yet">Traces of other benches are laid behind those of this bench.</EmptyState>;
+    return (
+      <EmptyState title="No bench yet">Traces of other benches are drawn behind the traces of this bench.</EmptyState>
+    );
   return (
     <section className={styles.sheet} aria-label="Branches and runs">
       <Sources bench={bench} />

@@ -11,6 +11,14 @@ import { COLOURS, LOOK, NONCE } from "./code-look";
 import styles from "./editor.module.css";
 import { spanOf } from "./span";
 
+/** Escape belongs to the text, which closes its list of words by it: the drawer around it stays open. */
+const ATTRIBUTES = {
+  "aria-label": "Text of the unit",
+  "data-mantine-stop-propagation": "true",
+  spellcheck: "false",
+  tabindex: "0",
+};
+
 interface CodeProps {
   source: string;
   onChange(source: string): void;
@@ -47,8 +55,8 @@ export function Code({ source, onChange, mistake, card }: CodeProps) {
           python(),
           syntaxHighlighting(COLOURS),
           LOOK,
-          EditorView.contentAttributes.of({ "aria-label": "Text of the unit", spellcheck: "false", tabindex: "0" }),
-          placeholder("Type or paste a unit, or start from one of the library."),
+          EditorView.contentAttributes.of(ATTRIBUTES),
+          placeholder("Type or paste a unit, or choose a text under Start from."),
           autocompletion({ override: [(at) => fieldsOf(at, known.current.card), localCompletionSource] }),
           keymap.of([...defaultKeymap, ...historyKeymap, ...completionKeymap, ...lintKeymap, indentWithTab]),
           EditorView.updateListener.of((update) => {

@@ -3,6 +3,7 @@ import { useEffect, useState } from "react";
 import { useWatches } from "../../api/me";
 import { useAnswer } from "../../api/queries";
 import { units } from "../../api/units";
+import { editCopy } from "../../bench/edit-unit";
 import { beginWith, isUnitName, nameOfClass, useDraft } from "../../bench/unit-draft";
 import { sourceOnBench } from "../../bench/unit-values";
 import { useBench } from "../../stream/bench-store";
@@ -105,9 +106,16 @@ function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
               <Headless key={unit.card.name} card={unit.card} source={source} ready={Boolean(checked.now?.unit)} />
             </>
           ) : (
-            <EmptyState title="No unit yet">
-              Start from a unit of the library, open a file, or type. What the text says of itself appears here: title,
-              equations, parameters and signals.
+            <EmptyState
+              title="No unit yet"
+              action={
+                <Button size="xs" onClick={() => void editCopy("blank")}>
+                  Start with three lines
+                </Button>
+              }
+            >
+              Or start from the PI or a unit of the library, open a file, or type. Title, equations, parameters and
+              signals of the unit appear here.
             </EmptyState>
           )}
         </aside>

@@ -27,10 +27,10 @@ const FAMILIES: Record<string, string> = {
 export function StartFrom({ list, unit }: StartFromProps) {
   const { name, source } = useDraft();
   const all = list.value?.units ?? [];
-  const ofServer = all.filter((one) => one.origin !== "library");
   const isKept = all.some((one) => one.origin === "folder" && one.name === name);
   const groups = [
-    { group: "On this server", items: ofServer },
+    { group: "To begin with", items: all.filter((one) => one.origin === "starter") },
+    { group: "On this server", items: all.filter((one) => one.origin === "folder" || one.origin === "command line") },
     ...Object.entries(FAMILIES).map(([family, group]) => ({
       group,
       items: all.filter((one) => one.origin === "library" && one.family === family),

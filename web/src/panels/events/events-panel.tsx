@@ -54,7 +54,7 @@ function Events() {
   if (events.length === 0)
     return (
       <EmptyState title="Nothing has happened yet">
-        Commands, faults, findings and trips are listed here with their ticks.
+        Every command, fault, finding and trip is listed here with its tick.
       </EmptyState>
     );
   return (

@@ -123,7 +123,7 @@ it("counts several faults and lists each with its own severity and time", async 
     ],
   });
   const { user } = mount(<FaultsPanel />);
-  expect(await screen.findByText("2 faults act")).toBeVisible();
+  expect(await screen.findByText(/^2\sactive faults$/)).toBeVisible();
   const row = (title: string) => screen.getByText(title).closest("li") as HTMLElement;
   const stiffness = catalog.blocks.find((b) => b.family === "faults" && b.name === "stiffness")?.title as string;
   expect(row(stiffness)).toHaveTextContent(/−10\s% since 19\.000\sms/);

@@ -45,7 +45,7 @@ it("injects the suggested severity with one press", async () => {
 it("shows a fault that acts, heals it, and heals all", async () => {
   const board = connect(bench);
   const { user } = mount(<FaultsPanel />);
-  expect(await screen.findByText("1 fault acts")).toBeVisible();
+  expect(await screen.findByText(/^1\sactive fault$/)).toBeVisible();
   const row = screen.getByRole("button", { name: "Added mass" }).closest("li") as HTMLElement;
   expect(row).toHaveTextContent("+5 % since 18.000 ms");
   await user.click(within(row).getByRole("button", { name: "Heal" }));
@@ -99,6 +99,6 @@ it("asks again for a catalogue that did not come", async () => {
   expect(await screen.findByText("The server did not send the catalogue")).toBeVisible();
   server.on("GET", "/catalog", catalog);
   await user.click(screen.getByRole("button", { name: "Ask again" }));
-  expect(await screen.findByText("1 fault acts")).toBeVisible();
+  expect(await screen.findByText(/^1\sactive fault$/)).toBeVisible();
   expect(server.asked("GET", "/catalog")).toHaveLength(2);
 });

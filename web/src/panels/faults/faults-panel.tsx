@@ -5,6 +5,7 @@ import { useCatalog } from "../../api/use-catalog";
 import { actions } from "../../bench/actions";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
+import { formatCount } from "../../ui/format";
 import { groupsOf } from "./fault-draft";
 import { FaultRow } from "./fault-row";
 import styles from "./faults.module.css";
@@ -35,11 +36,7 @@ export function FaultsPanel() {
   return (
     <section className={styles.panel} aria-label="Faults">
       <div className={styles.top}>
-        <span>
-          {acting.length === 0
-            ? "The device is healthy"
-            : `${acting.length} ${acting.length === 1 ? "fault acts" : "faults act"}`}
-        </span>
+        <span>{acting.length === 0 ? "The device is healthy" : formatCount(acting.length, "active fault")}</span>
         <Button size="compact-sm" variant="default" disabled={acting.length === 0} onClick={actions.healAll}>
           Heal all
         </Button>

@@ -17,7 +17,7 @@ it("finds another that is not there", () => expect(another([{ name: "m+5", mass:
 
 it("says what is wrong with a list", () => {
   expect(refusal([{ name: "healthy" }])).toMatch(/at least 2/);
-  expect(refusal([{ name: "a" }, { name: "a" }])).toBe("a is there twice.");
+  expect(refusal([{ name: "a" }, { name: "a" }])).toBe("a appears twice.");
   expect(refusal([{ name: "a b" }, { name: "c" }])).toMatch(/cannot be a name/);
   expect(refusal([{ name: "a" }, { name: "b" }])).toBeUndefined();
 });

@@ -47,5 +47,5 @@ export function refusal(list: readonly Hypothesis[]): string | undefined {
   const bad = names.find((name) => !/^[^\s.]{1,24}$/.test(name));
   if (bad !== undefined) return `"${bad}" cannot be a name: use up to 24 characters, without spaces or dots.`;
   const twice = names.find((name, i) => names.indexOf(name) !== i);
-  return twice === undefined ? undefined : `${twice} is there twice.`;
+  return twice === undefined ? undefined : `${twice} appears twice.`;
 }

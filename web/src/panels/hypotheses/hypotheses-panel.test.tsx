@@ -75,18 +75,18 @@ it("adds the hypothesis that is not there yet, and renames it by what it changes
   await waitFor(() => expect(sentHypotheses().at(-1)).toMatchObject({ name: "k-3,25", mass: 1, stiffness: 0.9675 }));
 });
 
-it("says that a name is there twice, and begins no bench with it", async () => {
+it("says that a name appears twice, and begins no bench with it", async () => {
   const { user } = mountPanel();
   await user.click(add());
   await user.clear(field("Name of hypothesis 7"));
   await user.type(field("Name of hypothesis 7"), "m+5");
-  expect(screen.getByRole("alert")).toHaveTextContent("m+5 is there twice.");
-  expect(screen.getByRole("button", { name: "Begin again with this list" })).toBeDisabled();
+  expect(screen.getByRole("alert")).toHaveTextContent("m+5 appears twice.");
+  expect(screen.getByRole("button", { name: "Restart with this list" })).toBeDisabled();
 });
 
 it("begins again with the new list as a bench of its own", async () => {
   const { user } = mountPanel();
-  const begin = screen.getByRole("button", { name: "Begin again with this list" });
+  const begin = screen.getByRole("button", { name: "Restart with this list" });
   expect(begin).toBeDisabled();
   await user.click(screen.getByRole("button", { name: "Leave out b+30" }));
   await user.click(begin);
@@ -100,7 +100,7 @@ it("says why a bench cannot begin", async () => {
   server.on("POST", "/benches/:id/variant", new Refusal(409, "There is no room for another bench."));
   const { user } = mountPanel();
   await user.click(add());
-  await user.click(screen.getByRole("button", { name: "Begin again with this list" }));
+  await user.click(screen.getByRole("button", { name: "Restart with this list" }));
   expect(await screen.findByText("There is no room for another bench.")).toBeVisible();
 });
 

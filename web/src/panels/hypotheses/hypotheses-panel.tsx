@@ -89,11 +89,9 @@ export function HypothesesPanel() {
             size="compact-sm"
             loading={busy}
             disabled={!changed || wrong !== undefined}
-            onClick={() =>
-              begin({ [`diagnosers.${id}.hypotheses`]: list }, "The bench begins again with the new list.")
-            }
+            onClick={() => begin({ [`diagnosers.${id}.hypotheses`]: list }, "The bench restarts with the new list.")}
           >
-            Begin again with this list
+            Restart with this list
           </Button>
         )}
         {teaches && (
@@ -113,7 +111,7 @@ export function HypothesesPanel() {
               if (kind)
                 begin(
                   { [`diagnosers.${kind}`]: { kind, hypotheses: list } },
-                  "The bench begins again with another method.",
+                  "The bench restarts with another method.",
                 );
             }}
           />

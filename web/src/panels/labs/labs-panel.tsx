@@ -25,7 +25,8 @@ export function LabsPanel() {
   if (!parameters || !id)
     return (
       <EmptyState title="No diagnoser on this bench">
-        Here you set what a diagnoser assumes apart from what is true. Open a scenario of chapter 5 from New bench.
+        Here you set the assumptions of a diagnoser apart from the real noise. Open a scenario of chapter 5 from New
+        bench.
       </EmptyState>
     );
   const labs = labsOf({ parameters }, id, block);
@@ -49,7 +50,7 @@ export function LabsPanel() {
         <Button
           size="compact-sm"
           variant="default"
-          title="Begin again at tick 0; what is set here stays"
+          title="Restart at tick 0; the settings here are kept"
           onClick={() => void countAfresh()}
         >
           Count afresh

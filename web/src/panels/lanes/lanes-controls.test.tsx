@@ -161,7 +161,7 @@ it("begins again with a diagnoser that the bench has not, for who teaches", asyn
   connect({ ...bench, diagnosers: {} });
   const { user, unmount } = mount(<LanesPanel />);
   await user.selectOptions(await screen.findByRole("combobox", { name: "Diagnoser to add" }), "imm");
-  await user.click(screen.getByRole("button", { name: "Begin again with it" }));
+  await user.click(screen.getByRole("button", { name: "Restart with it" }));
   await waitFor(() => expect(server.asked("POST", "/benches/first-look/variant")).toHaveLength(1));
   expect(server.asked("POST", "/benches/first-look/variant")[0].body).toEqual({
     set: { "diagnosers.imm": { kind: "imm" } },
@@ -170,7 +170,7 @@ it("begins again with a diagnoser that the bench has not, for who teaches", asyn
   unmount();
   be("student");
   mount(<LanesPanel />);
-  expect(screen.queryByRole("button", { name: "Begin again with it" })).not.toBeInTheDocument();
+  expect(screen.queryByRole("button", { name: "Restart with it" })).not.toBeInTheDocument();
 });
 
 it("has no truth while a fault is to be found", async () => {

@@ -46,7 +46,7 @@ export function LanesPanel() {
   if (all.length === 0 && blind)
     return (
       <EmptyState title="Hidden while you look for the fault">
-        The server hides what the diagnosers say until you answer under Lesson › Hidden fault.
+        The server hides the verdicts of the diagnosers until you answer in Lesson, Hidden fault.
       </EmptyState>
     );
   if (all.length === 0)

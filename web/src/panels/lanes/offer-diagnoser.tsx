@@ -24,7 +24,7 @@ export function OfferDiagnoser() {
   if (!bank || replay || !teaches) return null; // the past cannot be changed
   const begin = () => {
     setBusy(true);
-    openVariant({ [`diagnosers.${bank.name}`]: { kind: bank.name } }, `The bench begins again with ${bank.title}.`)
+    openVariant({ [`diagnosers.${bank.name}`]: { kind: bank.name } }, `The bench restarts with ${bank.title}.`)
       .catch(showError)
       .finally(() => setBusy(false));
   };
@@ -38,7 +38,7 @@ export function OfferDiagnoser() {
         onChange={(e) => setWanted(e.currentTarget.value)}
       />
       <Button size="xs" loading={busy} onClick={begin}>
-        Begin again with it
+        Restart with it
       </Button>
     </>
   );

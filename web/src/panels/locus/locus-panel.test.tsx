@@ -33,11 +33,24 @@ it("says the tilt of the long axis, and draws the path anew with each frame", as
   expect(screen.getByTestId("tilt")).toHaveTextContent(/^5\.000°$/);
 });
 
-it("titles its axes with the unit of the motion", async () => {
-  const { board, pen } = mountPanel();
-  board.frame(swing(10), { head: 1000 });
+it("titles its axes with the unit of the motion, and says by how much y is stretched", async () => {
+  const { board, user, pen } = mountPanel();
+  board.frame(swing(1), { head: 1000 });
+  await drawOnce();
+  expect(pen().words).toEqual(expect.arrayContaining(["x, µm", "y, nm (×60)"]));
+  await user.click(screen.getByRole("radio", { name: "x and y alike" }));
+  board.frame(swing(1), { head: 1000 });
   await drawOnce();
   expect(pen().words).toEqual(expect.arrayContaining(["x, µm", "y, µm"]));
+});
+
+it.each([
+  ["open_loop_rate", /quadrature.*ellipse/],
+  ["force_to_rebalance", /force it needs for this is the rate/],
+  ["whole_angle", /turns back/],
+])("says in words what the path tells under %s", (controller, words) => {
+  mountPanel({ ...bench, controller });
+  expect(screen.getByText(words)).toBeVisible();
 });
 
 it("says that the mass is at rest", async () => {
@@ -48,7 +61,7 @@ it("says that the mass is at rest", async () => {
   expect(screen.getByTestId("tilt")).toHaveTextContent("at rest");
 });
 
-it("stretches y to its own scale", async () => {
+it("stretches y to its own scale, unless both are to be alike", async () => {
   const { board, user, pen } = mountPanel();
   board.frame(swing(1), { head: 1000 });
   await drawOnce();
@@ -60,11 +73,11 @@ it("stretches y to its own scale", async () => {
       );
     return Math.max(...ys) - Math.min(...ys);
   };
-  const flat = height();
-  await user.click(screen.getByRole("radio", { name: "y stretched" }));
+  const stretched = height();
+  await user.click(screen.getByRole("radio", { name: "x and y alike" }));
   board.frame(swing(1), { head: 1000 });
   await drawOnce();
-  expect(height()).toBeGreaterThan(10 * flat);
+  expect(stretched).toBeGreaterThan(10 * height());
 });
 
 it("subscribes to x and y as long as the path is", async () => {

@@ -2,7 +2,7 @@ import { linearAxis, type Plot, paintAxes } from "../../picture/axes";
 import type { Box, Look, Pen } from "../../picture/pen";
 import { type Picture, pictureName } from "../../picture/picture";
 import { paintDot, paintLine, paintRule, within } from "../../picture/traces";
-import { formatIn } from "../../ui/format";
+import { formatIn, formatNumber } from "../../ui/format";
 import { TRACE_COLOURS } from "../../ui/palette";
 import type { UnitScale } from "../../ui/unit-scale";
 import type { LocusAxes, Points } from "./locus-axes";
@@ -26,10 +26,16 @@ export interface LocusShown {
 export const tiltText = (degrees: number | undefined) =>
   degrees === undefined ? "at rest" : formatIn(degrees, "°", Math.abs(degrees) < 10 ? 3 : 2);
 
+/** By how much y is drawn larger than x, in one digit that does not flicker; nothing where both have one scale. */
+function stretchText({ x, y }: LocusAxes): string {
+  const stretch = (x[1] - x[0]) / (y[1] - y[0]);
+  return stretch < 1.5 ? "" : ` (×${formatNumber(Number(stretch.toPrecision(1)), 0)})`;
+}
+
 /** The path of the mass in its plane, and the line along which it swings. */
 export function paintLocus(pen: Pen, box: Box, { axes, scales, traces }: LocusShown, look: Look): void {
   const across = linearAxis(axes.x, `x, ${scales.x.unit}`, scales.x);
-  const up = linearAxis(axes.y, `y, ${scales.y.unit}`, scales.y);
+  const up = linearAxis(axes.y, `y, ${scales.y.unit}${stretchText(axes)}`, scales.y);
   const plot = paintAxes(pen, box, across, up, look, { isSquare: true, gutter: look.fontSize * 2.7 });
   within(pen, plot.field, () => {
     for (const trace of traces) {

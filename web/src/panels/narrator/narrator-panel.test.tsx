@@ -33,7 +33,7 @@ const list = () => within(screen.getByRole("list", { name: "What the narrator sa
 it("says that there is nothing to tell yet", () => {
   connect(bench);
   mount(<NarratorPanel />);
-  expect(screen.getByText("Nothing to tell yet")).toBeVisible();
+  expect(screen.getByText("No events yet")).toBeVisible();
 });
 
 it("lists every sentence, the newest last", () => {
@@ -48,7 +48,7 @@ it("lists every sentence, the newest last", () => {
 
 it("says how many sentences lie before them", () => {
   mountPanel(bench, sentences, 7);
-  expect(list().getByText(/^7\ssentences before$/)).toBeVisible();
+  expect(list().getByText(/^Earlier: 7\ssentences$/)).toBeVisible();
 });
 
 it("leaves out the sentences of a run that began again", () => {

@@ -19,18 +19,20 @@ export function NarratorPanel() {
   }, [said]);
   if (voting)
     return (
-      <EmptyState title="Not while a vote is open">What happens is the answer. It stands here afterwards.</EmptyState>
+      <EmptyState title="Not while a vote is open">
+        Events would reveal the answer. They are listed here afterwards.
+      </EmptyState>
     );
   if (sentences.length === 0)
     return (
-      <EmptyState title="Nothing to tell yet">
-        A sentence stands here for each fault, switch, verdict and trip, with its numbers. Inject a fault to hear one.
+      <EmptyState title="No events yet">
+        Each fault, switch, verdict and trip is described here with its numbers. Inject a fault to see the first.
       </EmptyState>
     );
   const first = Math.max(0, sentences.length - SHOWN);
   return (
     <ol ref={list} className={styles.list} aria-label="What the narrator says, newest last">
-      {before + first > 0 && <li className={styles.earlier}>{formatCount(before + first, "sentence")} before</li>}
+      {before + first > 0 && <li className={styles.earlier}>Earlier: {formatCount(before + first, "sentence")}</li>}
       {sentences.slice(first).map((sentence, at) => (
         <li key={`${sentence.tick} ${sentence.text}`}>
           <button

@@ -82,7 +82,7 @@ export function PhasePanel() {
       <p className={`${styles.words} ${styles.beside}`}>
         {failed ??
           (!isFlat ? (
-            "The turn of a moving mass about its rest; nothing pulls it in."
+            "Rotation of the moving mass about its rest position; no pull-in."
           ) : flat ? (
             <>
               No unstable region: the {plant} plant cannot move sideways. The planar one can.{" "}

@@ -28,7 +28,7 @@ export function InsideDrawing({ instance, block }: { instance: Instance; block: 
     name.startsWith(`${key}.probability.`) ? formatPercent(value) : undefined,
   );
   const stage = chosen === undefined ? undefined : block.structure[chosen];
-  if (block.structure.length === 0) return <p>{block.title} does not say what it is made of.</p>;
+  if (block.structure.length === 0) return <p>{block.title} does not name its stages.</p>;
   const choose = (number: number) => setChosen(number === chosen ? undefined : number);
   return (
     <>

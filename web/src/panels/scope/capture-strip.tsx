@@ -58,7 +58,7 @@ export function CaptureStrip({ captures: list, standing, dtMs, onStand, onBrowse
   );
 }
 
-const KEPT = "The last captures stay at full rate, also when the history has gone past them. L returns to live.";
+const KEPT = "The last captures keep their full rate, even after the history has passed them. L returns to live.";
 const SHORT = "The memory of the bench has no room for more captures of this window: the oldest go first.";
 
 /** Where the scope stands among its captures, or how many there are. */

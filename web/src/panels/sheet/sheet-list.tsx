@@ -27,7 +27,7 @@ export function SheetList({ cards, onChanged }: { cards: SheetCard[]; onChanged(
     }
   };
   const remove = async ({ id, title }: SheetCard) => {
-    if (!window.confirm(`Delete ${title}? What was answered in it is gone too.`)) return;
+    if (!window.confirm(`Delete ${title}? Its answers are deleted too.`)) return;
     await sheets.remove(id).then(onChanged, showError);
   };
   return (

@@ -38,7 +38,7 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
     close: (step) => void take(sheets.close(id, step)).catch(showError),
   };
   const startOver = async () => {
-    if (!window.confirm("Forget all answers of this sheet and begin again?")) return;
+    if (!window.confirm("Delete all answers of this sheet and start over?")) return;
     await sheets.startOver(id);
     await beginSheet(id);
     again();
@@ -76,7 +76,7 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
       </header>
       {!value.bench && !value.done && (
         <div className={styles.gone} role="status">
-          The bench of this sheet is gone. Your answers are kept.{" "}
+          The bench of this sheet was closed. Your answers are kept.{" "}
           <Button size="compact-sm" onClick={() => void beginSheet(id).then(again, showError)}>
             Make it again
           </Button>
@@ -108,7 +108,7 @@ function Section({ section, actions }: { section: SheetSection; actions: StepAct
       <h3>
         {heading}
         <span className={styles.unseen}>
-          {state === "done" ? ", done" : state === "closed" ? ", closed until the steps before it are done" : ""}
+          {state === "done" ? ", done" : state === "closed" ? ". Complete the previous steps first" : ""}
         </span>
       </h3>
       <SheetText text={text} />

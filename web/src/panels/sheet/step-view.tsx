@@ -73,7 +73,7 @@ export function StepView({ step, isOpen, actions }: StepProps) {
           )}
           {step.can_go_on && (
             <Button size="compact-sm" variant="subtle" onClick={() => actions.close(id)}>
-              Go on without it
+              Skip this question
             </Button>
           )}
         </div>

@@ -33,7 +33,7 @@ export function TwinsForm({ chosen }: { chosen: string[] }) {
     setBusy(true);
     openVariant(
       { twins: twinsOf(twins, (name) => (slotOf(name) === last ? undefined : slotOf(name))) },
-      twins.length ? "The bench begins again with its twins." : "The twins are gone.",
+      twins.length ? "The bench restarts with its twins." : "The twins were removed.",
     )
       .catch(showError)
       .finally(() => setBusy(false));
@@ -87,7 +87,7 @@ export function TwinsForm({ chosen }: { chosen: string[] }) {
         disabled={kinds.length === 0 && chosen.length === 0}
         onClick={() => begin(kinds)}
       >
-        {kinds.length === 0 ? "Begin again alone" : "Begin again with these"}
+        {kinds.length === 0 ? "Restart without twins" : "Restart with these"}
       </Button>
     </div>
   );

@@ -43,7 +43,7 @@ it("begins again with the controllers that are chosen", async () => {
   expect(screen.getByText("No twins on this bench")).toBeVisible();
   await user.selectOptions(twin(1), "mrac");
   await user.selectOptions(twin(2), "stvsc");
-  await user.click(screen.getByRole("button", { name: "Begin again with these" }));
+  await user.click(screen.getByRole("button", { name: "Restart with these" }));
   expect(await begun()).toEqual({
     set: { twins: { mrac: { controller: { kind: "mrac" } }, stvsc: { controller: { kind: "stvsc" } } } },
     repeat: false,
@@ -90,14 +90,14 @@ it("begins again alone when every twin is left out", async () => {
   await user.click(screen.getByRole("button", { name: "Leave out twin 2" }));
   expect(twin(1)).toHaveValue("mrac");
   await user.click(screen.getByRole("button", { name: "Leave out twin 1" }));
-  await user.click(screen.getByRole("button", { name: "Begin again alone" }));
+  await user.click(screen.getByRole("button", { name: "Restart without twins" }));
   expect(await begun()).toEqual({ set: { twins: {} }, repeat: false });
 });
 
 it("says why a bench cannot begin", async () => {
   server.on("POST", "/benches/:id/variant", new Refusal(409, "There is no room for another bench."));
   const { user } = await mountPanel();
-  await user.click(screen.getByRole("button", { name: "Begin again with these" }));
+  await user.click(screen.getByRole("button", { name: "Restart with these" }));
   expect(await screen.findByText("There is no room for another bench.")).toBeVisible();
 });
 
@@ -106,7 +106,7 @@ it("offers a gyroscope a controller for each of its slots", async () => {
   expect(twin(1)).toHaveValue("force_to_rebalance");
   expect(twin(2)).toHaveValue("open_loop_rate");
   await user.selectOptions(twin(2), "drive_tracking");
-  await user.click(screen.getByRole("button", { name: "Begin again with these" }));
+  await user.click(screen.getByRole("button", { name: "Restart with these" }));
   expect(await begun()).toMatchObject({
     set: {
       twins: {

@@ -53,7 +53,7 @@ export function TwinsPanel() {
       <EmptyState title="No twins on this bench" action={form}>
         A twin is a second board that meets the same input, noise and faults, tick by tick, under another controller.{" "}
         {teaches
-          ? "Choose up to three; the bench begins again at tick 0 with them beside it."
+          ? "Choose up to three; the bench restarts at tick 0 with them beside it."
           : "Only the teacher gives a bench twins; scenarios of the gallery have some."}
       </EmptyState>
     );

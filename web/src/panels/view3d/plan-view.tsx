@@ -63,7 +63,7 @@ export function PlanView({ because }: { because: string }) {
       <figcaption>
         {said && <b>{said}. </b>}
         {because}
-        <span ref={times} />.{isStandIn && " LCR-350 stands for a device without a drawing."}
+        <span ref={times} />.{isStandIn && " This device has no drawing; LCR-350 is shown."}
       </figcaption>
     </figure>
   );

@@ -133,7 +133,7 @@ function Explained({ account, waiting }: { account: Account; waiting: boolean })
       {density && posterior ? (
         <ol className={styles.steps}>
           <li>
-            <span>How well it predicted what was measured</span>
+            <span>How well it predicted the measurement</span>
             <Formula latex={density} />
           </li>
           <li>
@@ -148,7 +148,7 @@ function Explained({ account, waiting }: { account: Account; waiting: boolean })
           )}
           {correction && (
             <li>
-              <span>How far its Kalman gain moves its state after what was measured</span>
+              <span>How far its Kalman gain moves its state after the measurement</span>
               <Formula latex={correction} />
             </li>
           )}
