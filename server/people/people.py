@@ -73,12 +73,13 @@ class People:
         class_id: str | None = None,
         bench_id: str | None = None,
         also: Callable[[str], Sequence[Change]] = lambda _: (),
+        secret: str = "",
     ) -> tuple[Person, str]:
-        """Add a person; return the person and the secret of the session, which is kept nowhere.
+        """Add a person; return the person and the secret of the session, which is new unless given, and kept nowhere.
 
         What ``also`` returns for the id of the person is kept with it.
         """
-        secret = self._new_secret()
+        secret = secret or self._new_secret()
         row = PersonRow(
             id=secrets.token_hex(8),
             role=role,
@@ -111,6 +112,13 @@ class People:
         """Return whose session a secret opens, as long as it lasts."""
         person = self._by_hash.get(hash_of(secret)) if secret else None
         return person if person is not None and (person.until is None or person.until > now()) else None
+
+    async def remove_holder(self, secret: str) -> Person | None:
+        """End the session that a secret opens, or opened until its time was over; return whose it was."""
+        person = self._by_hash.get(hash_of(secret))
+        if person is not None:
+            await self.remove(person)
+        return person
 
     def students(self, class_id: str = "") -> list[Person]:
         """List the students of a class, or of all classes, in the order in which they came."""
