@@ -63,7 +63,7 @@ it("opens the index at an equation", async () => {
 it("opens the block of a setting", async () => {
   const block = board.find(({ family }) => family === "control");
   const { user } = await open(`controllers.${block?.name}.${block?.parameters[0].name}`);
-  const settings = within(await screen.findByText("Settings").then((label) => label.parentElement as HTMLElement));
+  const settings = within(await screen.findByRole("group", { name: "Settings" }));
   await user.click(settings.getAllByRole("button")[0]);
   expect(useView.getState()).toMatchObject({ card: `controllers.${block?.name}`, extra: "card" });
 });

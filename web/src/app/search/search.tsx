@@ -37,7 +37,7 @@ function Found({ asked }: { asked: string }) {
   const groups = find(useEntries(), asked);
   if (groups.length === 0) return <Spotlight.Empty>Nothing has all these words.</Spotlight.Empty>;
   return groups.map(([group, entries]) => (
-    <Spotlight.ActionsGroup key={group} label={group}>
+    <Spotlight.ActionsGroup key={group} label={group} role="group" aria-label={group}>
       {entries.map(({ key, title, about, open }) => (
         <Spotlight.Action key={key} label={title} description={about} onClick={open} />
       ))}
