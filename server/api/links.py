@@ -91,7 +91,7 @@ async def change_link(link_id: str, body: Words, service: ServiceDep) -> LinkDet
 async def delete_link(link_id: str, service: ServiceDep, identity: IdentityDep) -> None:
     """Delete a link; benches opened by it stay, people who watch by it are gone."""
     await service.links.get(link_id)
-    await service.people.remove_holder(identity.secret_of_link(link_id))
+    await service.people.close(identity.secret_of_link(link_id))
     await service.links.delete(link_id)
 
 

@@ -52,8 +52,10 @@ async def make_watcher(
     until = now() + timedelta(hours=body.hours)
     given = ""
     if body.link is not None:
-        given = identity.secret_of_link((await service.links.get(body.link)).id)
-        await service.people.remove_holder(given)
+        link = await service.links.get(body.link)
+        if link.kind != "experiment":
+            raise ApiError(422, "invalid", "leads to no experiment", "link")
+        given = identity.secret_of_link(link.id)
     person, secret = await service.people.add("watcher", "watcher", until, bench_id=session.id, secret=given)
     service.audit.add("teacher", "watcher", "made a link to watch", session.class_id, session.id)
     query = {"link": body.link, **({SHARD: service.settings.shard} if service.settings.shard else {})}

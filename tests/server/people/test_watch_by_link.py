@@ -100,8 +100,9 @@ def test_it_ends_by_its_time_by_the_teacher_and_with_the_link(live: Live, monkey
     assert live.http.delete(f"/api/v1/links/{link}").status_code == 204
     refused(live, link)
     assert live.http.get(f"/api/v1/benches/{bench}/watchers").json()["watchers"] == []
-    answer = live.http.post(f"/api/v1/benches/{bench}/watchers", json={"link": link})
-    assert answer.status_code == 404
+    layout = live.http.post("/api/v1/links", json={"title": "panels", "layout": {}}).json()["id"]
+    for one, status in ((link, 404), (layout, 422)):
+        assert live.http.post(f"/api/v1/benches/{bench}/watchers", json={"link": one}).status_code == status
 
 
 def test_it_ends_with_the_class_of_its_bench(live: Live) -> None:
