@@ -20,14 +20,9 @@ router = APIRouter(include_in_schema=False)
 @router.get("/runs")
 @router.get("/scores")
 @router.get("/theory")
-async def show_page(request: Request) -> Response:
-    """Show a page of its own name."""
-    return _page(request, True)
-
-
 @router.get("/theory/{words}")
-async def show_equations(request: Request, words: str) -> Response:
-    """Show the equations that have these words, such as a section; the page says how many there are."""
+async def show_page(request: Request) -> Response:
+    """Show a page as a whole, or the equations that have some words; the page counts these."""
     return _page(request, True)
 
 

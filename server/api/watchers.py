@@ -43,9 +43,7 @@ class WatcherList(BaseModel):
 
 
 @router.post("", status_code=201, dependencies=[RateLimited])
-async def make_watcher(
-    body: NewWatcher, session: SessionDep, service: ServiceDep, identity: IdentityDep
-) -> Watcher:
+async def make_watcher(body: NewWatcher, session: SessionDep, service: ServiceDep, identity: IdentityDep) -> Watcher:
     """Make a link to watch the bench, or let people watch it by a link that was shared."""
     if len(service.people.watchers(session.id)) >= MOST:
         raise ApiError(409, "limit", f"{MOST} links lead to this bench, the limit", hint="end one first")

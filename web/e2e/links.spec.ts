@@ -85,7 +85,10 @@ test("a shared link lets people watch who have no token, once the teacher lets t
     await expect(guest.getByRole("button", { name })).toHaveCount(0);
   for (const key of [" ", "h", "c", "R", "2"]) await guest.keyboard.press(key);
   await expect(guest.getByRole("region", { name: /^Scope/ }).first()).toBeVisible();
-  await page.getByRole("list", { name: "Links by which people watch this bench" }).getByRole("button", { name: "End" }).click();
+  await page
+    .getByRole("list", { name: "Links by which people watch this bench" })
+    .getByRole("button", { name: "End" })
+    .click();
   await expect(guest.getByText("The link to watch has ended")).toBeVisible();
   expect(sent.filter((text) => text.includes('"command"'))).toEqual([]);
 });

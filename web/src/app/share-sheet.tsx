@@ -14,7 +14,8 @@ import { SideSheet } from "./side-sheet";
 import { WatchLinks } from "./watch-links";
 
 const LONGEST_NOTE = 2000;
-const WATCHED = "People with the access token open this moment. All others watch this bench live, until the time is over.";
+const WATCHED =
+  "People with the access token open this moment. All others watch this bench live, until the time is over.";
 
 /** Share the experiment: a link to this very moment, with how the page looks and a note. */
 export function ShareSheet() {

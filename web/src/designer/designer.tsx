@@ -11,7 +11,15 @@ import { openPlace, setPage, useView } from "../bench/view-store";
 import { EmptyState } from "../ui/empty-state";
 import { formatSi } from "../ui/format";
 import { AxesView } from "./axes-view";
-import { benchOf, catalogued, type DesignState, designDocument, gyroscopeBenchOf, isGyroscope, newDesign } from "./design";
+import {
+  benchOf,
+  catalogued,
+  type DesignState,
+  designDocument,
+  gyroscopeBenchOf,
+  isGyroscope,
+  newDesign,
+} from "./design";
 import styles from "./designer.module.css";
 import { DesignerControls } from "./designer-controls";
 import { DeviceView } from "./device-view";

@@ -40,10 +40,7 @@ export function GalleryPage() {
   const all = value?.cards;
   const figures = value?.figures;
   const one = all?.find(({ id }) => id === item);
-  const cards = useMemo(
-    () => (one ? [one] : item ? [] : chosen(all ?? [], filter)),
-    [all, filter, item, one],
-  );
+  const cards = useMemo(() => (one ? [one] : item ? [] : chosen(all ?? [], filter)), [all, filter, item, one]);
   const busy = all?.filter((card) => isUnderWay(card.state)).length ?? 0;
   const showAll = () => {
     setFilter(EVERYTHING);

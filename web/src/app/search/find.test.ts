@@ -40,7 +40,10 @@ it("an entry is found by all words of its title, its line and its further words,
 });
 
 it("entries with the words in their titles come first, and no more than six of a group", () => {
-  const many = [entry("Panels", "Loop", "scope of it"), ...[1, 2, 3, 4, 5, 6].map((n) => entry("Panels", `Scope ${n}`))];
+  const many = [
+    entry("Panels", "Loop", "scope of it"),
+    ...[1, 2, 3, 4, 5, 6].map((n) => entry("Panels", `Scope ${n}`)),
+  ];
   expect(find(many, "scope")[0][1].map(({ title }) => title)).toEqual([1, 2, 3, 4, 5, 6].map((n) => `Scope ${n}`));
   expect(find(many.slice(0, 3), "scope")[0][1].map(({ title }) => title)).toEqual(["Scope 1", "Scope 2", "Loop"]);
 });

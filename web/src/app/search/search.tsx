@@ -13,14 +13,7 @@ export const openSearch = spotlight.open;
 export function Search() {
   const [asked, setAsked] = useState("");
   return (
-    <Spotlight.Root
-      store={store}
-      shortcut={null}
-      query={asked}
-      onQueryChange={setAsked}
-      scrollable
-      maxHeight="70vh"
-    >
+    <Spotlight.Root store={store} shortcut={null} query={asked} onQueryChange={setAsked} scrollable maxHeight="70vh">
       <Spotlight.Search
         aria-label="Search"
         placeholder="Panel, scenario, equation, device, setting or place"

@@ -98,8 +98,14 @@ export function useEntries(): Entry[] {
 
 /** Bring a view of a panel to the front; from another page once the panels are there. */
 function openView(view: ViewName, another = false): void {
-  const show = () => (another ? void addPanel(view) : showPanel(view));
-  if (useView.getState().page === "bench") return show();
+  const show = () => {
+    if (another) addPanel(view);
+    else showPanel(view);
+  };
+  if (useView.getState().page === "bench") {
+    show();
+    return;
+  }
   const stop = useDock.subscribe(() => {
     stop();
     queueMicrotask(show); // after the layout
