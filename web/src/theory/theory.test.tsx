@@ -92,10 +92,11 @@ it("counts the equations, finds those with several words, and those with errata"
 });
 
 it("opens at the equations that the address names", async () => {
-  const [{ equations }] = catalog.blocks.filter(({ family }) => family === "control");
-  openPlace("theory", equations[0].source);
+  const [block] = catalog.blocks.filter(({ family }) => family === "control");
+  openPlace("theory", `${block.title} ${block.equations[0].label}`);
   mount(<EquationIndex />);
-  expect(screen.getByLabelText("Search equations")).toHaveValue(equations[0].source);
-  expect((await screen.findAllByText(equations[0].source))[0]).toBeVisible();
-  for (const row of screen.getAllByRole("listitem")) expect(row).toHaveTextContent(equations[0].source);
+  expect(screen.getByLabelText("Search equations")).toHaveValue(`${block.title} ${block.equations[0].label}`);
+  const rows = await screen.findAllByRole("listitem");
+  expect(rows.length).toBeLessThan(4);
+  for (const row of rows) expect(row).toHaveTextContent(block.title);
 });
