@@ -8,7 +8,7 @@ import { openSearch } from "./search/search";
 
 /** The pages, along the left; at the foot of a phone. */
 export function Rail() {
-  const page = useView((s) => s.page);
+  const page = useView((s) => (s.lost ? undefined : s.page));
   const role = useMe((s) => s.me?.role);
   const offered = Object.entries(PAGES).filter(([id]) => isOffered(id as PageName, role));
   return (

@@ -20,9 +20,10 @@ export function EquationIndex() {
   const listed = families.flatMap((family) => family.entries);
   const errata = listed.filter(({ equation }) => equation.printed).length;
   const section = useRef<HTMLElement>(null);
+  const isFilled = shown.length > 0;
   useEffect(() => {
-    if (useView.getState().item) section.current?.scrollIntoView();
-  }, []);
+    if (isFilled && useView.getState().item) section.current?.scrollIntoView();
+  }, [isFilled]);
   return (
     <section ref={section} className={styles.index} aria-label="Equations">
       <header className={styles.head}>

@@ -31,7 +31,7 @@ async function open(asked = "") {
   connect(bench);
   const { user } = mount(<Page />);
   await user.keyboard("{Control>}k{/Control}");
-  const field = await screen.findByRole("textbox", { name: "Search" });
+  const field = within(await screen.findByRole("dialog", { name: "Search" })).getByRole("textbox", { name: "Search" });
   if (asked) await user.type(field, asked);
   return { user, option: (name: RegExp) => screen.findByRole("button", { name }) };
 }

@@ -2,6 +2,7 @@ import { createSpotlight, Spotlight } from "@mantine/spotlight";
 import { IconSearch } from "@tabler/icons-react";
 import { useState } from "react";
 import { find } from "./find";
+import styles from "./search.module.css";
 import { useEntries } from "./use-entries";
 
 const [store, spotlight] = createSpotlight();
@@ -13,7 +14,16 @@ export const openSearch = spotlight.open;
 export function Search() {
   const [asked, setAsked] = useState("");
   return (
-    <Spotlight.Root store={store} shortcut={null} query={asked} onQueryChange={setAsked} scrollable maxHeight="70vh">
+    <Spotlight.Root
+      store={store}
+      shortcut={null}
+      query={asked}
+      onQueryChange={setAsked}
+      attributes={{ content: { "aria-label": "Search" } }}
+      overlayProps={{ blur: 0 }}
+      scrollable
+      maxHeight="70vh"
+    >
       <Spotlight.Search
         aria-label="Search"
         placeholder="Panel, scenario, equation, device, setting or place"
@@ -32,7 +42,7 @@ function Found({ asked }: { asked: string }) {
   return groups.map(([group, entries]) => (
     <Spotlight.ActionsGroup key={group} label={group} role="group" aria-label={group}>
       {entries.map(({ key, title, about, open }) => (
-        <Spotlight.Action key={key} label={title} description={about} onClick={open} />
+        <Spotlight.Action key={key} className={styles.action} label={title} description={about} onClick={open} />
       ))}
     </Spotlight.ActionsGroup>
   ));
