@@ -19,7 +19,7 @@ interface LinkBoxProps {
 const NEEDS_TOKEN = "People who open it must enter the access token of this server once.";
 
 /** A link in full, to be copied or read from the screen by a phone. */
-export function LinkBox({ path, what, remark = NEEDS_TOKEN, onCopy }: LinkBoxProps) {
+export function LinkBox({ path, what, remark, onCopy }: LinkBoxProps) {
   const address = new URL(`./${path}`, document.baseURI).href;
   const [copied, setCopied] = useState("");
 
@@ -46,7 +46,7 @@ export function LinkBox({ path, what, remark = NEEDS_TOKEN, onCopy }: LinkBoxPro
       <div className={styles.qr}>
         <QrCode address={address} />
       </div>
-      <p className={styles.remark}>{remark}</p>
+      <p className={styles.remark}>{remark || NEEDS_TOKEN}</p>
     </div>
   );
 }

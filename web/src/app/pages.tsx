@@ -9,7 +9,7 @@ import {
 import type { ComponentType, ReactNode } from "react";
 import { may, type Right } from "../api/me";
 import type { Me } from "../api/types";
-import type { PageName } from "../bench/view-store";
+import type { PageName } from "../bench/places";
 import { ClassPage } from "../class/class-page";
 import { Designer } from "../designer/designer";
 import { GalleryPage } from "../gallery/gallery-page";
@@ -25,6 +25,8 @@ export interface PageKind {
   key: string;
   /** What one must be allowed for the page to be there. */
   needs?: Right;
+  /** The page whose tab it is. */
+  tabOf?: PageName;
   component: ComponentType;
 }
 
@@ -59,6 +61,14 @@ export const PAGES: Record<PageName, PageKind> = {
     title: "Headless runs, campaigns, and the scores of the diagnosers",
     icon: <IconChartHistogram size={ICON} />,
     key: "u",
+    component: Runs,
+  },
+  benchmark: {
+    name: "Scores",
+    title: "Scores of the diagnosers on public cases",
+    icon: <IconChartHistogram size={ICON} />,
+    key: "i",
+    tabOf: "runs",
     component: Runs,
   },
   designer: {

@@ -77,9 +77,9 @@ it("gives a student who looks at a bench that is shown to all nothing that chang
 });
 
 it.each([
-  ["teacher", ["Bench", "Class", "Gallery", "Runs", "Design", "Theory"]],
-  ["student", ["Bench", "Gallery", "Runs", "Design", "Theory"]],
-  ["watcher", ["Bench", "Gallery", "Runs", "Design", "Theory"]],
+  ["teacher", ["Search", "Bench", "Class", "Gallery", "Runs", "Design", "Theory"]],
+  ["student", ["Search", "Bench", "Gallery", "Runs", "Design", "Theory"]],
+  ["watcher", ["Search", "Bench", "Gallery", "Runs", "Design", "Theory"]],
 ] as const)("offers a %s the pages there are for them", (role, names) => {
   be(role);
   mount(<Rail />);
@@ -90,7 +90,7 @@ it.each([
 it("goes to a page that is pressed", async () => {
   const { user } = mount(<Rail />);
   await user.click(screen.getByRole("button", { name: "Runs" }));
-  expect(window.location.search).toBe("?page=runs");
+  expect(window.location.pathname).toBe("/runs");
   expect(screen.getByRole("button", { current: "page" })).toHaveTextContent("Runs");
 });
 

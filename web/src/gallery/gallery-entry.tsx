@@ -5,6 +5,7 @@ import { api } from "../api/api";
 import { useMay } from "../api/me";
 import type { GalleryCard } from "../api/types";
 import { openOwn } from "../bench/open-bench";
+import { PlaceLink } from "../bench/page-head";
 import { showError } from "../bench/send";
 import { setPage } from "../bench/view-store";
 import { useOnScreen } from "../ui/on-screen";
@@ -70,7 +71,9 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
         )}
       </div>
       <div className={styles.words}>
-        <h2>{title}</h2>
+        <h2>
+          <PlaceLink place={{ page: "gallery", item: card.id }}>{title}</PlaceLink>
+        </h2>
         <small>
           {card.id}
           {card.source && ` · ${card.source}`}

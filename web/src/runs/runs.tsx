@@ -1,5 +1,5 @@
 import { useMay } from "../api/me";
-import { showTab, useView } from "../bench/view-store";
+import { setPage, useView } from "../bench/view-store";
 import { BenchmarkPage } from "../benchmark/benchmark-page";
 import { PageTabs } from "../ui/page-tabs";
 import { RunsPage } from "./runs-page";
@@ -7,8 +7,9 @@ import { RunsPage } from "./runs-page";
 /** Headless runs and campaigns, and the scores of the diagnosers; without the right to start a run, the scores alone. */
 export function Runs() {
   const teaches = useMay("teach");
-  const tab = useView((s) => s.tab);
-  const scores = { title: "Scores", body: <BenchmarkPage /> };
+  const page = useView((s) => s.page);
+  const benchmark = { title: "Scores", body: <BenchmarkPage /> };
   const runs = { title: "Runs and campaigns", body: <RunsPage /> };
-  return <PageTabs title="Runs" tabs={teaches ? { runs, scores } : { scores }} shown={tab} onShow={showTab} />;
+  const tabs = teaches ? { runs, benchmark } : { benchmark };
+  return <PageTabs title="Runs" tabs={tabs} shown={page} onShow={(tab) => setPage(tab as keyof typeof tabs)} />;
 }

@@ -1,5 +1,6 @@
 import type { ReactNode } from "react";
-import { showTab, useView } from "../bench/view-store";
+import { PageHead } from "../bench/page-head";
+import { openPlace, useView } from "../bench/view-store";
 import { PageTabs } from "../ui/page-tabs";
 import { EquationIndex } from "./equation-index";
 import { Excitation } from "./excitation";
@@ -7,17 +8,35 @@ import { Instability } from "./instability";
 import { PositiveReal } from "./positive-real";
 import styles from "./theory.module.css";
 
-const paper = (body: ReactNode) => <div className={styles.page}>{body}</div>;
+const paper = (title: string, body: ReactNode) => ({
+  title,
+  body: (
+    <div className={styles.page}>
+      <header className={styles.top}>
+        <PageHead name="Theory" item={title} heading={title} />
+      </header>
+      {body}
+    </div>
+  ),
+});
 
+const EQUATIONS = "equations";
 const TABS = {
-  equations: { title: "Equations", body: paper(<EquationIndex />) },
-  "positive-real": { title: "Positive real", body: paper(<PositiveReal />) },
-  excitation: { title: "Excitation", body: paper(<Excitation />) },
-  stability: { title: "Stability", body: paper(<Instability />) },
+  [EQUATIONS]: paper("Equations", <EquationIndex />),
+  "positive-real": paper("Positive real", <PositiveReal />),
+  excitation: paper("Excitation", <Excitation />),
+  stability: paper("Stability", <Instability />),
 };
 
-/** What can be said of a system before anything is run: every equation with its errata, and appendices A and B. */
+/** Every equation with its errata, and calculators for appendices A and B; a place of no tab finds equations by its words. */
 export function Theory() {
-  const tab = useView((s) => s.tab);
-  return <PageTabs title="Theory" tabs={TABS} shown={tab} onShow={showTab} />;
+  const item = useView((s) => s.item);
+  return (
+    <PageTabs
+      title="Theory"
+      tabs={TABS}
+      shown={item in TABS ? item : EQUATIONS}
+      onShow={(tab) => openPlace("theory", tab === EQUATIONS ? "" : tab)}
+    />
+  );
 }

@@ -1,14 +1,15 @@
-/** Put a text on the clipboard. */
+/** Copy a text; without TLS a browser has no clipboard for pages but on this machine, and copies what is selected. */
 export async function copyText(text: string): Promise<void> {
   try {
     await navigator.clipboard.writeText(text);
   } catch {
-    // without TLS a browser has no clipboard for pages but on this machine
+    const { activeElement } = document;
     const field = document.createElement("textarea");
     field.value = text;
-    document.body.append(field);
+    (activeElement?.parentElement ?? document.body).append(field); // a dialog keeps the focus within it
     field.select();
     document.execCommand("copy");
     field.remove();
+    if (activeElement instanceof HTMLElement) activeElement.focus();
   }
 }

@@ -30,7 +30,6 @@ export function PageTabs({
         classNames={{ root: styles.tabs, list: styles.list, panel: styles.panel }}
       >
         <header className={styles.top}>
-          <h1>{title}</h1>
           <Tabs.List aria-label={title}>
             {Object.entries(tabs).map(([id, tab]) => (
               <Tabs.Tab key={id} value={id}>
