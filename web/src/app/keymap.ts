@@ -5,7 +5,6 @@ import { openEditor } from "../bench/edit-unit";
 import { lectureRuns } from "../bench/lecture";
 import { toggleNarrator } from "../bench/narrator";
 import type { PageName } from "../bench/places";
-import { askCue } from "../bench/vote";
 import { askLatest } from "../bench/why";
 import { setLayout } from "./layouts";
 import { LECTURE_KEYS } from "./lecture/lecture-keys";

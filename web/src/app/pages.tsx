@@ -67,7 +67,7 @@ export const PAGES: Record<PageName, PageKind> = {
     name: "Scores",
     title: "Scores of the diagnosers on public cases",
     icon: <IconChartHistogram size={ICON} />,
-    key: "i",
+    key: "j",
     tabOf: "runs",
     component: Runs,
   },

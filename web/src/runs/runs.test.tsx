@@ -1,6 +1,6 @@
 import { screen } from "@testing-library/react";
 import { beforeEach, expect, it } from "vitest";
-import { pageInAddress, setPage, tabInAddress, useView } from "../bench/view-store";
+import { showAddress, useView } from "../bench/view-store";
 import { server } from "../testing/fake-server";
 import { recordedAnswer } from "../testing/recorded";
 import { be, mount } from "../testing/render";
@@ -19,30 +19,25 @@ beforeEach(() => {
 /** The page of an address. */
 function open(query: string) {
   window.history.replaceState(null, "", query);
-  useView.setState({ page: pageInAddress(), tab: tabInAddress() });
+  showAddress();
   return mount(<Runs />);
 }
 const tabs = () => screen.getAllByRole("tab").map((tab) => tab.textContent);
 
 it("has the runs in front and the scores a tab away; the address names the tab", async () => {
-  const { user } = open("/?page=runs");
+  const { user } = open("/runs");
   expect(await screen.findByText("Nothing has been run yet")).toBeVisible();
   await user.click(screen.getByRole("tab", { name: "Scores" }));
   expect(await screen.findByRole("heading", { name: "Benchmark" })).toBeVisible();
-  expect(window.location.search).toBe("?page=runs&tab=scores");
+  expect(window.location.pathname).toBe("/scores");
   expect(screen.queryByText("Nothing has been run yet")).not.toBeInTheDocument();
 });
 
-it.each(["/?page=benchmark", "/?page=scores", "/?page=runs&tab=scores"])("opens %s at the scores", async (query) => {
+it.each(["/?page=benchmark", "/scores"])("opens %s at the scores", async (query) => {
   open(query);
-  expect(useView.getState().page).toBe("runs");
+  expect(useView.getState().page).toBe("benchmark");
   expect(await screen.findByRole("heading", { name: "Benchmark" })).toBeVisible();
   expect(screen.getByRole("tab", { selected: true })).toHaveTextContent("Scores");
-});
-
-it("has the runs in front where the address names a tab of no page", async () => {
-  open("/?page=runs&tab=teapot");
-  expect(await screen.findByText("Nothing has been run yet")).toBeVisible();
 });
 
 it.each(["student", "watcher"] as const)("has the scores alone for a %s, and asks for no run", async (role) => {
@@ -51,11 +46,4 @@ it.each(["student", "watcher"] as const)("has the scores alone for a %s, and ask
   expect(tabs()).toEqual(["Scores"]);
   expect(await screen.findByRole("heading", { name: "Benchmark" })).toBeVisible();
   expect(server.asked("GET", "/runs")).toEqual([]);
-});
-
-it("forgets the tab when another page is opened", () => {
-  open("/?page=benchmark");
-  setPage("theory");
-  expect(window.location.search).toBe("?page=theory");
-  expect(useView.getState().tab).toBeUndefined();
 });

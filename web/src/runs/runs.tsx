@@ -1,4 +1,5 @@
 import { useMay } from "../api/me";
+import type { PageName } from "../bench/places";
 import { setPage, useView } from "../bench/view-store";
 import { BenchmarkPage } from "../benchmark/benchmark-page";
 import { PageTabs } from "../ui/page-tabs";
@@ -10,6 +11,6 @@ export function Runs() {
   const page = useView((s) => s.page);
   const benchmark = { title: "Scores", body: <BenchmarkPage /> };
   const runs = { title: "Runs and campaigns", body: <RunsPage /> };
-  const tabs = teaches ? { runs, benchmark } : { benchmark };
-  return <PageTabs title="Runs" tabs={tabs} shown={page} onShow={(tab) => setPage(tab as keyof typeof tabs)} />;
+  const tabs: Record<string, typeof runs> = teaches ? { runs, benchmark } : { benchmark };
+  return <PageTabs title="Runs" tabs={tabs} shown={page} onShow={(tab) => setPage(tab as PageName)} />;
 }

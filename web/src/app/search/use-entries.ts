@@ -2,7 +2,6 @@ import { useMemo } from "react";
 import { useShallow } from "zustand/react/shallow";
 import { api } from "../../api/api";
 import { useMe } from "../../api/me";
-import { micro } from "../../api/micro";
 import { useAnswer } from "../../api/queries";
 import { useCatalog } from "../../api/use-catalog";
 import { addPanel, showPanel, useDock } from "../../bench/dock";
@@ -51,7 +50,7 @@ export function useEntries(): Entry[] {
       ({ id, title }): Entry => ({
         group: "Scenarios",
         key: id,
-        title: micro(title),
+        title: title,
         about: id,
         open: () => openPlace("gallery", id),
       }),
@@ -60,7 +59,7 @@ export function useEntries(): Entry[] {
       ({ id, title, source }): Entry => ({
         group: "Devices",
         key: id,
-        title: micro(title) || id,
+        title: title || id,
         about: source || id,
         words: id,
         open: () => openPlace("designer", id),
