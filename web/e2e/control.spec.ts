@@ -37,6 +37,14 @@ test("a controller is switched, keys act after lists and fields, a wrong value i
   await page.keyboard.press("[");
   await expect(scale.getByRole("button", { name: /^2\.00/ })).toBeVisible();
 
+  const strip = page.getByRole("region", { name: "Before and after" }).first();
+  await expect(strip).toContainText(/Switch to Direct MRAC at [\d.]+\sms.* RMS .* → .*(larger|smaller|unchanged)/);
+  await expect(strip).not.toContainText("still settling");
+  const [slide] = await Promise.all([page.waitForEvent("download"), page.keyboard.press("s")]);
+  expect(slide.suggestedFilename()).toMatch(/^first-look-.*mrac.*-slide\.png$/i);
+  await strip.getByRole("button", { name: "Dismiss" }).click();
+  await expect(strip).toBeHidden();
+
   await page.getByRole("button", { name: /Sensor ?Ideal/ }).click();
   const noise = page.getByRole("textbox", { name: /^Noise, µm/ });
   await noise.fill("0.2");

@@ -1,7 +1,9 @@
 import { MultiSelect, NativeSelect, Select, TextInput } from "@mantine/core";
 import { screen } from "@testing-library/react";
 import { expect, it, vi } from "vitest";
+import { useAnnouncements } from "../bench/announce";
 import { useView } from "../bench/view-store";
+import { server } from "../testing/fake-server";
 import { connect, type FakeTransport } from "../testing/fake-transport";
 import { recordedBench } from "../testing/recorded";
 import { be, mount } from "../testing/render";
@@ -131,6 +133,16 @@ it("no key of a watcher changes the bench", async () => {
   await user.keyboard(" .,][[Rh>cv{Control>}z{/Control}{Control>}y{/Control}");
   expect(board.commands).toEqual([]);
   expect(useView.getState().dialog).toBe("none");
+});
+
+it("X saves what happened as a scenario, and S waits for a change to make a slide of", async () => {
+  server.on("GET", "/benches/:id/scenario", "# a scenario");
+  const { user } = mountKeys();
+  await user.keyboard("s");
+  expect(server.requests).toEqual([]);
+  expect(useAnnouncements.getState().polite).toBe("There is nothing to compare: nothing has changed.");
+  await user.keyboard("x");
+  expect(server.asked("GET", "/benches/first-look/scenario")).toHaveLength(1);
 });
 
 it("a student has no key to share, fork or keep", async () => {

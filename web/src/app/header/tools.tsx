@@ -81,7 +81,7 @@ export function Tools() {
       needs: "drive",
       run: actions.record,
     },
-    { label: "Save what happened as a scenario (S)", icon: <IconDeviceFloppy size={19} />, run: actions.saveScenario },
+    { label: "Save what happened as a scenario (X)", icon: <IconDeviceFloppy size={19} />, run: actions.saveScenario },
     {
       label: "Fork: a copy of this bench from now on (F)",
       icon: <IconGitFork size={19} />,
