@@ -56,7 +56,7 @@ export function BeforeAfter({ change, isHidden, figures, traces, plot }: BeforeA
       <p>
         <b>{words}</b> at {formatMoment(change.tick * dtMs)}
       </p>
-      {isHidden ? <p>{HIDDEN}</p> : <ComparedList compared={compared} />}
+      {isHidden ? <p className={styles.figures}>{HIDDEN}</p> : <ComparedList compared={compared} />}
       {canSlide && (
         <Button size="compact-xs" variant="default" title="This picture as one slide, 16:9 (S)" onClick={slide}>
           Slide
@@ -79,13 +79,13 @@ export function BeforeAfter({ change, isHidden, figures, traces, plot }: BeforeA
 function ComparedList({ compared }: { compared: Compared[] }) {
   const scheme = useScheme();
   return (
-    <ul>
+    <ul className={styles.figures}>
       {compared.map(({ trace, before, after, ratio, isSettled }) => (
         <li key={trace.name} title="RMS over whole periods of the drive">
-          <SignalName name={trace.name} /> RMS <TraceSwatch colour={faded(trace.colour, scheme)} dash={trace.dash} />
-          {before} → <TraceSwatch colour={trace.colour} dash={trace.dash} />
-          {after} <b>{ratio}</b>
-          {!isSettled && <i>still settling</i>}
+          <SignalName name={trace.name} /> <b>{isSettled || !ratio ? ratio : `${ratio}, still settling`}</b>
+          <TraceSwatch colour={faded(trace.colour, scheme)} dash={trace.dash} />
+          before {before} → <TraceSwatch colour={trace.colour} dash={trace.dash} />
+          now {after} RMS
         </li>
       ))}
     </ul>

@@ -26,7 +26,7 @@ it("says a slider from the value before it moved to the value at which it rests"
   const path = "reference.amplitude_v";
   const first: Partial<LogEntry> = { kind: "set", old: { [path]: 10 }, new: { [path]: 9 } };
   const last: Partial<LogEntry> = { kind: "set", old: { [path]: 9 }, new: { [path]: 5 } };
-  expect(say(first, last)).toBe("Sine: amplitude 10 V → 5 V");
+  expect(say(first, last)).toBe("Reference: amplitude 10 V → 5 V");
 });
 
 it.each([

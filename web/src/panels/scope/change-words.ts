@@ -32,7 +32,9 @@ function setWords(first: LogEntry, last: LogEntry, bench: Bench | undefined): st
   const list = bench ? instances(bench) : [];
   const said = Object.keys(now).map((path) => {
     const { block, parameter, unit } = namedPath(path, list, cardOf);
-    return `${block}: ${parameter.toLowerCase()} ${valueText(before[path], unit)} → ${valueText(now[path], unit)}`;
+    const head = path.slice(0, path.lastIndexOf("."));
+    const place = head.includes(".") ? block : (list.find((one) => one.path === head)?.title ?? block);
+    return `${place}: ${parameter.toLowerCase()} ${valueText(before[path], unit)} → ${valueText(now[path], unit)}`;
   });
   return said.join(", ");
 }

@@ -4,6 +4,7 @@ import type { PlotTrace } from "./paint-scope";
 import type { Figures } from "./use-figures";
 
 const DIGITS = 3;
+const NOISE = 0.05;
 
 /** The figures of a trace before and after a change, in words. */
 export interface Compared {
@@ -12,7 +13,7 @@ export interface Compared {
   after: string;
   ratio: string;
   isSettled: boolean;
-  /** How far the ratio is from 1: the natural logarithm, without its sign. */
+  /** How far the ratio is from 1: its natural logarithm without its sign, in steps that noise seldom passes. */
   strength: number;
 }
 
@@ -20,7 +21,7 @@ export interface Compared {
 export function comparedOf(traces: readonly PlotTrace[], { before, after, settled }: Figures): Compared[] {
   const all = traces.map((trace, i): Compared => {
     const now = after?.[i] ?? Number.NaN;
-    const strength = Math.abs(Math.log(now / before[i]));
+    const strength = Math.round(Math.abs(Math.log(now / before[i])) / NOISE) * NOISE;
     return {
       trace,
       before: formatSi(before[i], trace.unit, DIGITS),

@@ -4,7 +4,7 @@ import { useBench } from "../../stream/bench-store";
 import type { PanelFrame } from "../../stream/panel-frame";
 import { useFeed } from "../../stream/use-feed";
 import type { Subscription } from "../../stream/wire";
-import { agree, lookAt, rms, windowTicks } from "./whole-periods";
+import { hasSettled, lookAt, rms, windowTicks } from "./whole-periods";
 
 /** The root mean squares of the signals of a scope around a change. */
 export interface Figures {
@@ -42,17 +42,17 @@ export function useFigures(signals: string[], change: Change | undefined): Figur
       return setKnown({ of: change, signals, figures: { before } });
     }
     if (found && frame.startTick >= change.since)
-      setKnown({ of: change, signals, figures: { before: found.before, ...newest(frame, period) } });
+      setKnown({ of: change, signals, figures: newest(frame, found.before, period) });
   });
   return found;
 }
 
 /** The figures of the newest window, and whether those of the window before agree. */
-function newest(frame: PanelFrame, period: number | null | undefined): Pick<Figures, "after" | "settled"> {
+function newest(frame: PanelFrame, before: number[], period: number | null | undefined): Figures {
   const ticks = windowTicks(period, frame.columns);
   const all = Array.from({ length: frame.signals }, (_, i) => i);
   const after = all.map((i) => rms(frame, i, frame.columns - ticks));
   const hasTwo = frame.columns >= 2 * ticks;
-  const settled = all.map((i) => hasTwo && agree(rms(frame, i, 0, ticks), after[i]));
-  return { after, settled };
+  const settled = all.map((i) => hasTwo && hasSettled(before[i], rms(frame, i, 0, ticks), after[i]));
+  return { before, after, settled };
 }

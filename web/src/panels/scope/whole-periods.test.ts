@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import type { PanelFrame } from "../../stream/panel-frame";
-import { agree, lookAt, rms, windowTicks } from "./whole-periods";
+import { hasSettled, lookAt, rms, windowTicks } from "./whole-periods";
 
 const frameOf = (value: (tick: number) => number, columns: number) => {
   const samples = Array.from({ length: columns }, (_, tick) => value(tick));
@@ -35,7 +35,11 @@ it("looks after the first period, and ever less often", () => {
   }
 });
 
-it("calls two windows settled that differ by a twentieth at most", () => {
-  expect(agree(1.04, 1)).toBe(true);
-  expect(agree(1.06, 1)).toBe(false);
+it.each([
+  [1, 1.04, 1, true],
+  [1, 1.06, 1, false],
+  [200, 15, 11.5, true],
+  [200, 16, 11.5, false],
+])("with %d before the change and %d, then %d after it, settled is %s", (before, earlier, last, settled) => {
+  expect(hasSettled(before, earlier, last)).toBe(settled);
 });

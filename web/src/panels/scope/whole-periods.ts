@@ -7,8 +7,9 @@ const TICKS = 500;
 const MOST = 2048;
 /** Between one look at the figures and the next, in parts of the time since the change. */
 const STEP = 1.15;
-/** Settled: two windows in succession differ by no more, as a share of the later. */
+/** Settled: two windows in succession differ by no more than these shares of the later one, or of the figure before. */
 const SHARE = 0.05;
+const SHARE_BEFORE = 0.02;
 
 /** How many ticks a figure is taken over when so many are there: whole periods of the drive. */
 export function windowTicks(period: number | null | undefined, there: number): number {
@@ -34,5 +35,6 @@ export function rms(frame: PanelFrame, signal: number, from = 0, until = frame.c
   return Math.sqrt(square / (until - from));
 }
 
-/** Whether a figure has settled: the last window agrees with the window before it. */
-export const agree = (before: number, last: number): boolean => Math.abs(last - before) <= SHARE * last;
+/** Whether a figure has settled: two windows in succession agree, as closely as the figure before the change matters. */
+export const hasSettled = (before: number, earlier: number, last: number): boolean =>
+  Math.abs(last - earlier) <= Math.max(SHARE * last, SHARE_BEFORE * before);
