@@ -163,8 +163,8 @@ it("keeps the picture as a slide with the words, the ghost and the figures", asy
     expect.arrayContaining([
       "Switch to Direct MRAC",
       "plant displacement, RMS",
-      "1.41 µm →",
-      "354 nm",
+      "before 1.41 µm",
+      "now 354 nm",
       "4.0 times smaller",
       "plant displacement (before)",
     ]),
