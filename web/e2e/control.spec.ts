@@ -22,7 +22,9 @@ test("a controller is switched, keys act after lists and fields, a wrong value i
   await page.getByRole("option", { name: /^Direct MRAC Direct model/ }).click();
   const strip = page.getByRole("region", { name: "Before and after" }).first();
   await server.advance(8);
-  await expect(strip).toContainText(/Switch to Direct MRAC at [\d.]+\sms.*(larger|smaller|unchanged)before .* → now .* RMS/);
+  await expect(strip).toContainText(
+    /Switch to Direct MRAC at [\d.]+\sms.*(larger|smaller|unchanged)before .* → now .* RMS/,
+  );
   await expect(strip).not.toContainText("still settling");
   const [slide] = await Promise.all([page.waitForEvent("download"), page.keyboard.press("s")]);
   expect(slide.suggestedFilename()).toMatch(/^first-look-.*mrac.*-slide\.png$/i);

@@ -7,6 +7,7 @@ import { server } from "../testing/fake-server";
 import { connect, type FakeTransport } from "../testing/fake-transport";
 import { recordedBench } from "../testing/recorded";
 import { be, mount } from "../testing/render";
+import * as files from "../ui/save-file";
 import { setPresent } from "./present";
 import { useKeys } from "./use-keys";
 
@@ -137,12 +138,13 @@ it("no key of a watcher changes the bench", async () => {
 
 it("X saves what happened as a scenario, and S waits for a change to make a slide of", async () => {
   server.on("GET", "/benches/:id/scenario", "# a scenario");
+  const saved = vi.spyOn(files, "saveFile").mockReturnValue();
   const { user } = mountKeys();
   await user.keyboard("s");
   expect(server.requests).toEqual([]);
   expect(useAnnouncements.getState().polite).toBe("There is nothing to compare: nothing has changed.");
   await user.keyboard("x");
-  expect(server.asked("GET", "/benches/first-look/scenario")).toHaveLength(1);
+  await vi.waitFor(() => expect(saved).toHaveBeenCalledWith("first-look-2000.toml", expect.any(Blob)));
 });
 
 it("a student has no key to share, fork or keep", async () => {
