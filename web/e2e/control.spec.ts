@@ -17,8 +17,19 @@ test("a controller is switched, keys act after lists and fields, a wrong value i
   await page.getByRole("textbox", { name: "Search equations" }).fill("t");
   await page.keyboard.press("Escape");
   await page.keyboard.press("b");
+  await server.advance(3); // for a before
   await controller.click();
   await page.getByRole("option", { name: /^Direct MRAC Direct model/ }).click();
+  const strip = page.getByRole("region", { name: "Before and after" }).first();
+  await server.advance(8);
+  await expect(strip).toContainText(
+    /Switch to Direct MRAC at [\d.]+\sms.*(larger|smaller|unchanged)before .* → now .* RMS/,
+  );
+  await expect(strip).not.toContainText("still settling");
+  const [slide] = await Promise.all([page.waitForEvent("download"), page.keyboard.press("s")]);
+  expect(slide.suggestedFilename()).toMatch(/^first-look-.*mrac.*-slide\.png$/i);
+  await strip.getByRole("button", { name: "Dismiss" }).click();
+  await expect(strip).toBeHidden();
   await page.keyboard.press("Space");
   await expect(state).toHaveText("paused");
   const tick = async () => (await server.ask<{ tick: number }>("GET", `/benches/${benchOf(page)}`)).tick;

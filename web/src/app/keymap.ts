@@ -1,5 +1,6 @@
 import { may, type Right } from "../api/me";
 import { actions } from "../bench/actions";
+import { makeSlide } from "../bench/change";
 import { focusNextGroup } from "../bench/dock";
 import { openEditor } from "../bench/edit-unit";
 import { lectureRuns } from "../bench/lecture";
@@ -61,7 +62,7 @@ const KEYS: KeyBinding[] = [
   },
   { key: "h", shown: "H", does: "heal all faults", group: "Bench", needs: "drive", run: actions.healAll },
   { key: "c", shown: "C", does: "next controller", group: "Bench", needs: "drive", run: actions.nextController },
-  { key: "s", shown: "S", does: "save as a scenario", group: "Bench", run: actions.saveScenario },
+  { key: "x", shown: "X", does: "save what happened as a scenario", group: "Bench", run: actions.saveScenario },
   { key: "S", shown: "Shift S", does: "share by a link", group: "Bench", needs: "teach", run: actions.share },
   { key: "v", shown: "V", does: "record, and stop", group: "Bench", needs: "drive", run: actions.record },
   { key: "f", shown: "F", does: "fork", group: "Bench", needs: "teach", run: actions.fork },
@@ -99,6 +100,7 @@ const KEYS: KeyBinding[] = [
   { key: "1", shown: "1", does: "lecture layout", group: "Look", run: () => setLayout("lecture") },
   { key: "2", shown: "2", does: "lab layout", group: "Look", run: () => setLayout("lab") },
   { key: "3", shown: "3", does: "research layout", group: "Look", run: () => setLayout("research") },
+  { key: "s", shown: "S", does: "slide of before and after the last change", group: "Look", run: makeSlide },
   { key: "w", shown: "W", does: "why the newest verdict", group: "Look", run: askLatest },
   { key: "p", shown: "P", does: "present: panels only, on the whole screen", group: "Look", run: togglePresent },
   { key: "q", shown: "Q", does: "narrator on or quiet", group: "Look", run: toggleNarrator },

@@ -1,10 +1,13 @@
 import { MultiSelect, NativeSelect, Select, TextInput } from "@mantine/core";
 import { screen } from "@testing-library/react";
 import { expect, it, vi } from "vitest";
+import { useAnnouncements } from "../bench/announce";
 import { useView } from "../bench/view-store";
+import { server } from "../testing/fake-server";
 import { connect, type FakeTransport } from "../testing/fake-transport";
 import { recordedBench } from "../testing/recorded";
 import { be, mount } from "../testing/render";
+import * as files from "../ui/save-file";
 import { setPresent } from "./present";
 import { useKeys } from "./use-keys";
 
@@ -131,6 +134,17 @@ it("no key of a watcher changes the bench", async () => {
   await user.keyboard(" .,][[Rh>cv{Control>}z{/Control}{Control>}y{/Control}");
   expect(board.commands).toEqual([]);
   expect(useView.getState().dialog).toBe("none");
+});
+
+it("X saves what happened as a scenario, and S waits for a change to make a slide of", async () => {
+  server.on("GET", "/benches/:id/scenario", "# a scenario");
+  const saved = vi.spyOn(files, "saveFile").mockReturnValue();
+  const { user } = mountKeys();
+  await user.keyboard("s");
+  expect(server.requests).toEqual([]);
+  expect(useAnnouncements.getState().polite).toBe("There is nothing to compare: nothing has changed.");
+  await user.keyboard("x");
+  await vi.waitFor(() => expect(saved).toHaveBeenCalledWith("first-look-2000.toml", expect.any(Blob)));
 });
 
 it("a student has no key to share, fork or keep", async () => {

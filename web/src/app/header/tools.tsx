@@ -45,7 +45,7 @@ export function Tools() {
       needs: "drive",
       run: actions.record,
     },
-    { label: "Save this run as a scenario (S)", run: actions.saveScenario },
+    { label: "Save this run as a scenario (X)", run: actions.saveScenario },
     {
       label: "Fork: a copy of this bench from now on (F)",
       needs: "teach",

@@ -1,22 +1,15 @@
 import type { Claim, ClaimList } from "../../api/types";
 import { placeIn } from "../../bench/printed";
-import { paintLegend } from "../../picture/legend";
 import type { Pen } from "../../picture/pen";
 import { SvgPen } from "../../picture/svg-pen";
 import { paintRule } from "../../picture/traces";
 import { formatNumber } from "../../ui/format";
-import { CANVAS, fontFor } from "../../ui/palette";
-import { type ScopeShown, scopePicture } from "../scope/paint-scope";
+import type { ScopeShown } from "../scope/paint-scope";
+import { EDGE, HEIGHT, INK, paintFoot, paintTraces, WIDTH, wrapped, write } from "../scope/slide-page";
 import { claimWords, stateWords } from "./claim-words";
 
-/** 16:9. */
-const WIDTH = 1280;
-const HEIGHT = 720;
-const EDGE = 40;
 const SIDE = 330;
-const INK = CANVAS.light;
 const GOOD = "#0e7a4b";
-const LETTERS = 20;
 
 /** One claim as a slide on light paper, its letters to be read from the last row. */
 export function slideSvg(claim: Claim, list: ClaimList, shown: ScopeShown | undefined): string {
@@ -66,25 +59,10 @@ export function slideSvg(claim: Claim, list: ClaimList, shown: ScopeShown | unde
   }
   if (claim.verdict) write(pen, claim.verdict, left, y + 6, 24, 650, room, inkOf(claim.state));
 
-  paintRule(pen, [EDGE, HEIGHT - 40], [WIDTH - EDGE, HEIGHT - 40], { colour: INK.grid, width: 1 });
-  const foot = `CombBench ${list.version} · ${list.scenario_id} · seed ${list.seed} · ${formatNumber(list.tick, 0)} ticks`;
-  write(pen, foot, EDGE, HEIGHT - 20, 15, 450, WIDTH - 2 * EDGE, INK.muted);
+  const ticks = formatNumber(list.tick, 0);
+  paintFoot(pen, `CombBench ${list.version} · ${list.scenario_id} · seed ${list.seed} · ${ticks} ticks`);
   return pen.svg(WIDTH, HEIGHT, title);
 }
-
-/** The traces with the printed marks under them, by the painter of scopes. */
-function paintTraces(pen: Pen, shown: ScopeShown, { left, top, right, bottom }: typeof PLACE): void {
-  const look = { scheme: "light" as const, fontSize: LETTERS };
-  const picture = scopePicture(shown, "", "");
-  pen.save();
-  pen.translate(left, top);
-  const below = paintLegend(pen, picture.legend ?? [], 0, 10, right - left, LETTERS - 2) + 12;
-  pen.translate(0, below);
-  const box = { width: right - left, height: bottom - top - below - 6 };
-  picture.paint(pen, box, look);
-  pen.restore();
-}
-const PLACE = { left: 0, top: 0, right: 0, bottom: 0 };
 
 const inkOf = (state: Claim["state"]) => (state === "holds" ? GOOD : state === "fails" ? INK.alarm : INK.muted);
 
@@ -104,35 +82,6 @@ function paintMark(pen: Pen, state: Claim["state"], x: number, y: number): void 
     pen.arc(x, y, 18, 0, 2 * Math.PI);
     pen.stroke();
   }
-}
-
-function write(
-  pen: Pen,
-  text: string,
-  x: number,
-  y: number,
-  size: number,
-  weight: number,
-  room: number,
-  colour: string = INK.text,
-): void {
-  pen.font = fontFor(size, 1, weight);
-  pen.textAlign = "left";
-  pen.textBaseline = "middle";
-  pen.fillStyle = colour;
-  pen.fillText(text, x, y, room);
-}
-
-/** A text in lines that have room. */
-export function wrapped(pen: Pen, text: string, size: number, room: number): string[] {
-  pen.font = fontFor(size, 1, 650);
-  const lines: string[] = [];
-  for (const word of text.split(" ")) {
-    const longer = lines.length > 0 ? `${lines[lines.length - 1]} ${word}` : word;
-    if (lines.length > 0 && pen.measureText(longer).width <= room) lines[lines.length - 1] = longer;
-    else lines.push(word);
-  }
-  return lines;
 }
 
 const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);

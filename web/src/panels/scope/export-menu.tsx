@@ -4,7 +4,7 @@ import { ticketed } from "../../api/launch";
 import { PictureMenu } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import type { CaptureMark } from "../../stream/wire";
-import { scopePicture } from "./paint-scope";
+import { DIFFERENCE, scopePicture } from "./paint-scope";
 import type { ScopePlot } from "./scope-plot";
 
 interface ExportMenuProps {
@@ -27,7 +27,9 @@ export function ExportMenu({ plot, capture }: ExportMenuProps) {
     if (!picture || !bench) return;
     const query = new URLSearchParams([
       ["format", format],
-      ...picture.traces.map((t) => ["signals", t.name]),
+      ...picture.traces
+        .filter(({ behind, unit }) => behind === undefined && !unit.startsWith(DIFFERENCE))
+        .map((t) => ["signals", t.name]),
       ["start_tick", String(Math.max(capture?.start_tick ?? bench.first_tick, Math.floor(picture.span.start)))],
       ["end_tick", String(Math.min(capture?.end_tick ?? Number.MAX_SAFE_INTEGER, Math.ceil(picture.span.end)))],
     ]);

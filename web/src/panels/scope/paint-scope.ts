@@ -20,9 +20,12 @@ export interface PlotTrace {
   colour: string;
   /** In `DASHES`. */
   dash: number;
-  /** What the bench is called that it is of, where that lies behind the one on the page. */
+  /** What the bench is called that it is of, where that lies behind the one on the page; `BEFORE` of a ghost. */
   behind?: string;
 }
+
+/** Names the traces as they were before the last change. */
+export const BEFORE = "before";
 
 /** Before the unit of a difference, which has an axis of its own. */
 export const DIFFERENCE = "Δ ";

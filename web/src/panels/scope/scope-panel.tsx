@@ -12,6 +12,7 @@ import { useFeed } from "../../stream/use-feed";
 import { EmptyState } from "../../ui/empty-state";
 import { formatSi } from "../../ui/format";
 import { useScheme } from "../../ui/use-canvas";
+import { BeforeAfter } from "./before-after";
 import { CaptureStrip } from "./capture-strip";
 import { EnvelopeNote } from "./envelope-note";
 import { ExportMenu } from "./export-menu";
@@ -25,6 +26,7 @@ import { ScopePlot } from "./scope-plot";
 import { ScopeToolbar } from "./scope-toolbar";
 import { SignalPicker } from "./signal-picker";
 import { RearmContext, type TriggerState } from "./trigger-menu";
+import { useBeforeAfter } from "./use-before-after";
 import { useCaptures } from "./use-captures";
 import { useScopeKeys } from "./use-scope-keys";
 import { scopeSubscription, useTimeView } from "./use-time-view";
@@ -83,12 +85,15 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
     if (state !== trigger) setTrigger(state);
   };
   const feed = useFeed(subscription, draw, 0, hear);
+  const { change, isHidden, figures, ghosts, ghost } = useBeforeAfter(traces, config.windowMs, () =>
+    feed.current?.redraw(),
+  );
 
   useEffect(() => {
     if (!host.current || traces.length === 0) return;
     const made = new ScopePlot({
       host: host.current,
-      traces: [...traces, ...tracesBehind],
+      traces: [...traces, ...tracesBehind, ...ghosts],
       scheme,
       lineWidth: fontSize > NORMAL_PX ? 0.17 * fontSize : 1.6,
       fontSize,
@@ -96,6 +101,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
       printed: () => drawn.current,
       isLog: config.log ?? false,
       isShaded: () => useBehind.getState().shaded,
+      ghost: () => ghost.current(),
       gestures: { onSpan: look, onLive: goLive },
     });
     plot.current = made;
@@ -115,7 +121,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
       made.destroy();
       plot.current = undefined;
     };
-  }, [traces, tracesBehind, config.log, scheme, fontSize, look, goLive, feed]);
+  }, [traces, tracesBehind, ghosts, ghost, config.log, scheme, fontSize, look, goLive, feed]);
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: what is printed is drawn anew
   useEffect(() => feed.current?.redraw(), [printed, isPrinted, feed]);
@@ -166,6 +172,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
         </EmptyState>
       ) : (
         <>
+          {change && <BeforeAfter change={change} isHidden={isHidden} figures={figures} traces={traces} plot={plot} />}
           <div className={styles.stage}>
             {/* biome-ignore lint/a11y/useSemanticElements: a live plot has no element of its own */}
             <div

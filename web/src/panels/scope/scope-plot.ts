@@ -20,7 +20,8 @@ import {
   type TraceField,
 } from "./envelope-path";
 import { type Banded, bandsOf, samplesOf } from "./envelope-rule";
-import { DIFFERENCE, inkOrder, type PlotTrace, paintScope, type ScopeShown } from "./paint-scope";
+import { type Ghost, ghostOn } from "./ghost";
+import { BEFORE, DIFFERENCE, inkOrder, type PlotTrace, paintScope, type ScopeShown } from "./paint-scope";
 import { listenForGestures, type ScopeGestures } from "./scope-gestures";
 import { type ScopeModel, scopeOptions } from "./scope-options";
 
@@ -41,6 +42,8 @@ export interface ScopePlotOptions extends Look {
   isLog: boolean;
   /** Whether the difference from what lies behind is shaded. */
   isShaded: () => boolean;
+  /** The samples before the last change, for the traces named `BEFORE`. */
+  ghost: () => Ghost | undefined;
   gestures: ScopeGestures;
 }
 
@@ -116,8 +119,12 @@ export class ScopePlot {
     }));
     const own = this.own;
     const isSampled = samplesOf(frame) <= 1;
-    for (let i = 0; frame.signals + i < this.options.traces.length && own + i < frame.signals; i += 1)
+    const { traces } = this.options;
+    for (let i = 0; traces[frame.signals + i]?.unit.startsWith(DIFFERENCE) && own + i < frame.signals; i += 1)
       this.envelopes.push(differenceOf(this.envelopes[i], this.envelopes[own + i], isSampled));
+    const ghost = this.options.ghost();
+    if (traces[this.envelopes.length]?.behind === BEFORE)
+      for (let i = 0; i < own; i += 1) this.envelopes.push(ghostOn(ghost, frame, i));
     if (this.options.isLog) this.envelopes = this.envelopes.map(magnitudesOf);
     this.fitRanges();
     const times = columnTimes(frame, this.origin);
@@ -311,7 +318,7 @@ export class ScopePlot {
   ): void {
     const { traces, scheme } = this.options;
     const { own } = this;
-    if (own === traces.length || !isLine || !this.options.isShaded()) return;
+    if (!traces[own] || traces[own].behind === BEFORE || !isLine || !this.options.isShaded()) return;
     for (let i = 0; i < own; i += 1) {
       const range = this.ranges[this.units.indexOf(traces[i].unit)];
       const [one, other] = [this.envelopes[i], this.envelopes[own + i]];

@@ -69,6 +69,9 @@ export function zoomSpan(start: number, end: number, about: number, factor: numb
 /** Of a scope with all that lies behind it; the server allows four times as many for all panels together. */
 const MOST_POINTS = 65_536;
 
+/** Columns that a picture of so many traces may have. */
+export const mostColumns = (traces: number): number => Math.min(4096, Math.floor(MOST_POINTS / traces));
+
 /** The subscription that fills `pixels` columns with what the scope looks at. */
 export function scopeSubscription(
   config: ScopeConfig,
@@ -81,7 +84,7 @@ export function scopeSubscription(
     signals: config.signals,
     ...(behind.length > 0 && { behind: behind.map(({ bench, shift }) => ({ bench, shift_ticks: shift })) }),
   };
-  const most = Math.min(4096, Math.floor(MOST_POINTS / (config.signals.length * (1 + behind.length))));
+  const most = mostColumns(config.signals.length * (1 + behind.length));
   const width = (ticks: number) => Math.max(2, Math.min(Math.round(pixels), Math.ceil(ticks), most));
   const window_ms = config.windowMs;
   if (window.kind === "past") {

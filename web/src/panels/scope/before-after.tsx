@@ -1,0 +1,112 @@
+import { ActionIcon, Button } from "@mantine/core";
+import { IconX } from "@tabler/icons-react";
+import { type RefObject, useEffect, useRef } from "react";
+import { usePanelVisible } from "../../api/panel-visible";
+import { useCatalog } from "../../api/use-catalog";
+import { type Change, comparisons, dismissChange } from "../../bench/change";
+import { showError } from "../../bench/send";
+import { fileStem } from "../../picture/picture";
+import { useBench } from "../../stream/bench-store";
+import { formatMoment } from "../../ui/format";
+import { faded } from "../../ui/palette";
+import { pngOf, saveFile } from "../../ui/save-file";
+import { SignalName, TraceSwatch } from "../../ui/trace-swatch";
+import { useScheme } from "../../ui/use-canvas";
+import { changeSlide } from "./before-after-slide";
+import { changeWords } from "./change-words";
+import { type Compared, comparedOf } from "./compared";
+import type { PlotTrace } from "./paint-scope";
+import styles from "./scope.module.css";
+import type { ScopePlot } from "./scope-plot";
+import type { Figures } from "./use-figures";
+
+const HIDDEN = "Before and after are hidden while a fault is hidden.";
+const SLIDE_RATIO = 1.5;
+
+interface BeforeAfterProps {
+  change: Change;
+  isHidden: boolean;
+  figures: Figures | undefined;
+  traces: PlotTrace[];
+  plot: RefObject<ScopePlot | undefined>;
+}
+
+/** The last change in words, with the figures of the scope before and after it. */
+export function BeforeAfter({ change, isHidden, figures, traces, plot }: BeforeAfterProps) {
+  const dtMs = useBench((s) => s.bench?.dt_ms ?? 1);
+  useCatalog(); // the words are those of its cards
+  const box = useRef<HTMLElement>(null);
+  const compared = figures && !isHidden ? comparedOf(traces, figures) : [];
+  const words = changeWords(change, useBench.getState().bench);
+  const canSlide = compared.length > 0;
+  const slide = async () => {
+    const shown = plot.current?.picture();
+    const { bench } = useBench.getState();
+    if (!shown || !bench) return;
+    try {
+      const svg = changeSlide(words, change.tick, compared, shown, bench);
+      saveFile(`${fileStem(`${bench.scenario_id || "bench"}-${words}`)}-slide.png`, await pngOf(svg, SLIDE_RATIO));
+    } catch (error) {
+      showError(error);
+    }
+  };
+  useSlideKey(canSlide, box, compared[0]?.strength ?? 0, slide);
+  return (
+    <section ref={box} className={styles.change} aria-label="Before and after">
+      <p>
+        <b>{words}</b> at {formatMoment(change.tick * dtMs)}
+      </p>
+      {isHidden ? <p className={styles.figures}>{HIDDEN}</p> : <ComparedList compared={compared} />}
+      {canSlide && (
+        <Button size="compact-xs" variant="default" title="This picture as one slide, 16:9 (S)" onClick={slide}>
+          Slide
+        </Button>
+      )}
+      <ActionIcon
+        size={22}
+        variant="subtle"
+        aria-label="Dismiss"
+        title="Dismiss the comparison"
+        onClick={dismissChange}
+      >
+        <IconX size={14} />
+      </ActionIcon>
+    </section>
+  );
+}
+
+/** RMS before in the colour of the ghost, RMS after in the colour of the trace. */
+function ComparedList({ compared }: { compared: Compared[] }) {
+  const scheme = useScheme();
+  return (
+    <ul className={styles.figures}>
+      {compared.map(({ trace, before, after, ratio, isSettled }) => (
+        <li key={trace.name} title="RMS over whole periods of the drive">
+          <SignalName name={trace.name} /> <b>{isSettled || !ratio ? ratio : `${ratio}, still settling`}</b>
+          <TraceSwatch colour={faded(trace.colour, scheme)} dash={trace.dash} />
+          before {before} → <TraceSwatch colour={trace.colour} dash={trace.dash} />
+          now {after} RMS
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+/** Let the page's key make the slide of this comparison, if it is the strongest or under the pointer. */
+function useSlideKey(isOn: boolean, box: RefObject<HTMLElement | null>, strength: number, make: () => void): void {
+  const visible = usePanelVisible();
+  const latest = useRef({ strength, make });
+  latest.current = { strength, make };
+  useEffect(() => {
+    if (!isOn || !visible) return;
+    const one = {
+      strength: () =>
+        box.current?.parentElement?.matches(":hover, :focus-within")
+          ? Number.POSITIVE_INFINITY
+          : latest.current.strength,
+      make: () => latest.current.make(),
+    };
+    comparisons.add(one);
+    return () => void comparisons.delete(one);
+  }, [isOn, visible, box]);
+}

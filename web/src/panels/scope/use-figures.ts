@@ -1,0 +1,58 @@
+import { useMemo, useState } from "react";
+import type { Change } from "../../bench/change";
+import { useBench } from "../../stream/bench-store";
+import type { PanelFrame } from "../../stream/panel-frame";
+import { useFeed } from "../../stream/use-feed";
+import type { Subscription } from "../../stream/wire";
+import { hasSettled, lookAt, rms, windowTicks } from "./whole-periods";
+
+/** The root mean squares of the signals of a scope around a change. */
+export interface Figures {
+  before: number[];
+  /** Over the newest whole periods; nothing until one has passed. */
+  after?: number[];
+  settled?: boolean[];
+}
+
+/** Every sample of whole periods: before the change first, then the newest since. */
+export function useFigures(signals: string[], change: Change | undefined): Figures | undefined {
+  const period = useBench((s) => s.bench?.drive_period_ticks);
+  const look = useBench((s) => (change && s.bench ? lookAt(s.bench.tick - change.since, period) : 0));
+  const [known, setKnown] = useState<{ of: Change; signals: string[]; figures: Figures } | undefined>(undefined);
+  const found = known && known.of === change && known.signals === signals ? known.figures : undefined;
+  const hasBefore = found !== undefined;
+
+  const wanted = useMemo((): Subscription | undefined => {
+    if (!change || signals.length === 0) return undefined;
+    const frozen = (start_tick: number, end_tick: number): Subscription | undefined =>
+      end_tick > start_tick
+        ? { mode: "frozen", signals, start_tick, end_tick, width: end_tick - start_tick }
+        : undefined;
+    if (!hasBefore) return frozen(change.tick - windowTicks(period, change.tick), change.tick);
+    const ticks = windowTicks(period, look);
+    const isWhole = look >= 2 * ticks && ticks === windowTicks(period, Number.MAX_SAFE_INTEGER);
+    const end = change.since + look;
+    return frozen(end - (isWhole ? 2 : 1) * ticks, end);
+  }, [change, signals, period, look, hasBefore]);
+
+  useFeed(wanted, (frame) => {
+    if (!change) return;
+    if (frame.endTick === change.tick) {
+      const before = signals.map((_, i) => rms(frame, i));
+      return setKnown({ of: change, signals, figures: { before } });
+    }
+    if (found && frame.startTick >= change.since)
+      setKnown({ of: change, signals, figures: newest(frame, found.before, period) });
+  });
+  return found;
+}
+
+/** The figures of the newest window, and whether those of the window before agree. */
+function newest(frame: PanelFrame, before: number[], period: number | null | undefined): Figures {
+  const ticks = windowTicks(period, frame.columns);
+  const all = Array.from({ length: frame.signals }, (_, i) => i);
+  const after = all.map((i) => rms(frame, i, frame.columns - ticks));
+  const hasTwo = frame.columns >= 2 * ticks;
+  const settled = all.map((i) => hasTwo && hasSettled(before[i], rms(frame, i, 0, ticks), after[i]));
+  return { before, after, settled };
+}
