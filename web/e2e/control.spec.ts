@@ -2,7 +2,7 @@ import { readFile } from "node:fs/promises";
 import { benchOf } from "./classroom";
 import { chooseMore, expect, front, test } from "./lab";
 
-test("a controller is switched, keys act after lists and fields, a wrong value is refused in words, all is saved", async ({
+test("a controller is switched, keys act after lists and fields, a wrong value is refused in words, all is saved, another device begins again", async ({
   page,
   server,
   openBench,
@@ -61,6 +61,15 @@ test("a controller is switched, keys act after lists and fields, a wrong value i
   const [download] = await Promise.all([page.waitForEvent("download"), chooseMore(page, /^Save this run/)]);
   expect(await readFile(await download.path(), "utf8")).toMatch(/sensors?\..*noise_um/);
   expect(download.suggestedFilename()).toMatch(/^first-look-\d+\.toml$/);
+
+  const bench = benchOf(page);
+  const device = page.getByRole("combobox", { name: "Device" });
+  await device.click();
+  await page.getByRole("option", { name: /^LCR-350/ }).click();
+  await page.getByRole("button", { name: "Begin again" }).click();
+  await expect.poll(() => benchOf(page)).not.toBe(bench);
+  await expect(device).toHaveValue("LCR-350, from geometry");
+  await expect(controller).toHaveValue("Direct MRAC");
 });
 
 test("a fault, a healing, a closed panel and a reset are taken back and made again, by key, button and notice", async ({

@@ -10,7 +10,9 @@ import { SensorSelect } from "./sensor-select";
 const { bench, events } = await recordedBench("first-look");
 const gyroscope = await recordedBench("gyroscope");
 const catalog = await recordedAnswer("catalog");
-const devices = await recordedAnswer("devices");
+const all = await recordedAnswer("devices");
+const IDS = ["ch3", "lcr-350", "table-1-1-350-std", "gyro-c", "double-integrator"];
+const devices = { ...all, devices: all.devices.filter(({ id }) => IDS.includes(id)) };
 const [fault] = bench.faults;
 
 beforeEach(() => {
@@ -53,6 +55,7 @@ it("names the device of the bench, and says of each what it is, its resonance an
   const others = screen.getByText("On a bench of another kind").parentElement as HTMLElement;
   expect(within(others).getByRole("option", { name: /^Gyroscope C/ })).toHaveTextContent(/f₀ 3\.93\skHz/);
   expect(within(others).queryByRole("option", { name: /^LCR/ })).not.toBeInTheDocument();
+  expect(screen.getByRole("option", { name: /^Table 1\.1, 350\sµm beams, std/ })).toBeInTheDocument();
   expect(screen.queryByRole("option", { name: /^Double integrator/ })).not.toBeInTheDocument();
 });
 

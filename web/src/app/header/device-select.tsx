@@ -2,6 +2,7 @@ import { Button, Group, Modal, Text } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../../api/api";
 import { useMay } from "../../api/me";
+import { micro } from "../../api/micro";
 import { useAsked } from "../../api/queries";
 import type { Device, Document } from "../../api/types";
 import { showError } from "../../bench/send";
@@ -26,7 +27,7 @@ export function DeviceSelect() {
   const offered = devices.filter((device) => suits(device) || hasUsualBench(device));
   const choices = [...offered.filter(suits), ...offered.filter((device) => !suits(device))].map((device) => ({
     value: device.id,
-    title: device.title,
+    title: micro(device.title),
     about: deviceWords(device),
     group: suits(device) ? "On this bench" : "On a bench of another kind",
   }));
@@ -52,7 +53,7 @@ export function DeviceSelect() {
           opened
           centered
           size="sm"
-          title={`The bench begins again with ${asked.title}.`}
+          title={`The bench begins again with ${micro(asked.title)}.`}
           withCloseButton={false}
           onClose={() => setAsked(undefined)}
         >
