@@ -227,7 +227,7 @@ def test_the_gallery_has_a_row_for_each_scenario_that_matches(call):
     assert max(map(len, lines)) <= 100
     effort = lines.index(next(line for line in lines if "effort_ratio" in line))
     assert lines[effort].endswith(" reproduced")
-    assert all(word in lines[effort + 1] for word in ("± ", "measured ", "open loop ", "published: "))
+    assert all(word in lines[effort + 1] for word in ("±\u00a0", "measured ", "open loop ", "published: "))
 
 
 def test_the_gallery_is_exit_1_when_an_expectation_is_missed(call, monkeypatch):

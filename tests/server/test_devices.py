@@ -207,7 +207,7 @@ REFUSED = [
         "evaluate",
         {"device": {"id": "lcr-350", "drawn_gyroscope": {"sense_fingers": 88}}},
         "device",
-        "88 fingers along y take 698 um of an arm of 690 um",
+        "88 fingers along y take 698\u00a0µm of an arm of 690\u00a0µm",
     ),
     ("bode", {"points": 100_000}, "points", "2000"),
 ]

@@ -50,6 +50,7 @@ interface RecordedAnswers {
   };
   campaign: {
     points: Schemas["SweepPoints"];
+    picture: Schemas["CampaignPicture"];
     density: Schemas["Distribution"];
     histogram: Schemas["Distribution"];
     comparison: Schemas["RunComparison"];
