@@ -3,7 +3,6 @@ import { api } from "../api/api";
 import { ApiError } from "../api/client";
 import { hasAxes } from "../api/fits";
 import { may } from "../api/me";
-import { micro } from "../api/micro";
 import type { Bench, Device, Document, LogEntry } from "../api/types";
 import { cardOf } from "../api/use-catalog";
 import { announce } from "../bench/announce";
@@ -27,7 +26,7 @@ export async function beginWith(device: Device): Promise<void> {
   const lost = await takeAlong(bench, made, ownFaults(bench, events));
   if (may("teach")) await openInstead(made.id);
   else openOwn(made.id); // the bench before is gone
-  const title = `The bench begins with ${micro(device.title)}`;
+  const title = `The bench begins with ${device.title}`;
   announce(`${title}.`);
   if (lost.length === 0) return;
   notifications.show({ title, message: `Not kept, because it does not suit: ${lost.join(", ")}.`, autoClose: 8000 });

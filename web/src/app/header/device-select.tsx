@@ -2,7 +2,6 @@ import { Button, Group, Modal, Text } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../../api/api";
 import { useMay } from "../../api/me";
-import { micro } from "../../api/micro";
 import { useAsked } from "../../api/queries";
 import type { Device, Document } from "../../api/types";
 import { showError } from "../../bench/send";
@@ -27,7 +26,7 @@ export function DeviceSelect() {
   const offered = devices.filter((device) => suits(device) || hasUsualBench(device));
   const choices = [...offered.filter(suits), ...offered.filter((device) => !suits(device))].map((device) => ({
     value: device.id,
-    title: micro(device.title),
+    title: device.title,
     about: deviceWords(device),
     group: suits(device) ? "On this bench" : "On a bench of another kind",
   }));
@@ -53,7 +52,7 @@ export function DeviceSelect() {
           opened
           centered
           size="sm"
-          title={`The bench begins again with ${micro(asked.title)}.`}
+          title={`The bench begins again with ${asked.title}.`}
           withCloseButton={false}
           onClose={() => setAsked(undefined)}
         >
