@@ -52,7 +52,7 @@ const ownFaults = ({ faults }: Bench, events: readonly LogEntry[]): Bench["fault
   return faults.filter(({ name }) => last(name)?.actor !== "scenario");
 };
 
-/** Inject faults and let the controller drive on a bench that has just been made; what it refuses, in words. */
+/** Inject faults on a new bench; the titles of the faults it refuses, and of the controller if it has none of that name. */
 async function takeAlong(from: Bench, to: Bench, faults: Bench["faults"]): Promise<string[]> {
   const lost = to.controllers.includes(from.controller) ? [] : [titleOf("control", from.controller)];
   for (const { name, severity, profile, parameters } of faults) {

@@ -16,7 +16,7 @@ export function useSensor() {
   const chosen = useBench((s) => (s.bench?.parameters.sensor as Document | undefined)?.kind);
   const axes = useBench((s) => s.bench?.axes) ?? [];
   const { blocks } = useCatalog();
-  // What was chosen last counts until the board has answered: the next click is meant from there.
+  // The last choice counts until the board has answered: the next click is meant from there.
   const [wanted, setWanted] = useState<string | undefined>(undefined);
   const choice = useRef(0);
   const sensors = blocks.filter((b) => b.family === "sense" && fits(b, axes));

@@ -75,7 +75,7 @@ export function DeviceSelect() {
   );
 }
 
-/** What a device is, with its resonance and its quality factor. */
+/** A device in a line of words: its kind, its resonance and its quality factor. */
 function deviceWords(device: Device): string {
   const { f0_hz, quality_factor } = device.metrics;
   const kind = isGyroscope(device)

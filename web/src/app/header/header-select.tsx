@@ -10,7 +10,7 @@ import styles from "./header.module.css";
 export interface Choice {
   value: string;
   title: string;
-  /** What it is, in a line. */
+  /** A line of words about it. */
   about: string;
   /** Heading above it and those like it. */
   group?: string;
