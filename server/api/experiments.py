@@ -186,7 +186,7 @@ def _identify(board: Board, body: SweptSine, believed: Device | None) -> Identif
     grid = np.geomspace(sweep.tones[0].frequency_hz, sweep.tones[-1].frequency_hz, CURVE_POINTS)
     unit = abs(force) * UM_PER_M
     response_found = response(identified.mass_kg, identified.damping_ns_m, identified.stiffness_n_m, grid) * unit
-    believed = response(nominal["mass_kg"], nominal["damping_ns_m"], nominal["stiffness_n_m"], grid) * unit
+    response_meant = response(nominal["mass_kg"], nominal["damping_ns_m"], nominal["stiffness_n_m"], grid) * unit
     return Identification(
         tick=board.tick,
         found=identified,
@@ -204,8 +204,8 @@ def _identify(board: Board, body: SweptSine, believed: Device | None) -> Identif
             frequency_hz=grid.tolist(),
             found_um_per_v=np.abs(response_found).tolist(),
             found_deg=np.degrees(np.angle(response_found)).tolist(),
-            nominal_um_per_v=np.abs(believed).tolist(),
-            nominal_deg=np.degrees(np.angle(believed)).tolist(),
+            nominal_um_per_v=np.abs(response_meant).tolist(),
+            nominal_deg=np.degrees(np.angle(response_meant)).tolist(),
         ),
     )
 

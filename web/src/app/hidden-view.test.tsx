@@ -1,5 +1,6 @@
-import { act, screen, within } from "@testing-library/react";
+import { act, screen, waitFor, within } from "@testing-library/react";
 import { beforeEach, expect, it } from "vitest";
+import { queryClient } from "../api/queries";
 import type { ViewName } from "../bench/panel-views";
 import { server } from "../testing/fake-server";
 import { connect } from "../testing/fake-transport";
@@ -20,7 +21,7 @@ const NAMES = Object.keys(VIEW) as ViewName[];
 beforeEach(() => {
   server.on("GET", "/catalog", catalog);
   server.on("GET", "/benches/:id/blind", asked);
-  server.on("GET", "/sheets", sheets);
+  server.on("GET", "/sheets", { ...sheets, current: null }); // a sheet names faults in its tasks
   server.on("GET", "/games", { games });
   server.on("GET", "/games/:id", ({ params }: { params: Record<string, string> }) => plays[params.id].before);
   server.on("GET", "/classes", { classes: [] });
@@ -39,6 +40,7 @@ it.each(NAMES)("shows nothing in the view %s that tells the hidden fault", async
   connect({ ...knowing, axes: axes(view) } as typeof hidden);
   const { user } = show(view);
   const clean = () => expect(document.body.innerHTML).not.toMatch(/added.mass|fault acts|the truth is|severity/i);
+  await waitFor(() => expect(queryClient.isFetching()).toBe(0));
   clean();
   for (const tool of screen.queryAllByRole("button", { name: /^(Frequency response|Spectrum|Cursors)$/ })) {
     if (tool.getAttribute("aria-pressed") === "false") await user.click(tool);

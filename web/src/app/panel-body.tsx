@@ -6,7 +6,7 @@ import { ErrorFence } from "../ui/error-fence";
 import { HiddenView } from "./hidden-view";
 import { type PanelProps, servedIn, suits, VIEW } from "./panels";
 
-/** A view, fenced; what changes a bench has no place on a recording that is played, tools take the place of what is hidden. */
+/** A view, fenced: a view that changes a bench is closed on a recording that is played; tools take the place of a hidden view. */
 export function PanelBody({ view, params, setParams }: PanelProps & { view: ViewName }) {
   const kind = VIEW[view];
   const fitting = useBench((s) => suits(kind, s.bench));
