@@ -197,7 +197,7 @@ export interface paths {
         };
         /**
          * List Units
-         * @description List the units one may begin with, and say whether one may bring any.
+         * @description List the units to begin with, and say whether this person may bring any.
          */
         get: operations["list_units"];
         put?: never;
@@ -8308,7 +8308,7 @@ export interface components {
             title: string;
             /**
              * Origin
-             * @description The library, the folder of this server, or a file it was started with
+             * @description A text to begin with, the library, the folder of this server, or a file it was started with
              * @enum {string}
              */
             origin: "starter" | "library" | "folder" | "command line";
@@ -8320,7 +8320,7 @@ export interface components {
         };
         /**
          * UnitList
-         * @description Units one may begin with: those of this server, then those of the library.
+         * @description Units to begin with: of this server, then the starters, then the library.
          */
         UnitList: {
             /** Units */
@@ -8364,7 +8364,7 @@ export interface components {
             title: string;
             /**
              * Origin
-             * @description The library, the folder of this server, or a file it was started with
+             * @description A text to begin with, the library, the folder of this server, or a file it was started with
              * @enum {string}
              */
             origin: "starter" | "library" | "folder" | "command line";
