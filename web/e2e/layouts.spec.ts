@@ -11,7 +11,8 @@ test("panels close at their tabs and come back; a layout is saved, renamed, dele
   const undo = page.getByRole("alert").getByRole("button", { name: "Undo" });
   const before = await tabs.allTextContents();
 
-  await named("Voltage").locator(".dock-close").click(); // its group goes with it
+  await front(page, "Voltage");
+  await named("Voltage").locator(".dock-close").click();
   await expect(named("Voltage")).toHaveCount(0);
   await undo.click();
   await expect.poll(() => tabs.allTextContents()).toEqual(before);
@@ -28,6 +29,7 @@ test("panels close at their tabs and come back; a layout is saved, renamed, dele
 
   const menu = (item: string) => chooseMore(page, item);
   const sheet = page.getByRole("dialog", { name: "Layouts" });
+  await front(page, "Voltage");
   await named("Voltage").locator(".dock-close").click();
   await menu("Save, rename or share");
   const name = sheet.getByLabel("Save the panels as they stand");

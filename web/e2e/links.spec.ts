@@ -47,6 +47,7 @@ test("links to an experiment and to a layout open the same tick, log, cursors an
   await expect(same).toHaveAttribute("aria-valuenow", "23");
 
   await page.keyboard.press("Escape");
+  await front(page, "Voltage");
   await page.getByRole("tab", { name: "Voltage", exact: true }).locator(".dock-close").click();
   await chooseMore(page, /^Save, rename or share/);
   const sheet = page.getByRole("dialog", { name: "Layouts" });

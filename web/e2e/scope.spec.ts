@@ -1,6 +1,6 @@
 import { readFileSync } from "node:fs";
 import { benchOf } from "./classroom";
-import { expect, pictureOf, SCOPE_CANVAS, test } from "./lab";
+import { expect, front, pictureOf, SCOPE_CANVAS, test } from "./lab";
 
 interface Capture {
   trigger_tick: number;
@@ -13,6 +13,7 @@ test("a scope moves with device time, looks back while it runs on, and measures 
   openBench,
 }) => {
   await openBench("lab", { samples: 1_000_000 });
+  await front(page, "Voltage");
   const scope = page.getByRole("region", { name: /^Scope: reference.voltage/ });
   const live = scope.getByRole("button", { name: "LIVE" });
   const clock = page.getByRole("timer", { name: "Device time" });
