@@ -35,6 +35,7 @@ from server.api import (
     metrics,
     narration,
     parameter_sets,
+    places,
     readouts,
     recordings,
     runs,
@@ -149,7 +150,7 @@ def create_app(settings: Settings) -> FastAPI:
     document.install(app)
     for module in ROUTERS:
         app.include_router(module.router, prefix=API)
-    for module in (health, metrics, joining):
+    for module in (health, metrics, joining, places):
         app.include_router(module.router)
     if importlib.util.find_spec("server.view3d") is not None:
         from server.view3d import proxy
@@ -161,7 +162,7 @@ def create_app(settings: Settings) -> FastAPI:
         from server.lti import routes
 
         frames = routes.install(app, service)
-    app.router.default = Page()
+    app.router.default = app.state.page = Page(prefix=public.prefix)
     # A request passes the middleware that was added last first.
     app.add_middleware(Heads)
     app.add_middleware(BodyLimit, limit=settings.body_limit_bytes)

@@ -11,6 +11,7 @@ from server.bench.session import Seen, Session
 from server.computing.computing import Computing
 from server.errors import ApiError
 from server.people.person import Person
+from server.security.identity import Identity
 from server.service import Service
 from server.settings import Settings
 
@@ -27,6 +28,14 @@ def get_socket_service(socket: WebSocket) -> Service:
 
 ServiceDep = Annotated[Service, Depends(get_service)]
 SocketServiceDep = Annotated[Service, Depends(get_socket_service)]
+
+
+def get_identity(request: Request) -> Identity:
+    """Return what knows the access token, and secrets that are made from it."""
+    return cast(Identity, request.app.state.identity)
+
+
+IdentityDep = Annotated[Identity, Depends(get_identity)]
 
 
 def get_session(bench_id: str, service: ServiceDep) -> Session:

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from typing import Annotated, cast
-from urllib.parse import parse_qsl
+from urllib.parse import parse_qsl, urlencode
 
 from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
-from server.api.deps import ServiceDep
-from server.errors import SHARD, ApiError, Elsewhere
+from server.api.deps import IdentityDep, ServiceDep
+from server.errors import SHARD, ApiError, Elsewhere, reply
 from server.people.code import shard_of
 from server.people.joining import join_page
-from server.people.person import Person
-from server.security.gate import lead_on, page
+from server.people.person import TEACHER, Person
+from server.security.gate import lead_on, page, wants_page
 from server.security.identity import Identity
+from server.security.visitor import visitor_page
 from server.service import Service
 from server.store.base import now
 
@@ -24,6 +25,13 @@ LONGEST_FORM = 4096
 """Bytes of the form that are read: a code and a name."""
 FORM = {"Cache-Control": "no-store", "Referrer-Policy": "same-origin"}
 """Without a referrer a browser says that the form comes from nowhere (`Origin: null`), and it would be refused."""
+NO_WATCHING = ApiError(
+    403,
+    "wrong_link",
+    "this link does not let you watch, or no longer does",
+    "link",
+    "ask for a new one: links to watch end after a while, or when the bench is closed",
+)
 
 
 @router.get("/join")
@@ -51,21 +59,43 @@ async def join(request: Request, service: ServiceDep) -> Response:
     return response
 
 
-@router.get("/watch/{link}")
-async def watch(link: str, request: Request, service: ServiceDep) -> Response:
-    """Let somebody with a link watch its bench, and lead to the page."""
-    person = service.people.by_secret(link)
-    if person is None or person.role != "watcher":
-        try:
-            service.joining.note_wrong(address_of(request))
-        except ApiError as error:
-            status = error.status_code
-            return HTMLResponse(page(status, "Too many tries", "Wait a minute."), status, error.headers)
-        text = "Ask for a new one: links to watch end after a while, or when the bench is closed."
-        return HTMLResponse(page(404, "This link leads nowhere any more", text), 404)
-    response = lead_on(request, "/", service.public.prefix)
-    give_session(request, response, person, link)
-    return response
+@router.get("/watch/{secret}")
+async def watch(secret: str, request: Request, service: ServiceDep, identity: IdentityDep) -> Response:
+    """Let a person with a link to watch see its bench, and lead to the page."""
+    return _let_watch(request, service, identity, secret)
+
+
+@router.get("/watch")
+async def watch_by_link(
+    link: Annotated[str, Query(max_length=64)], request: Request, service: ServiceDep, identity: IdentityDep
+) -> Response:
+    """Let a person without the token watch the bench of a shared link, if the teacher lets people."""
+    if request.scope["person"] == TEACHER:  # the refusal asked for the token, and got it
+        return RedirectResponse(f"/?{urlencode({'link': link})}", 303)
+    return _let_watch(request, service, identity, identity.secret_of_link(link))
+
+
+def _let_watch(request: Request, service: Service, identity: Identity, secret: str) -> Response:
+    """Begin the session that a secret opens, or refuse it; too many that are wrong come from no address."""
+    person = service.people.by_secret(secret)
+    if person is not None and person.role == "watcher":
+        response = lead_on(request, "/", service.public.prefix)
+        give_session(request, response, person, secret)
+        return response
+    refusal = NO_WATCHING
+    try:
+        service.joining.note_wrong(address_of(request))
+    except ApiError as error:
+        refusal = error
+    status, said, headers = refusal.status_code, refusal.body, {"Cache-Control": "no-store", **(refusal.headers or {})}
+    if not wants_page(request):
+        return reply(status, said, headers)
+    text = page(status, said.message, f"{said.hint.capitalize()}.")
+    if refusal is NO_WATCHING and "link" in request.query_params:  # the token opens it all the same
+        given, join = request.query_params.multi_items(), f"{service.public.prefix}/join"
+        why = f"{said.message.capitalize()}. {said.hint.capitalize()}."
+        text = visitor_page(given, identity.may_use_token(request), join, why)
+    return HTMLResponse(text, status, headers)
 
 
 def give_session(request: Request, response: Response, person: Person, secret: str) -> None:

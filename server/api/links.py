@@ -9,7 +9,7 @@ from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
 from server.api.bodies import Body, StrictRoute
-from server.api.deps import PersonDep, RateLimited, ServiceDep
+from server.api.deps import IdentityDep, PersonDep, RateLimited, ServiceDep
 from server.bench.experiment import beginning_of, experiment_of
 from server.bench.making import prepare, usual_scale
 from server.bench.recordings import Layout
@@ -88,9 +88,10 @@ async def change_link(link_id: str, body: Words, service: ServiceDep) -> LinkDet
 
 
 @router.delete("/{link_id}", status_code=204, dependencies=[RateLimited])
-async def delete_link(link_id: str, service: ServiceDep) -> None:
-    """Delete a link; benches opened by it stay."""
+async def delete_link(link_id: str, service: ServiceDep, identity: IdentityDep) -> None:
+    """Delete a link; benches opened by it stay, people who watch by it are gone."""
     await service.links.get(link_id)
+    await service.people.close(identity.secret_of_link(link_id))
     await service.links.delete(link_id)
 
 

@@ -1,15 +1,19 @@
-"""Links to watch a bench: people who open one see it live and can change nothing, until the link ends."""
+"""Links to watch a bench: people who open one see it live and can change nothing, until the link ends.
+
+A link that was shared may be one: people with the access token open the experiment, all others watch.
+"""
 
 from __future__ import annotations
 
 from datetime import datetime, timedelta
+from urllib.parse import urlencode
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from server.api.bodies import Body, StrictRoute
-from server.api.deps import RateLimited, ServiceDep, SessionDep
-from server.errors import ApiError, not_found
+from server.api.deps import IdentityDep, RateLimited, ServiceDep, SessionDep
+from server.errors import SHARD, ApiError, not_found
 from server.store.base import now
 
 router = APIRouter(prefix="/benches/{bench_id}/watchers", tags=["classes"], route_class=StrictRoute)
@@ -21,6 +25,7 @@ class NewWatcher(Body):
     """How long a link lasts."""
 
     hours: float = Field(4.0, gt=0, le=24 * 14)
+    link: str | None = Field(None, description="Id of a link to an experiment by which people watch without the token")
 
 
 class Watcher(BaseModel):
@@ -38,14 +43,21 @@ class WatcherList(BaseModel):
 
 
 @router.post("", status_code=201, dependencies=[RateLimited])
-async def make_watcher(body: NewWatcher, session: SessionDep, service: ServiceDep) -> Watcher:
-    """Make a link to watch the bench."""
+async def make_watcher(body: NewWatcher, session: SessionDep, service: ServiceDep, identity: IdentityDep) -> Watcher:
+    """Make a link to watch the bench, or let people watch it by a link that was shared."""
     if len(service.people.watchers(session.id)) >= MOST:
         raise ApiError(409, "limit", f"{MOST} links lead to this bench, the limit", hint="end one first")
     until = now() + timedelta(hours=body.hours)
-    person, secret = await service.people.add("watcher", "watcher", until, bench_id=session.id)
+    given = ""
+    if body.link is not None:
+        link = await service.links.get(body.link)
+        if link.kind != "experiment":
+            raise ApiError(422, "invalid", "leads to no experiment", "link")
+        given = identity.secret_of_link(link.id)
+    person, secret = await service.people.add("watcher", "watcher", until, bench_id=session.id, secret=given)
     service.audit.add("teacher", "watcher", "made a link to watch", session.class_id, session.id)
-    return Watcher(id=person.id, until=until, path=f"/watch/{secret}")
+    query = {"link": body.link, **({SHARD: service.settings.shard} if service.settings.shard else {})}
+    return Watcher(id=person.id, until=until, path=f"/?{urlencode(query)}" if given else f"/watch/{secret}")
 
 
 @router.get("")

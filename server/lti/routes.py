@@ -26,12 +26,11 @@ from server.lti.messages import Login, Messages
 from server.lti.pages import answer_page, choice_page, instructor_page, login_page, refusal_page
 from server.lti.scores import Scores
 from server.lti.tool import Tool
-from server.page import DIST, NOT_BUILT, index_page
+from server.page import Page
 from server.people.access import LTI
 from server.people.person import hash_of
 from server.people.sheet_work import brief
 from server.security.frames import Frames, Ticket
-from server.security.gate import page
 from server.security.limits import Buckets
 from server.security.once import Once
 from server.service import Service
@@ -123,10 +122,7 @@ class Session(BaseModel):
 @pages.get("")
 async def show_page(request: Request) -> Response:
     """Return the page, which exchanges what a launch gave it for a session."""
-    index = DIST / "index.html"
-    if not index.is_file():
-        return HTMLResponse(page(503, "The page is not built", NOT_BUILT), 503)
-    return index_page(index, request.scope)
+    return cast(Page, request.app.state.page).shown(request.scope)
 
 
 @pages.api_route("/login", methods=["GET", "POST"])

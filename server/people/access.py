@@ -39,10 +39,18 @@ _DOORS = {
         GET /health/ready
         GET /join
         POST /join
-        GET /watch/{{link}}
+        GET /watch
+        GET /watch/{{secret}}
         POST {CLASS}/join
     """,
     Need.SESSION: f"""
+        GET /design  *
+        GET /design/{{device_id}}  *
+        GET /gallery  *
+        GET /gallery/{{scenario_id}}  *
+        GET /scores  *
+        GET /theory  *
+        GET /theory/{{words}}  *
         GET {API}/openapi.json  *
         GET {API}/me  *
         PUT {API}/me/hand  *
@@ -223,6 +231,9 @@ _DOORS = {
         DELETE {CLASS}/blind
         GET {CLASS}/games/{{game_id}}
         GET /metrics
+        GET /class
+        GET /runs
+        GET /runs/{{run_ids}}
     """,
 }
 

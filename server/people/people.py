@@ -73,12 +73,14 @@ class People:
         class_id: str | None = None,
         bench_id: str | None = None,
         also: Callable[[str], Sequence[Change]] = lambda _: (),
+        secret: str = "",
     ) -> tuple[Person, str]:
-        """Add a person; return the person and the secret of the session, which is kept nowhere.
+        """Add a person; return the person and the secret of the session, which is new unless given, and kept nowhere.
 
-        What ``also`` returns for the id of the person is kept with it.
+        What ``also`` returns for the id of the person is kept with it. A session that the secret opened before ends.
         """
-        secret = self._new_secret()
+        secret = secret or self._new_secret()
+        before = self._by_hash.get(hash_of(secret))
         row = PersonRow(
             id=secrets.token_hex(8),
             role=role,
@@ -89,7 +91,8 @@ class People:
             joined=now(),
             until=until,
         )
-        await self._database.keep(Change(lambda session: session.add(row)), *also(row.id))
+        ended = [self.removal(before)] if before is not None else []
+        await self._database.keep(*ended, Change(lambda session: session.add(row)), *also(row.id))
         return self._take(row), secret
 
     async def renew(self, person: Person, until: datetime) -> tuple[Person, str]:
@@ -111,6 +114,12 @@ class People:
         """Return whose session a secret opens, as long as it lasts."""
         person = self._by_hash.get(hash_of(secret)) if secret else None
         return person if person is not None and (person.until is None or person.until > now()) else None
+
+    async def close(self, secret: str) -> None:
+        """End the session that a secret opens, if there is one."""
+        person = self._by_hash.get(hash_of(secret))
+        if person is not None:
+            await self.remove(person)
 
     def students(self, class_id: str = "") -> list[Person]:
         """List the students of a class, or of all classes, in the order in which they came."""

@@ -121,6 +121,11 @@ class Gate:
             if has_token or self._identity.is_meant(connection):
                 await self._welcome(Request(scope), has_token)(scope, receive, send)
                 return
+            link = connection.query_params.get("link")
+            if link and scope["path"] == "/" and (person is None or person.role == "watcher"):
+                target = f"/watch?{urlencode({'link': link})}"
+                await lead_on(Request(scope), target, self._prefix)(scope, receive, send)
+                return
         method = SOCKET if scope["type"] == "websocket" else scope["method"]
         need, bench_id = need_of(method, scope["path"])
         if self._is_open(scope) or self._people.may(person, need, bench_id):
@@ -249,9 +254,8 @@ class Gate:
             return
         connection = HTTPConnection(scope)
         may_use_token = self._identity.may_use_token(connection)
-        wants_page = "text/html" in connection.headers.get("accept", "")
         response: Response
-        if wants_page and not scope["path"].startswith("/api/"):
+        if wants_page(connection) and not scope["path"].startswith("/api/"):
             query = connection.query_params.multi_items()
             text = page(status, message, "")
             if status == 401:
@@ -262,6 +266,11 @@ class Gate:
             body = ErrorBody(code=code, message=message, hint=hint if status == 401 else advice)
             response = reply(status, body, {"WWW-Authenticate": "Bearer"} if status == 401 else None)
         await response(scope, receive, send)
+
+
+def wants_page(connection: HTTPConnection) -> bool:
+    """Whether the caller is a browser that a person looks at, rather than a program."""
+    return "text/html" in connection.headers.get("accept", "")
 
 
 def lead_on(request: Request, target: str, prefix: str) -> Response:

@@ -31,7 +31,7 @@ def app_policy(nonce: str) -> str:
             "worker-src 'self' blob:",
             "frame-src 'self'",
             "frame-ancestors 'none'",
-            "base-uri 'none'",
+            "base-uri 'self'",
             "form-action 'self'",
             "object-src 'none'",
         )

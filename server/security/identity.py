@@ -52,6 +52,10 @@ class Identity:
         """Return a digest that only a holder of the token can compute."""
         return hmac.new(self._token, purpose, hashlib.sha256).hexdigest()
 
+    def secret_of_link(self, link_id: str) -> str:
+        """Return the secret of the session by which people without the token watch, if a link lets them."""
+        return self._shard + self._digest(f"combbench link {link_id}".encode())
+
     def give_cookie(self, response: Response) -> None:
         """Set the cookie that lets a browser come in again."""
         self._set_cookie(response, self.cookie_name, self.cookie, COOKIE_S)

@@ -52,6 +52,7 @@ access token; it opens everything and needs no account. <a href="{join}">Join a 
 is kept.</small></p>
 """
 
+WRONG = ' class="wrong" role="alert"'
 ELSEWHERE = "The teacher's address, the one at 127.0.0.1 with the access token, works on the teacher's machine only."
 
 OF_A_CLASS = """\
@@ -60,7 +61,9 @@ OF_A_CLASS = """\
 """
 
 
-def visitor_page(query: Iterable[tuple[str, str]], may_use_token: bool = True, join: str = "/join") -> str:
+def visitor_page(
+    query: Iterable[tuple[str, str]], may_use_token: bool = True, join: str = "/join", refusal: str = ""
+) -> str:
     """Build the page; the address goes on to where the visitor wanted once the token is there.
 
     Parameters
@@ -71,18 +74,20 @@ def visitor_page(query: Iterable[tuple[str, str]], may_use_token: bool = True, j
         Whether the token is accepted from where the visitor is; if not, nobody is asked to send it from there.
     join : str
         Path of the page by which students join.
+    refusal : str
+        Why the address opens nothing without the token, beside that.
     """
     fields = list(query)
     has_sent_token = any(name == "token" and value for name, value in fields)
+    why = f"<p{WRONG}>{html.escape(refusal)}</p>\n" if refusal else ""
     if not may_use_token:
-        mark = ' class="wrong" role="alert"' if has_sent_token else ""
-        return PAGE.format(
-            style=STYLE, way_in=OF_A_CLASS.format(mark=mark, join=join, elsewhere=html.escape(ELSEWHERE))
-        )
+        mark = WRONG if has_sent_token else ""
+        way_in = OF_A_CLASS.format(mark=mark, join=join, elsewhere=html.escape(ELSEWHERE))
+        return PAGE.format(style=STYLE, way_in=why + way_in)
     hidden = "".join(
         f'<input type="hidden" name="{html.escape(name)}" value="{html.escape(value)}">'
         for name, value in fields
         if name != "token"
     )
-    wrong = '<p class="wrong" role="alert">This token is not the one of this bench.</p>\n' if has_sent_token else ""
-    return PAGE.format(style=STYLE, way_in=WITH_TOKEN.format(hidden=hidden, wrong=wrong, join=join))
+    wrong = f"<p{WRONG}>This token is not the one of this bench.</p>\n" if has_sent_token else ""
+    return PAGE.format(style=STYLE, way_in=why + WITH_TOKEN.format(hidden=hidden, wrong=wrong, join=join))

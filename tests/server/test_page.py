@@ -18,14 +18,14 @@ from server.page import Page
 def dist(tmp_path: Path) -> Path:
     folder = tmp_path / "dist"
     (folder / "assets").mkdir(parents=True)
-    (folder / "index.html").write_text("<title>the page</title>")
+    (folder / "index.html").write_text('<head><base href="/" /><title>the page</title></head>')
     (folder / "assets" / "app-1a2b.js").write_text("let x")
     (folder / "favicon.svg").write_text("<svg/>")
     (tmp_path / "secret.txt").write_text("secret")
     return folder
 
 
-def get(page: Page, path: str, method: str = "GET", query: bytes = b"", accepts: str = "") -> Any:
+def get(page: Page, path: str, method: str = "GET", accepts: str = "", html: bool = False) -> Any:
     sent: list[dict[str, Any]] = []
 
     async def send(message: Any) -> None:
@@ -35,7 +35,8 @@ def get(page: Page, path: str, method: str = "GET", query: bytes = b"", accepts:
         await asyncio.Event().wait()
 
     told = [(b"accept-encoding", accepts.encode())] if accepts else []
-    scope = {"type": "http", "method": method, "path": path, "headers": told, "query_string": query, "root_path": ""}
+    told += [(b"accept", b"text/html,*/*")] if html else []
+    scope = {"type": "http", "method": method, "path": path, "headers": told, "query_string": b"", "root_path": ""}
     asyncio.run(page(scope, receive, send))
     headers = {name.decode(): value.decode() for name, value in sent[0]["headers"]}
     return sent[0]["status"], headers, b"".join(message.get("body", b"") for message in sent[1:])
@@ -47,11 +48,19 @@ def test_the_page_is_at_the_root(dist: Path) -> None:
     assert b"the page" in body
 
 
-def test_a_path_that_is_nothing_leads_to_the_page(dist: Path) -> None:
-    """All addresses in the page are relative, so it works at the root alone."""
+def test_a_path_that_is_no_place_is_404_and_the_page_says_so_in_a_browser(dist: Path) -> None:
     for path in ("/bench/abc", "/some/path/inside", "//evil.example"):
-        assert get(Page(dist), path)[:2] == (303, {"location": "/", "content-length": "0"})
-        assert get(Page(dist), path, query=b"page=runs")[1]["location"] == "/?page=runs"
+        status, headers, body = get(Page(dist), path, html=True)
+        assert (status, headers["cache-control"]) == (404, "no-cache") and b"the page" in body
+        with pytest.raises(HTTPException) as caught:
+            get(Page(dist), path)
+        assert caught.value.status_code == 404
+
+
+@pytest.mark.parametrize("prefix", ["", "/bench", "/a/b"])
+def test_addresses_in_the_page_begin_at_its_root_whatever_its_depth(dist: Path, prefix: str) -> None:
+    for path in ("/", "/some/path/inside", "//x"):
+        assert f'<base href="{prefix}/" />'.encode() in get(Page(dist, prefix), path, html=True)[2]
 
 
 def test_assets_with_a_hash_in_their_name_are_kept_by_the_browser(dist: Path) -> None:
@@ -80,7 +89,7 @@ def test_who_takes_gzip_gets_what_the_build_has_compressed(dist: Path) -> None:
 def test_what_is_not_there_is_not_the_page(dist: Path) -> None:
     for path in ("/api/v1/nothing", "/assets/nothing.js", "/benches/x/y", "/health/x"):
         with pytest.raises(HTTPException) as caught:
-            get(Page(dist), path)
+            get(Page(dist), path, html=True)
         assert caught.value.status_code == 404
 
 

@@ -62,25 +62,33 @@ test("links to an experiment and to a layout open the same tick, log, cursors an
   await expect(other.getByRole("tab", { name: "Voltage", exact: true })).toHaveCount(0);
 });
 
-test("a link to watch shows a bench, and its guest commands nothing, until it ends", async ({
+test("a shared link lets people watch who have no token, once the teacher lets them, until that ends", async ({
   page,
   openBench,
   elsewhere,
 }) => {
   await openBench("lab");
   await page.getByRole("button", { name: "Share this experiment" }).click();
-  await page.getByRole("button", { name: "Make a link" }).click();
+  const link = page.getByRole("textbox", { name: "Link", exact: true });
+  await expect(link).toHaveValue(/\?link=/);
   const guest = await elsewhere();
+  await guest.goto(await link.inputValue());
+  await expect(guest.getByRole("alert")).toContainText("This link does not let you watch");
+  await page.getByRole("button", { name: "Let people watch" }).click();
+  await expect(page.getByText("All others watch this bench live")).toBeVisible();
   const sent: string[] = [];
   guest.on("websocket", (socket) => socket.on("framesent", ({ payload }) => sent.push(String(payload))));
-  await guest.goto(await page.getByRole("textbox", { name: "Address to watch" }).inputValue());
+  await guest.goto(await link.inputValue());
   await expect(guest.getByTestId("bench-state")).toHaveText("running");
   await expect(guest.getByText("You watch this bench").first()).toBeVisible();
   for (const name of ["Pause", "Reset", /^Record/, /^Inject/])
     await expect(guest.getByRole("button", { name })).toHaveCount(0);
   for (const key of [" ", "h", "c", "R", "2"]) await guest.keyboard.press(key);
   await expect(guest.getByRole("region", { name: /^Scope/ }).first()).toBeVisible();
-  await page.getByRole("list", { name: "Links to watch this bench" }).getByRole("button", { name: "End" }).click();
+  await page
+    .getByRole("list", { name: "Links by which people watch this bench" })
+    .getByRole("button", { name: "End" })
+    .click();
   await expect(guest.getByText("The link to watch has ended")).toBeVisible();
   expect(sent.filter((text) => text.includes('"command"'))).toEqual([]);
 });

@@ -27,7 +27,8 @@ from tests.server.people.test_doors import COMMANDS
 BEFORE, AFTER = 50, 450
 """Ticks at which all doors are asked: the fault waits, and it has been there for a while."""
 ENDING = {("DELETE", "/api/v1/benches/{bench_id}/blind"), ("DELETE", "/api/v1/benches/{bench_id}")}
-JOINING = {("POST", "/join"), ("GET", "/watch/{link}"), ("POST", "/api/v1/classes/{class_id}/join")}
+WATCHING = {("GET", "/watch"), ("GET", "/watch/{secret}")}
+JOINING = {("POST", "/join"), ("POST", "/api/v1/classes/{class_id}/join"), *WATCHING}
 """Doors that end the exercise, and those that know no bench and count tries."""
 LONG = {("GET", f"/api/v1/{noun}") for noun in ("catalog", "gallery", "devices", "scenarios", "openapi.json")}
 """Doors that know no bench and say much: asked while the first two faults are hidden."""

@@ -96,7 +96,7 @@ def test_tries_are_limited(live: Live, group: dict[str, Any]) -> None:
 
     assert statuses(14) == [403] * 8 + [429] * 6
     assert join(live, group, "Ada").bench  # a right code never pays for wrong ones
-    with live.anonymous() as browser:
+    with live.anonymous(headers={"Accept": "text/html"}) as browser:
         page = browser.get("/watch/guessed")
     assert page.status_code == 429 and "Too many tries" in page.text and page.headers["Retry-After"]
     advance(live, seconds=5.5)
@@ -130,7 +130,8 @@ def test_a_link_to_watch_ends_when_the_teacher_says_so_or_its_time_is_over(
         live.http.delete(f"/api/v1/benches/{student.bench}/watchers/{guest.id}")
         assert closed_with(stream) == 4401
     with live.anonymous() as browser:
-        assert browser.get(f"/watch/{guest.secret}").status_code == 404
+        refused = browser.get(f"/watch/{guest.secret}")
+    assert (refused.status_code, refused.json()["error"]["code"]) == (403, "wrong_link")
 
 
 def test_the_teacher_sees_and_moves_all_benches(live: Live, group: dict[str, Any]) -> None:

@@ -97,7 +97,8 @@ def test_every_door_by_role(live: Any, people: dict[str, Somebody], role: str) -
             continue  # it would end or change the class of the other cases
         # a body of the wrong type is refused behind the door, and changes nothing
         answer = somebody.ask(method, filled, **({} if method == "GET" else {"json": []}))
-        refused = "/join" not in filled and answer.status_code in (401, 403)  # its own 403: the code is wrong
+        is_wrong = "/join" in filled or filled.startswith("/watch")  # a 403 of its own: the code or the link
+        refused = not is_wrong and answer.status_code in (401, 403)
         if refused:
             assert answer.json()["error"]["code"] in ("unauthorised", "forbidden")
         assert refused == (role not in ALLOWED[need]), (role, method, filled, answer.status_code, answer.text[:200])

@@ -16,7 +16,8 @@ OPEN = {
     ("GET", "/join"): (200, "the page that asks for the code of a class"),
     ("POST", "/join"): (403, "the code of a class opens it"),
     ("POST", "/api/v1/classes/class_id/join"): (422, "the same for programs"),
-    ("GET", "/watch/link"): (404, "the link itself is the secret"),
+    ("GET", "/watch/secret"): (403, "the link itself is the secret"),
+    ("GET", "/watch"): (422, "a shared link, by which the teacher lets people watch"),
 }
 """Doors that need no token, what a stranger with nothing gets there, and why."""
 

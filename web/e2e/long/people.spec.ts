@@ -87,9 +87,10 @@ test("the pages of people who share a bench fit their screens", async ({
   await page.getByRole("menuitem", { name: /^Share this experiment/ }).click();
   await expect(page.getByRole("img", { name: /^QR code of/ })).toBeVisible();
   expect(await seriousViolations(page)).toEqual([]);
-  await page.getByRole("button", { name: "Make a link" }).click();
+  await page.getByRole("button", { name: "Let people watch" }).click();
+  await expect(page.getByText("All others watch this bench live")).toBeVisible();
   const guest = await elsewhere();
-  await guest.goto(await page.getByRole("textbox", { name: "Address to watch" }).inputValue());
+  await guest.goto(await page.getByRole("textbox", { name: "Link", exact: true }).inputValue());
   await expect(guest.getByText("You watch this bench").first()).toBeVisible();
   expect(await seriousViolations(guest)).toEqual([]);
   await showOn(guest, PHONE);

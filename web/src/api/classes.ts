@@ -43,8 +43,9 @@ export const classes = {
   audit: async (id: string) => (await data(client.GET("/api/v1/classes/{class_id}/audit", ofClass(id)))).entries,
   watchers: async (bench: string) =>
     (await data(client.GET("/api/v1/benches/{bench_id}/watchers", ofBench(bench)))).watchers,
-  letWatch: (bench: string, hours: number) =>
-    data(client.POST("/api/v1/benches/{bench_id}/watchers", { ...ofBench(bench), body: { hours } })),
+  /** Let people without the access token watch a bench by a link that was shared. */
+  letWatch: (bench: string, link: string, hours: number) =>
+    data(client.POST("/api/v1/benches/{bench_id}/watchers", { ...ofBench(bench), body: { hours, link } })),
   endWatching: (bench_id: string, watcher_id: string) =>
     data(
       client.DELETE("/api/v1/benches/{bench_id}/watchers/{watcher_id}", { params: { path: { bench_id, watcher_id } } }),

@@ -6,7 +6,7 @@ import type { ApiErrorBody } from "./types";
 
 const OFFLINE: ApiErrorBody = { code: "offline", message: "The server does not answer.", field: "", hint: "" };
 
-/** The server, typed by its own OpenAPI document; it is where the page is, which behind a proxy may be below a path. */
+/** The server, typed by its own OpenAPI document; it is at the root of the page, which behind a proxy may be below a path. */
 export const client = createClient<paths>({ baseUrl: ".", fetch: reach });
 
 async function reach(request: Request): Promise<Response> {

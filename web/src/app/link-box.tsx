@@ -1,8 +1,9 @@
 import { Button, TextInput } from "@mantine/core";
 import { IconCheck, IconCopy } from "@tabler/icons-react";
-import { useRef, useState } from "react";
+import { useState } from "react";
 import { isLocal } from "../api/classes";
 import { announce } from "../bench/announce";
+import { copyText } from "../ui/copy-text";
 import { QrCode } from "../ui/qr-code";
 import styles from "./dialogs.module.css";
 
@@ -18,20 +19,13 @@ interface LinkBoxProps {
 const NEEDS_TOKEN = "People who open it must enter the access token of this server once.";
 
 /** A link in full, to be copied or read from the screen by a phone. */
-export function LinkBox({ path, what, remark = NEEDS_TOKEN, onCopy }: LinkBoxProps) {
+export function LinkBox({ path, what, remark, onCopy }: LinkBoxProps) {
   const address = new URL(`./${path}`, document.baseURI).href;
-  const field = useRef<HTMLInputElement>(null);
   const [copied, setCopied] = useState("");
 
   const copy = async () => {
     onCopy?.();
-    try {
-      await navigator.clipboard.writeText(address);
-    } catch {
-      // without TLS a browser has no clipboard for pages but on this machine
-      field.current?.select();
-      document.execCommand("copy");
-    }
+    await copyText(address);
     setCopied(address);
     announce("Link copied.");
   };
@@ -39,7 +33,7 @@ export function LinkBox({ path, what, remark = NEEDS_TOKEN, onCopy }: LinkBoxPro
   return (
     <div className={styles.link}>
       <div className={styles.name}>
-        <TextInput ref={field} label={what} value={address} readOnly onFocus={(e) => e.currentTarget.select()} />
+        <TextInput label={what} value={address} readOnly onFocus={(e) => e.currentTarget.select()} />
         <Button leftSection={copied === address ? <IconCheck size={16} /> : <IconCopy size={16} />} onClick={copy}>
           {copied === address ? "Copied" : "Copy"}
         </Button>
@@ -52,7 +46,7 @@ export function LinkBox({ path, what, remark = NEEDS_TOKEN, onCopy }: LinkBoxPro
       <div className={styles.qr}>
         <QrCode address={address} />
       </div>
-      <p className={styles.remark}>{remark}</p>
+      <p className={styles.remark}>{remark || NEEDS_TOKEN}</p>
     </div>
   );
 }

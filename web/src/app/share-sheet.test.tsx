@@ -64,39 +64,39 @@ it("makes no link while a fault is hidden", async () => {
   expect(server.requests).toEqual([]);
 });
 
-it("makes a link to watch for some hours, shows it once, and ends it", async () => {
+it("lets people watch by the link for some hours, says so, and ends it", async () => {
   const until = "2026-01-01T00:00:00Z";
-  server.on("POST", "/benches/:id/watchers", { id: "w1", until, path: "/watch?key=abc" });
+  server.on("POST", "/benches/:id/watchers", { id: "w1", until, path: "/?link=ab3kmn7x&shard=b" });
   server.on("DELETE", "/benches/:id/watchers/w1");
   const { user, sheet } = await open();
+  expect(await sheet.findByText(/must enter the access token/)).toBeVisible();
   await user.clear(sheet.getByLabelText("Lasts, hours"));
   await user.type(sheet.getByLabelText("Lasts, hours"), "2");
   server.on("GET", "/benches/:id/watchers", { watchers: [{ id: "w1", until }] });
-  await user.click(sheet.getByRole("button", { name: "Make a link" }));
-  expect(await sheet.findByRole("textbox", { name: "Address to watch" })).toHaveValue(
-    "http://localhost:3000/watch?key=abc",
-  );
-  expect(server.asked("POST", `/benches/${bench.id}/watchers`)[0].body).toEqual({ hours: 2 });
-  const list = within(await sheet.findByRole("list", { name: "Links to watch this bench" }));
+  await user.click(sheet.getByRole("button", { name: "Let people watch" }));
+  expect(await sheet.findByText(/All others watch this bench live/)).toBeVisible();
+  expect(sheet.getByRole("textbox", { name: "Link" })).toHaveValue("http://localhost:3000/?link=ab3kmn7x&shard=b");
+  expect(server.asked("POST", `/benches/${bench.id}/watchers`)[0].body).toEqual({ hours: 2, link: LINK.id });
+  const list = within(await sheet.findByRole("list", { name: "Links by which people watch this bench" }));
   server.on("GET", "/benches/:id/watchers", { watchers: [] });
   await user.click(list.getByRole("button", { name: "End" }));
   await waitFor(() => expect(sheet.queryByText(/^Lasts until/)).not.toBeInTheDocument());
   expect(server.asked("DELETE", `/benches/${bench.id}/watchers/w1`)).toHaveLength(1);
-  expect(sheet.queryByRole("textbox", { name: "Address to watch" })).not.toBeInTheDocument();
+  expect(await sheet.findByText(/must enter the access token/)).toBeVisible();
 });
 
-it.each(["0", "337"])("makes no link to watch that lasts %s hours", async (hours) => {
+it.each(["0", "337"])("lets nobody watch for %s hours", async (hours) => {
   const { user, sheet } = await open();
-  await user.clear(sheet.getByLabelText("Lasts, hours"));
+  await user.clear(await sheet.findByLabelText("Lasts, hours"));
   await user.type(sheet.getByLabelText("Lasts, hours"), hours);
-  expect(sheet.getByRole("button", { name: "Make a link" })).toBeDisabled();
+  expect(sheet.getByRole("button", { name: "Let people watch" })).toBeDisabled();
   expect(sheet.getByText("More than 0, at most 336")).toBeVisible();
 });
 
-it("says why there is no link to watch", async () => {
+it("says why nobody may watch", async () => {
   server.on("POST", "/benches/:id/watchers", new Refusal(409, "There are too many links."));
   const { user, sheet } = await open();
-  await user.click(sheet.getByRole("button", { name: "Make a link" }));
+  await user.click(await sheet.findByRole("button", { name: "Let people watch" }));
   expect(await screen.findByText("There are too many links.")).toBeVisible();
-  await vi.waitFor(() => expect(sheet.getByRole("button", { name: "Make a link" })).toBeEnabled());
+  await vi.waitFor(() => expect(sheet.getByRole("button", { name: "Let people watch" })).toBeEnabled());
 });

@@ -14,6 +14,8 @@ import { SideSheet } from "./side-sheet";
 import { WatchLinks } from "./watch-links";
 
 const LONGEST_NOTE = 2000;
+const WATCHED =
+  "People with the access token open this moment. All others watch this bench live, until the time is over.";
 
 /** Share the experiment: a link to this very moment, with how the page looks and a note. */
 export function ShareSheet() {
@@ -32,13 +34,7 @@ interface Made {
 function Share() {
   const bench = useBench((s) => s.bench?.id);
   const blind = useBench((s) => s.blind);
-  if (!blind)
-    return (
-      <>
-        <MadeLink />
-        {bench && <WatchLinks key={bench} bench={bench} />}
-      </>
-    );
+  if (!blind) return bench && <MadeLink key={bench} bench={bench} />;
   return (
     <EmptyState title="Answer first">
       A link holds all that was done on this bench, what is hidden too. Give your answer in Blind diagnosis, or end the
@@ -47,17 +43,17 @@ function Share() {
   );
 }
 
-function MadeLink() {
-  const bench = useBench((s) => s.bench?.id);
+function MadeLink({ bench }: { bench: string }) {
   const [made, setMade] = useState<Made | undefined>(undefined);
   const [error, setError] = useState<ApiError | undefined>(undefined);
   const [note, setNote] = useState("");
+  const [watched, setWatched] = useState("");
   const kept = useRef("");
-  const asked = useRef<string | undefined>(undefined);
+  const asked = useRef(false);
 
   useEffect(() => {
-    if (!bench || asked.current === bench) return;
-    asked.current = bench; // the moment shared is that of the click
+    if (asked.current) return;
+    asked.current = true; // the moment shared is that of the click
     const layout = sharedLayout();
     api.makeLink({ bench, title: "", note: "", layout: layout ? { ...layout } : null }).then(
       ({ id, tick }) => {
@@ -82,7 +78,7 @@ function MadeLink() {
         The link opens a new bench at {formatTick(made.tick)} with the same bits, your layout, cursors and note. It does
         not include what you do here afterwards.
       </p>
-      <LinkBox path={`?link=${made.id}`} what="Link" onCopy={keepNote} />
+      <LinkBox path={watched || `?link=${made.id}`} what="Link" remark={watched && WATCHED} onCopy={keepNote} />
       <Textarea
         label="Note, shown above the bench to people who open the link"
         maxLength={LONGEST_NOTE}
@@ -92,6 +88,7 @@ function MadeLink() {
         onChange={(e) => setNote(e.currentTarget.value)}
         onBlur={keepNote}
       />
+      <WatchLinks bench={bench} link={made.id} onLet={(path) => setWatched(path.slice(1))} />
     </>
   );
 }

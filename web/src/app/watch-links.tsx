@@ -5,22 +5,31 @@ import { classes } from "../api/classes";
 import { useAnswer } from "../api/queries";
 import { showError } from "../bench/send";
 import styles from "./dialogs.module.css";
-import { LinkBox } from "./link-box";
 
 const USUAL_H = 4;
 const LONGEST_H = 24 * 14;
 
-/** Links by which others see a bench live and change nothing; each ends by itself, or here. */
-export function WatchLinks({ bench }: { bench: string }) {
-  const { value: links, again } = useAnswer(["watchers", bench], () => classes.watchers(bench));
+interface WatchLinksProps {
+  bench: string;
+  /** The id of the link by which people watch. */
+  link: string;
+  /** Called with the path by which people without the access token watch, and without one when that ends. */
+  onLet(path: string): void;
+}
+
+/** Lets people without the access token watch a bench by a link; that ends by itself, or here. */
+export function WatchLinks({ bench, link, onLet }: WatchLinksProps) {
+  const { value: watchers, again } = useAnswer(["watchers", bench], () => classes.watchers(bench));
   const [hours, setHours] = useState<number | string>(USUAL_H);
-  const [path, setPath] = useState<{ of: string; path: string } | undefined>(undefined);
   const [busy, setBusy] = useState(false);
-  const make = async () => {
+  const [own, setOwn] = useState("");
+  const isRight = Number(hours) > 0 && Number(hours) <= LONGEST_H;
+  const letWatch = async () => {
     setBusy(true);
     try {
-      const made = await classes.letWatch(bench, Number(hours));
-      setPath(made.path ? { of: made.id, path: made.path } : undefined);
+      const { id, path } = await classes.letWatch(bench, link, Number(hours));
+      setOwn(id);
+      onLet(path ?? "");
       again();
     } catch (error) {
       showError(error);
@@ -29,13 +38,15 @@ export function WatchLinks({ bench }: { bench: string }) {
     }
   };
   const end = async (id: string) => {
-    if (path?.of === id) setPath(undefined);
+    if (id === own) onLet("");
     await classes.endWatching(bench, id).then(again, showError);
   };
   return (
-    <section aria-label="Link to watch">
-      <h3 className={styles.heading}>Link to watch</h3>
-      <p className={styles.remark}>People who open it see this bench live. They cannot change anything.</p>
+    <section aria-label="Watch by the link">
+      <h3 className={styles.heading}>Let people watch</h3>
+      <p className={styles.remark}>
+        People without the access token can open the link too: they see this bench live and cannot change it.
+      </p>
       <div className={styles.name}>
         <NumberInput
           label="Lasts, hours"
@@ -43,31 +54,24 @@ export function WatchLinks({ bench }: { bench: string }) {
           max={LONGEST_H}
           value={hours}
           onChange={setHours}
-          error={Number(hours) > 0 && Number(hours) <= LONGEST_H ? undefined : `More than 0, at most ${LONGEST_H}`}
+          error={isRight ? undefined : `More than 0, at most ${LONGEST_H}`}
         />
         <Button
           variant="default"
           leftSection={<IconEye size={16} />}
           loading={busy}
-          disabled={!(Number(hours) > 0 && Number(hours) <= LONGEST_H)}
-          onClick={make}
+          disabled={!isRight}
+          onClick={letWatch}
         >
-          Make a link
+          Let people watch
         </Button>
       </div>
-      {path && (
-        <LinkBox
-          path={path.path.slice(1)}
-          what="Address to watch"
-          remark="It needs no access token, and is shown only now: copy it."
-        />
-      )}
-      {links && links.length > 0 && (
-        <ul className={styles.gallery} aria-label="Links to watch this bench">
-          {links.map(({ id, until }) => (
+      {watchers && watchers.length > 0 && (
+        <ul className={styles.gallery} aria-label="Links by which people watch this bench">
+          {watchers.map(({ id, until }) => (
             <li key={id}>
               <span>Lasts until {new Date(until).toLocaleString([], { dateStyle: "short", timeStyle: "short" })}</span>
-              <Button size="compact-sm" variant="default" onClick={() => end(id)}>
+              <Button size="compact-sm" variant="default" onClick={() => void end(id)}>
                 End
               </Button>
             </li>
