@@ -6,7 +6,7 @@ import { defineConfig } from "vitest/config";
 const board = process.env.COMBBENCH_URL ?? "http://127.0.0.1:8000";
 
 export default defineConfig({
-  // All addresses are relative to the page's own, so that a proxy may serve it under any path.
+  // All addresses are relative to the base of the page, so that a proxy may serve it under any path.
   base: "./",
   plugins: [
     react(),

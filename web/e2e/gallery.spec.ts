@@ -11,8 +11,15 @@ test("figures are made when the gallery is opened; it searches, runs an experime
   const server = await LabServer.create({ COMBBENCH_FIGURES: "true" });
   try {
     await page.request.get(server.url);
-    await page.goto(`${server.origin}/?page=gallery`);
+    await page.goto(`${server.origin}/gallery/ch5-seven-step`);
     const cards = page.getByRole("list", { name: "Experiments" }).locator("> li");
+    await expect(cards).toHaveCount(1);
+    await expect(page).toHaveTitle(/^Seven-step .* \| Gallery \| CombBench$/);
+    await page.getByRole("button", { name: "All experiments" }).click();
+    await expect(page).toHaveTitle("Gallery | CombBench");
+    await page.goBack();
+    await expect(cards).toHaveCount(1);
+    await page.goForward();
     const { cards: library } = await server.ask<Library>("GET", "/gallery");
     await expect(cards).toHaveCount(library.length);
     const figure = cards.nth(0).getByRole("img", { name: /^Figure of First look/ });

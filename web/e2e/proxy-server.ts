@@ -79,7 +79,14 @@ export async function walkBehindProxy(page: Page, prefix: string): Promise<void>
     await expect(page.getByText("cannot reach this address")).toHaveCount(0);
     const icon = page.locator("img[src='./comb.svg']");
     await expect.poll(() => icon.evaluate((img) => (img as HTMLImageElement).naturalWidth)).toBeGreaterThan(0);
+    await page.goto(`${base}theory/5.2.3.2`);
+    await expect(page).toHaveTitle("5.2.3.2 | Theory | CombBench");
+    await expect(page.getByRole("heading", { name: "Theory" })).toBeVisible();
+    await expect(page.getByTestId("bench-state")).toHaveText("running");
     expect(refused.filter((line) => !line.includes("ERR_ABORTED"))).toEqual([]);
+    const nowhere = await page.goto(`${base}no/such/place`);
+    expect(nowhere?.status()).toBe(404);
+    await expect(page.getByText("Page not found")).toBeVisible();
   } finally {
     await proxy.destroy();
   }

@@ -5,7 +5,7 @@ test("a run is started from the page and its files are offered; a campaign is st
   server,
 }) => {
   await page.request.get(server.url);
-  await page.goto(`${server.origin}/?page=runs`);
+  await page.goto(`${server.origin}/runs`);
   const form = page.getByRole("form", { name: "Start" });
   const result = page.getByRole("region", { name: "Result" });
   await form.getByRole("button", { name: "Change a value" }).click();
@@ -19,8 +19,8 @@ test("a run is started from the page and its files are offered; a campaign is st
   await value.fill("0.06");
   await form.getByRole("checkbox", { name: "Keep all signals" }).check();
   await run.click();
-  await expect(page).toHaveURL(/[?&]run=/);
-  const id = new URL(page.url()).searchParams.get("run");
+  await expect(page).toHaveURL(/\/runs\/\w+\?/);
+  const id = new URL(page.url()).pathname.split("/").at(-1);
   await expect(result.getByText("Expectations")).toBeVisible();
   const asked = () => server.ask<{ state: string; all: boolean; summary: { digest: string } }>("GET", `/runs/${id}`);
   await expect.poll(async () => (await asked()).state).toBe("done");
@@ -37,7 +37,7 @@ test("a run is started from the page and its files are offered; a campaign is st
   const script = await page.request.get(`${server.origin}/api/v1/runs/${id}/script`);
   expect(await script.text()).toContain(summary.digest);
 
-  await page.goto(`${server.origin}/?page=runs`);
+  await page.goto(`${server.origin}/runs`);
   await page.getByText("Campaign", { exact: true }).click();
   await form.getByRole("combobox", { name: "Every combination of 1: path" }).fill("sensor.noise_um");
   await value.fill("0.05, 0.2");

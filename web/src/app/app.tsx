@@ -5,12 +5,13 @@ import { ApiError } from "../api/client";
 import { may, useMe } from "../api/me";
 import { useLecture } from "../bench/lecture";
 import { benchInAddress, inAddress, openBench, showBench } from "../bench/open-bench";
-import { pageInAddress, useView } from "../bench/view-store";
+import { setPage, showAddress, useView } from "../bench/view-store";
 import { View3dHost } from "../panels/view3d/view3d-host";
 import { useBench } from "../stream/bench-store";
 import { closeReason } from "../stream/close-reason";
 import { useStaleSince } from "../stream/freshness";
 import { EmptyState } from "../ui/empty-state";
+import { useTitle } from "../ui/use-title";
 import { Announcer } from "./announcer";
 import { Banner } from "./banner";
 import { Caption } from "./caption";
@@ -32,6 +33,7 @@ import { isOffered, PAGES } from "./pages";
 import { Phone } from "./phone";
 import { Rail } from "./rail";
 import { ReplayBar } from "./replay-bar";
+import { Search } from "./search/search";
 import { ShareSheet } from "./share-sheet";
 import { StepBar } from "./step-bar";
 import { TimeBar } from "./time-bar";
@@ -49,11 +51,11 @@ interface Failure {
 export function App() {
   const phone = useMediaQuery("(max-width: 600px)", undefined, { getInitialValueInEffect: false });
   const role = useMe((s) => s.me?.role);
-  const asked = useView((s) => s.page);
-  const page = isOffered(asked, role) ? asked : "bench";
+  const asked = useView((s) => (s.lost ? "nowhere" : s.page));
+  const page = asked === "nowhere" || isOffered(asked, role) ? asked : "bench";
   const noted = useBench((s) => Boolean(s.bench?.opened?.note));
   const stale = useStaleSince() !== undefined;
-  const Page = PAGES[page].component;
+  const Page = page === "nowhere" ? Nowhere : PAGES[page].component;
   const [failure, setFailure] = useState<Failure | undefined>(undefined);
   const present = useView((s) => s.present);
   const lectures = useLecture((s) => s.lecture !== undefined);
@@ -81,7 +83,7 @@ export function App() {
   useEffect(() => {
     start();
     const back = () => {
-      useView.setState({ page: pageInAddress() });
+      showAddress();
       const id = benchInAddress();
       if (may("teach") && id && id !== useBench.getState().bench?.id) showBench(id);
     };
@@ -119,6 +121,7 @@ export function App() {
           {!phone && <View3dHost />}
         </div>
       )}
+      {page === "bench" && <BenchTitle />}
       {!failure && page === "bench" && <Caption />}
       {!failure && !phone && page === "bench" && <TimeBar />}
       {!failure && <LectureStrip />}
@@ -128,9 +131,27 @@ export function App() {
       <ShareSheet />
       <LayoutSheet />
       <EditorDrawer />
+      <Search />
       <Announcer />
     </div>
   );
+}
+
+/** The page at an unknown address. */
+function Nowhere() {
+  useTitle("Not found");
+  return (
+    <main>
+      <EmptyState title="Page not found" action={<Button onClick={() => setPage("bench")}>Go to the bench</Button>}>
+        The server has no page at {window.location.pathname}.
+      </EmptyState>
+    </main>
+  );
+}
+
+function BenchTitle() {
+  useTitle(useBench((s) => s.bench?.title));
+  return null;
 }
 
 /** Try again, or leave the link that led nowhere. */

@@ -10,7 +10,7 @@ import {
 import type { ComponentType, ReactNode } from "react";
 import { may, type Right } from "../api/me";
 import type { Me } from "../api/types";
-import type { PageName } from "../bench/view-store";
+import type { PageName } from "../bench/places";
 import { BenchmarkPage } from "../benchmark/benchmark-page";
 import { ClassPage } from "../class/class-page";
 import { Designer } from "../designer/designer";

@@ -1,15 +1,15 @@
-import { useView } from "../bench/view-store";
+import { openPlace, useView } from "../bench/view-store";
 
 const PARAMETER = "present";
 
 /** Show only what an audience looks at, on the whole screen where the browser lets it; or all again. */
 export function setPresent(present: boolean): void {
+  if (present) openPlace("bench", "", true);
   const url = new URL(window.location.href);
   if (present) url.searchParams.set(PARAMETER, "1");
   else url.searchParams.delete(PARAMETER);
-  if (present) url.searchParams.delete("page");
   window.history.replaceState(null, "", url);
-  useView.setState({ present, ...(present ? { page: "bench" } : {}) });
+  useView.setState({ present });
   if (present) document.documentElement.requestFullscreen?.().catch(() => undefined);
   else if (document.fullscreenElement) void document.exitFullscreen();
 }

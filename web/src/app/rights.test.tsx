@@ -71,9 +71,9 @@ it("gives a student who looks at a bench that is shown to all nothing that chang
 });
 
 it.each([
-  ["teacher", ["Bench", "Class", "Gallery", "Runs", "Scores", "Design", "Theory"]],
-  ["student", ["Bench", "Gallery", "Scores", "Design", "Theory"]],
-  ["watcher", ["Bench", "Gallery", "Scores", "Design", "Theory"]],
+  ["teacher", ["Search", "Bench", "Class", "Gallery", "Runs", "Scores", "Design", "Theory"]],
+  ["student", ["Search", "Bench", "Gallery", "Scores", "Design", "Theory"]],
+  ["watcher", ["Search", "Bench", "Gallery", "Scores", "Design", "Theory"]],
 ] as const)("offers a %s the pages there are for them", (role, names) => {
   be(role);
   mount(<Rail />);
@@ -84,7 +84,7 @@ it.each([
 it("goes to a page that is pressed", async () => {
   const { user } = mount(<Rail />);
   await user.click(screen.getByRole("button", { name: "Runs" }));
-  expect(window.location.search).toBe("?page=runs");
+  expect(window.location.pathname).toBe("/runs");
   expect(screen.getByRole("button", { current: "page" })).toHaveTextContent("Runs");
 });
 

@@ -2,7 +2,7 @@
 import { afterEach, expect, test, vi } from "vitest";
 import { may, useMe } from "../api/me";
 import type { Me } from "../api/types";
-import type { PageName } from "../bench/view-store";
+import type { PageName } from "../bench/places";
 import { keymap } from "./keymap";
 import { isOffered, PAGES } from "./pages";
 

@@ -8,10 +8,11 @@ import { saveFile } from "../ui/save-file";
 import { layoutNow } from "./dock";
 import { openOwn } from "./open-bench";
 import { forkBeforeTrip } from "./past";
+import type { PageName } from "./places";
 import { send, showError } from "./send";
 import { sendAndTell } from "./tell";
 import { stepTimeScale } from "./time-scale";
-import { type PageName, setPage, useView } from "./view-store";
+import { setPage, useView } from "./view-store";
 
 const bench = () => useBench.getState().bench;
 

@@ -1,4 +1,6 @@
 import { create } from "zustand";
+import { isInFrame } from "../api/session";
+import { addressOf, EARLIER, type PageName, placeOf } from "./places";
 
 const LAYOUT_NAMES = ["lecture", "lab", "research"] as const;
 
@@ -9,13 +11,12 @@ const CHOSEN = "combbench.layout.chosen";
 /** What the block card shows: an instance on the bench, such as "plant" or "diagnosers.kalman". */
 export type CardId = string;
 
-/** What the page shows: the live bench, or what is done around it. */
-const PAGE_NAMES = ["bench", "class", "gallery", "runs", "benchmark", "designer", "theory"] as const;
-
-export type PageName = (typeof PAGE_NAMES)[number];
-
 interface ViewStore {
   page: PageName;
+  /** The one thing that the page shows of many; empty for all. */
+  item: string;
+  /** The address names no place. */
+  lost: boolean;
   /** A built-in one, or the name of one of one's own. */
   layout: string;
   card: CardId;
@@ -41,7 +42,7 @@ export const LECTURE_PX = 15;
 
 /** How this page looks at the bench; says nothing about the bench itself. */
 export const useView = create<ViewStore>(() => ({
-  page: pageInAddress(),
+  ...placeHere(),
   layout: firstLayout(),
   card: "diagnosers.kalman",
   sample: undefined,
@@ -67,18 +68,25 @@ export function chooseLayout(layout: string): void {
   window.history.replaceState(null, "", url);
 }
 
-/** The page named in the address. */
-export function pageInAddress(): PageName {
-  const asked = new URLSearchParams(window.location.search).get("page");
-  return PAGE_NAMES.find((name) => name === asked) ?? "bench";
+function placeHere(): Pick<ViewStore, "page" | "item" | "lost"> {
+  const place = placeOf(new URL(window.location.href));
+  return { page: "bench", item: "", ...place, lost: place === undefined };
 }
 
-/** Go to a page; the address names it, and back works. */
-export function setPage(page: PageName): void {
-  if (page === useView.getState().page) return;
-  const url = new URL(window.location.href);
-  if (page === "bench") url.searchParams.delete("page");
-  else url.searchParams.set("page", page);
-  window.history.pushState(null, "", url);
-  useView.setState({ page });
+/** Show the place that the address names. */
+export const showAddress = (): void => useView.setState(placeHere());
+
+/** Go to a place; the address names it, and back works, unless it takes the place of the one before. */
+export function openPlace(page: PageName, item = "", replace = false): void {
+  const now = useView.getState();
+  if (page === now.page && item === now.item && !now.lost) return;
+  // a frame of a learning platform loads again at the address of its launch alone
+  const url = new URL(isInFrame() ? window.location.href : addressOf({ page, item }));
+  url.search = window.location.search;
+  for (const name of EARLIER) url.searchParams.delete(name);
+  window.history[replace ? "replaceState" : "pushState"](null, "", url);
+  useView.setState({ page, item, lost: false });
 }
+
+/** Go to a page as a whole. */
+export const setPage = (page: PageName): void => openPlace(page);

@@ -3,6 +3,7 @@ import { useState } from "react";
 import { api } from "../api/api";
 import { useAnswer } from "../api/queries";
 import type { Benchmark } from "../api/types";
+import { PageHead } from "../bench/page-head";
 import { LineChart } from "../picture/line-chart";
 import { EmptyState } from "../ui/empty-state";
 import { formatNumber } from "../ui/format";
@@ -24,7 +25,7 @@ export function BenchmarkPage() {
   return (
     <main className={styles.page}>
       <header className={styles.top}>
-        <h1>Benchmark</h1>
+        <PageHead name="Scores" heading="Benchmark" />
         {value && (
           <NativeSelect
             size="xs"

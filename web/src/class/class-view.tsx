@@ -5,6 +5,7 @@ import { useAnswer } from "../api/queries";
 import type { Class, Tile } from "../api/types";
 import { useCatalog } from "../api/use-catalog";
 import { openBench } from "../bench/open-bench";
+import { PageHead } from "../bench/page-head";
 import { showError } from "../bench/send";
 import { setPage } from "../bench/view-store";
 import { useBench } from "../stream/bench-store";
@@ -88,7 +89,7 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
   return (
     <>
       <header className={styles.top}>
-        <h1>{name}</h1>
+        <PageHead name="Class" item={name} heading={name} />
         <p>
           {formatCount(members.length, "student")}
           {hands > 0 && <b className={styles.hands}> · {formatCount(hands, "hand")} up</b>}

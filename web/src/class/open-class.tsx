@@ -2,6 +2,7 @@ import { Button, NumberInput, TextInput } from "@mantine/core";
 import { type FormEvent, useState } from "react";
 import { classes } from "../api/classes";
 import type { Class } from "../api/types";
+import { PageHead } from "../bench/page-head";
 import { showError } from "../bench/send";
 import styles from "./class.module.css";
 import { ScenarioSelect } from "./scenario-select";
@@ -40,7 +41,7 @@ export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
   };
   return (
     <section className={styles.form} aria-label="Open a class">
-      <h1>Class</h1>
+      <PageHead name="Class" />
       <p>
         Students join a class with a code from the wall, without an account. Each has a bench of their own, and you see
         all of them here.

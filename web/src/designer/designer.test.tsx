@@ -1,6 +1,6 @@
-import { screen, waitFor, within } from "@testing-library/react";
+import { act, screen, waitFor, within } from "@testing-library/react";
 import { beforeEach, expect, it } from "vitest";
-import { useView } from "../bench/view-store";
+import { openPlace, useView } from "../bench/view-store";
 import { Refusal, server } from "../testing/fake-server";
 import { connect } from "../testing/fake-transport";
 import { recordedAnswer, recordedBench } from "../testing/recorded";
@@ -57,6 +57,17 @@ it("shows figures with units, drawing, response and sensitivity of a device", as
       .getAllByRole("cell")
       .map((cell) => cell.textContent),
   ).toEqual(["−0.4", "−34.4", "−0.7", "0", "−18.8", "−18.6"]);
+});
+
+it("opens at the device that the address names, and says so when there is none", async () => {
+  const [, other] = devices.devices;
+  openPlace("designer", other.id);
+  const { user } = await mountDesigner();
+  expect(screen.getByRole("combobox", { name: "Device" })).toHaveValue(other.id);
+  await user.selectOptions(screen.getByRole("combobox", { name: "Device" }), "lcr-350");
+  expect(window.location.pathname).toBe("/design/lcr-350");
+  act(() => openPlace("designer", "none"));
+  expect(screen.getByText("The catalogue has no device none.")).toBeVisible();
 });
 
 it("asks for the response around the resonance", async () => {

@@ -5,12 +5,21 @@ import { api } from "../api/api";
 import { useMay } from "../api/me";
 import type { DeviceCatalogue, Evaluation, ProcessSpread } from "../api/types";
 import { openOwn } from "../bench/open-bench";
+import { PageHead } from "../bench/page-head";
 import { showError } from "../bench/send";
-import { setPage } from "../bench/view-store";
+import { openPlace, setPage, useView } from "../bench/view-store";
 import { EmptyState } from "../ui/empty-state";
 import { formatSi } from "../ui/format";
 import { AxesView } from "./axes-view";
-import { benchOf, catalogued, designDocument, gyroscopeBenchOf, isGyroscope, newDesign } from "./design";
+import {
+  benchOf,
+  catalogued,
+  type DesignState,
+  designDocument,
+  gyroscopeBenchOf,
+  isGyroscope,
+  newDesign,
+} from "./design";
 import styles from "./designer.module.css";
 import { DesignerControls } from "./designer-controls";
 import { DeviceView } from "./device-view";
@@ -29,6 +38,7 @@ export function Designer() {
   const drives = useMay("drive");
   const teaches = useMay("teach");
   const [catalogue, setCatalogue] = useState<DeviceCatalogue | undefined>(undefined);
+  const item = useView((s) => s.item);
   const [state, setState] = useState(() => newDesign(FIRST));
   const [original, setOriginal] = useState<Evaluation | undefined>(undefined);
   const [spread, setSpread] = useState<ProcessSpread["statistics"][string] | undefined>(undefined);
@@ -38,11 +48,19 @@ export function Designer() {
   useEffect(() => {
     api.deviceCatalogue().then(setCatalogue, showError);
   }, []);
+  const isKnown = catalogue?.devices.some(({ id }) => id === item);
+  useEffect(() => {
+    if (isKnown) setState((now) => (now.id === item ? now : newDesign(item)));
+  }, [isKnown, item]);
   useEffect(() => {
     api.evaluate({ device: { id: state.id }, environment: {} }).then(setOriginal, showError);
   }, [state.id]);
 
   const device = catalogue?.devices.find((d) => d.id === state.id);
+  const change = (next: DesignState) => {
+    setState(next);
+    if (next.id !== state.id) openPlace("designer", next.id, true);
+  };
   const draw = async () => {
     const seed = (state.drawn?.seed ?? 0) + 1;
     const undrawn = { ...state, drawn: undefined };
@@ -73,7 +91,8 @@ export function Designer() {
   return (
     <main className={styles.page}>
       <header className={styles.top}>
-        <h1>Device designer</h1>
+        <PageHead name="Design" item={isKnown ? device.title : undefined} heading="Device designer" />
+        {item && !isKnown && <span className={styles.refusal}>The catalogue has no device {item}.</span>}
         {state.drawn && (
           <span className={styles.drawn}>
             device {state.drawn.seed} of the process
@@ -116,7 +135,7 @@ export function Designer() {
           )}
         </div>
       </header>
-      <DesignerControls catalogue={catalogue} device={device} state={state} onChange={setState} />
+      <DesignerControls catalogue={catalogue} device={device} state={state} onChange={change} />
       {evaluation && "gyro.axis_deg" in evaluation.metrics ? (
         <>
           <section className={styles.drawing} aria-label="Drawing">

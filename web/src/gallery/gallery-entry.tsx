@@ -6,6 +6,7 @@ import { useMay } from "../api/me";
 import { micro } from "../api/micro";
 import type { GalleryCard } from "../api/types";
 import { openOwn } from "../bench/open-bench";
+import { PlaceLink } from "../bench/page-head";
 import { showError } from "../bench/send";
 import { setPage } from "../bench/view-store";
 import { useOnScreen } from "../ui/on-screen";
@@ -71,7 +72,9 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
         )}
       </div>
       <div className={styles.words}>
-        <h2>{title}</h2>
+        <h2>
+          <PlaceLink place={{ page: "gallery", item: card.id }}>{title}</PlaceLink>
+        </h2>
         <small>
           {card.id}
           {card.source && ` · ${card.source}`}

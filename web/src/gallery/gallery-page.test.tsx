@@ -1,6 +1,7 @@
 import { screen, waitFor, within } from "@testing-library/react";
 import { beforeEach, expect, it } from "vitest";
-import { useView } from "../bench/view-store";
+import { micro } from "../api/micro";
+import { openPlace, useView } from "../bench/view-store";
 import { Refusal, server } from "../testing/fake-server";
 import { connect } from "../testing/fake-transport";
 import { recordedAnswer, recordedBench } from "../testing/recorded";
@@ -103,6 +104,29 @@ it("searches, filters by verdict and chapter, and shows all again", async () => 
   expect(screen.getByText(/^\d of 6$/)).toBeVisible();
   await user.type(screen.getByRole("searchbox"), "no such thing");
   expect(screen.getByText("No experiment matches")).toBeVisible();
+  await user.click(screen.getByRole("button", { name: "Show all" }));
+  expect(screen.getByRole("list", { name: "Experiments" }).children).toHaveLength(library.length);
+});
+
+it("shows the experiment that the address names alone, names the window after it, and copies its link", async () => {
+  const { user, entries, entry } = await mountGallery();
+  expect(document.title).toBe("Gallery | CombBench");
+  await user.click(entry(study.id).getByRole("link", { name: micro(study.title) }));
+  expect(window.location.pathname).toBe(`/gallery/${study.id}`);
+  expect(entries()).toEqual([study.id]);
+  expect(document.title).toBe(`${micro(study.title)} | Gallery | CombBench`);
+  await user.click(screen.getByRole("button", { name: "Copy link" }));
+  expect(await screen.findByRole("button", { name: "Link copied" })).toBeVisible();
+  expect(await navigator.clipboard.readText()).toBe(`http://localhost:3000/gallery/${study.id}`);
+  await user.click(screen.getByRole("button", { name: "All experiments" }));
+  expect(entries()).toEqual(library.map(({ id }) => id));
+  expect(screen.getByRole("button", { name: "Copy link" })).toBeVisible();
+});
+
+it("says that the library does not have the experiment of an address", async () => {
+  openPlace("gallery", "none");
+  const { user } = mount(<GalleryPage />);
+  expect(await screen.findByText("The library has no experiment none")).toBeVisible();
   await user.click(screen.getByRole("button", { name: "Show all" }));
   expect(screen.getByRole("list", { name: "Experiments" }).children).toHaveLength(library.length);
 });

@@ -1,14 +1,17 @@
-import { Button, NativeSelect, Progress, TextInput } from "@mantine/core";
+import { Button, Progress } from "@mantine/core";
 import { IconFolderOpen } from "@tabler/icons-react";
 import { useCallback, useMemo, useRef, useState } from "react";
 import { api } from "../api/api";
 import { useMay } from "../api/me";
+import { micro } from "../api/micro";
 import { useAnswer } from "../api/queries";
-import { useView } from "../bench/view-store";
+import { PageHead } from "../bench/page-head";
+import { setPage, useView } from "../bench/view-store";
 import { EmptyState } from "../ui/empty-state";
 import { formatCount, formatNumber } from "../ui/format";
 import { Stale } from "../ui/stale";
-import { chapterName, chaptersOf, chosen, EVERYTHING, VERDICTS } from "./chapters";
+import { chosen, EVERYTHING } from "./chapters";
+import { Filters } from "./filters";
 import styles from "./gallery.module.css";
 import { GalleryEntry } from "./gallery-entry";
 import { LectureList } from "./lecture-list";
@@ -30,50 +33,32 @@ export function GalleryPage() {
   const onSight = useCallback((id: string, isShown: boolean) => {
     inSight.current[isShown ? "add" : "delete"](id);
   }, []);
+  const item = useView((s) => s.item);
   const [filter, setFilter] = useState(EVERYTHING);
   const drives = useMay("drive");
   const teaches = useMay("teach");
   const all = value?.cards;
   const figures = value?.figures;
-  const cards = useMemo(() => chosen(all ?? [], filter), [all, filter]);
+  const one = all?.find(({ id }) => id === item);
+  const cards = useMemo(() => (one ? [one] : item ? [] : chosen(all ?? [], filter)), [all, filter, item, one]);
   const busy = all?.filter((card) => isUnderWay(card.state)).length ?? 0;
-  const set = (part: Partial<typeof filter>) => setFilter({ ...filter, ...part });
+  const showAll = () => {
+    setFilter(EVERYTHING);
+    setPage("gallery");
+  };
 
   return (
     <main className={styles.page}>
       <header className={styles.top}>
-        <h1>Gallery</h1>
-        <NativeSelect
-          size="xs"
-          aria-label="Chapter"
-          value={filter.chapter}
-          data={[
-            { value: "all", label: "All chapters" },
-            ...chaptersOf(all ?? []).map((name) => ({ value: name, label: chapterName(name) })),
-          ]}
-          onChange={(e) => set({ chapter: e.currentTarget.value })}
-        />
-        <NativeSelect
-          size="xs"
-          aria-label="Verdict"
-          value={filter.verdict}
-          data={[
-            { value: "all", label: "Any verdict" },
-            ...VERDICTS.map((verdict) => ({ value: verdict, label: verdict })),
-            { value: "open", label: "not measured, or other than expected" },
-          ]}
-          onChange={(e) => set({ verdict: e.currentTarget.value })}
-        />
-        <TextInput
-          size="xs"
-          type="search"
-          placeholder="Title, device, controller, fault"
-          aria-label="Search the gallery"
-          w={240}
-          value={filter.words}
-          onChange={(e) => set({ words: e.currentTarget.value })}
-        />
-        {all && (
+        <PageHead name="Gallery" item={one && micro(one.title)} />
+        {item ? (
+          <Button size="xs" variant="default" onClick={() => setPage("gallery")}>
+            All experiments
+          </Button>
+        ) : (
+          <Filters all={all ?? []} filter={filter} onChange={setFilter} />
+        )}
+        {all && !item && (
           <output className={styles.count}>
             {cards.length === all.length
               ? formatCount(all.length, "experiment")
@@ -81,7 +66,7 @@ export function GalleryPage() {
             {busy > 0 && `, ${formatNumber(busy, 0)} under way`}
           </output>
         )}
-        {drives && (
+        {drives && !item && (
           <Button
             size="xs"
             variant="default"
@@ -109,7 +94,7 @@ export function GalleryPage() {
         )}
         <Stale error={error} since={since} onRetry={again} />
       </header>
-      {teaches && <LectureList />}
+      {teaches && !item && <LectureList />}
       {value && cards.length > 0 ? (
         <ul className={styles.grid} data-stale={error !== undefined} aria-label="Experiments">
           {cards.map((card) => (
@@ -124,14 +109,16 @@ export function GalleryPage() {
         </ul>
       ) : value ? (
         <EmptyState
-          title="No experiment matches"
+          title={item ? `The library has no experiment ${item}` : "No experiment matches"}
           action={
-            <Button size="xs" variant="default" onClick={() => setFilter(EVERYTHING)}>
+            <Button size="xs" variant="default" onClick={showAll}>
               Show all
             </Button>
           }
         >
-          Choose another chapter or verdict, or search for fewer words.
+          {item
+            ? "The address may be of another version."
+            : "Choose another chapter or verdict, or search for fewer words."}
         </EmptyState>
       ) : (
         !error && <EmptyState title="Opening the gallery">Claims and measurements come from the server.</EmptyState>

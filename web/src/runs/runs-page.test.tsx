@@ -1,5 +1,6 @@
 import { screen, waitFor, within } from "@testing-library/react";
 import { beforeEach, expect, it, vi } from "vitest";
+import { showAddress } from "../bench/view-store";
 import { Refusal, server } from "../testing/fake-server";
 import { recordedAnswer } from "../testing/recorded";
 import { mount } from "../testing/render";
@@ -24,6 +25,7 @@ beforeEach(() => {
 
 async function mountPage(query = "") {
   window.history.replaceState(null, "", `/?page=runs${query}`);
+  showAddress();
   const shown = mount(<RunsPage />);
   const jobs = within(screen.getByRole("region", { name: "Runs and campaigns" }));
   await jobs.findByRole("list");
@@ -43,7 +45,7 @@ it("lists runs and campaigns, the newest first and the last included", async () 
 it("shows a run that is chosen: its figures with units, its digest and its files", async () => {
   const { user, jobs, result } = await mountPage();
   await user.click(jobs.getByRole("button", { name: /^quiet/ }));
-  expect(window.location.search).toContain("run=run-2");
+  expect(window.location.pathname).toBe("/runs/run-2");
   expect(result.getByRole("heading", { name: "quiet <b>bench</b>" })).toBeVisible();
   expect(result.getByRole("row", { name: /^natural frequency.*2\.48378|^f0.*2\.48378|2483\.78/i })).toBeVisible();
   expect(result.getByText("digest digest")).toBeVisible();
@@ -86,7 +88,7 @@ it("compares two that are marked, with signed differences and both traces", asyn
   expect(jobs.getByRole("button", { name: "Compare" })).toBeDisabled();
   for (const box of jobs.getAllByRole("checkbox").slice(0, 2)) await user.click(box);
   await user.click(jobs.getByRole("button", { name: "Compare 2" }));
-  expect(window.location.search).toContain("compare=run-1%2Crun-2");
+  expect(window.location.pathname).toBe("/runs/run-1,run-2");
   const table = within(await result.findByRole("table"));
   const different = comparison.figures.filter(({ differences }) => differences.some((one) => one !== 0));
   expect(table.getAllByRole("row")).toHaveLength(different.length + 1);
@@ -110,7 +112,7 @@ it("removes what is marked once that is confirmed, and shows it no longer", asyn
   await user.click(jobs.getByRole("button", { name: "Remove 2" }));
   expect(server.asked("POST", "/runs/remove")).toEqual([]);
   await user.click(jobs.getByRole("button", { name: "Remove 2" }));
-  await waitFor(() => expect(window.location.search).not.toContain("run="));
+  await waitFor(() => expect(window.location.pathname).toBe("/runs"));
   expect(server.asked("POST", "/runs/remove")[0].body).toEqual({ ids: ["run-2"] });
   expect(server.asked("POST", "/sweeps/remove")[0].body).toEqual({ ids: ["sweep-1"] });
   expect(result.getByText("No result chosen")).toBeVisible();

@@ -4,6 +4,7 @@ import { useCallback, useEffect, useRef, useState } from "react";
 import { api } from "../api/api";
 import { useAnswer } from "../api/queries";
 import type { RunFilter } from "../api/types";
+import { PageHead } from "../bench/page-head";
 import { showError } from "../bench/send";
 import { EmptyState } from "../ui/empty-state";
 import { Stale } from "../ui/stale";
@@ -44,7 +45,7 @@ export function RunsPage() {
     api.scenarios().then((found) => setScenarios(found.map((one) => one.id)), showError);
   }, []);
   const isFiltered = Object.values(filter).some(Boolean);
-  const job = value?.find((one) => one.kind === chosen?.kind && one.id === chosen.id);
+  const job = value?.find((one) => one.id === chosen?.id);
   const detail = useRef<HTMLElement>(null);
   // Where the result stands below the list it comes into view when it is chosen.
   useEffect(() => {
@@ -60,7 +61,11 @@ export function RunsPage() {
   return (
     <main className={styles.page}>
       <section className={styles.start} aria-label="Start a run">
-        <h1>Runs and campaigns</h1>
+        <PageHead
+          name="Runs"
+          item={chosen?.kind === "comparison" ? "Comparison" : job?.title}
+          heading="Runs and campaigns"
+        />
         <StartForm onStarted={started} />
       </section>
       <section className={styles.jobs} aria-label="Runs and campaigns">

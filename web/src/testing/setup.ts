@@ -22,6 +22,8 @@ notifyManager.setNotifyFunction((notify) => act(notify));
 // testing-library moves the clock of a test only where it finds one of jest's
 Object.assign(globalThis, { jest: { advanceTimersByTime: (ms: number) => vi.advanceTimersByTime(ms) } });
 
+document.head.innerHTML = '<base href="/" />'; // as the page has it
+
 beforeEach(() => {
   vi.stubGlobal("fetch", server.fetch);
   vi.spyOn(console, "error").mockImplementation(() => undefined);

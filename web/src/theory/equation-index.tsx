@@ -1,7 +1,8 @@
 import { Switch, TextInput } from "@mantine/core";
 import { IconSearch } from "@tabler/icons-react";
-import { memo, useDeferredValue, useMemo, useState } from "react";
+import { memo, useDeferredValue, useEffect, useMemo, useRef, useState } from "react";
 import { useCatalog } from "../api/use-catalog";
+import { openPlace, useView } from "../bench/view-store";
 import { EquationDetail } from "../ui/equation-detail";
 import { formatCount } from "../ui/format";
 import { Formula } from "../ui/formula";
@@ -11,15 +12,20 @@ import { type Entry, entriesOf, found } from "./equations";
 /** Every equation that runs here, and what was printed where the two differ. */
 export function EquationIndex() {
   const { blocks } = useCatalog();
-  const [asked, setAsked] = useState("");
+  const asked = useView((s) => s.item);
   const [errataOnly, setErrataOnly] = useState(false);
   const entries = useMemo(() => entriesOf(blocks), [blocks]);
   const families = useMemo(() => found(entries, asked, errataOnly), [entries, asked, errataOnly]);
   const shown = useDeferredValue(families, []); // hundreds are typeset: the page answers meanwhile
   const listed = families.flatMap((family) => family.entries);
   const errata = listed.filter(({ equation }) => equation.printed).length;
+  const section = useRef<HTMLElement>(null);
+  const isFilled = shown.length > 0;
+  useEffect(() => {
+    if (isFilled && useView.getState().item) section.current?.scrollIntoView();
+  }, [isFilled]);
   return (
-    <section className={styles.index} aria-label="Equations">
+    <section ref={section} className={styles.index} aria-label="Equations">
       <header className={styles.head}>
         <div>
           <h2>Equations</h2>
@@ -35,7 +41,7 @@ export function EquationIndex() {
           placeholder="Name, section or word: 5.2.4, gain, MRAC"
           leftSection={<IconSearch size={15} />}
           value={asked}
-          onChange={(e) => setAsked(e.currentTarget.value)}
+          onChange={(e) => openPlace("theory", e.currentTarget.value, true)}
         />
         <Switch
           size="sm"

@@ -1,5 +1,6 @@
 import { screen, waitFor, within } from "@testing-library/react";
 import { beforeEach, expect, it } from "vitest";
+import { openPlace } from "../bench/view-store";
 import { Refusal, server } from "../testing/fake-server";
 import { recordedAnswer } from "../testing/recorded";
 import { mount } from "../testing/render";
@@ -87,4 +88,15 @@ it("counts the equations, finds those with several words, and those with errata"
   expect(within(status).queryByText(/of them/)).not.toBeInTheDocument();
   await user.type(screen.getByLabelText("Search equations"), "no such thing");
   expect(await screen.findByText("No equation has all these words.")).toBeVisible();
+  expect(window.location.pathname).toBe("/theory/no%20such%20thing");
+});
+
+it("opens at the equations that the address names", async () => {
+  const [block] = catalog.blocks.filter(({ family }) => family === "control");
+  openPlace("theory", `${block.title} ${block.equations[0].label}`);
+  mount(<EquationIndex />);
+  expect(screen.getByLabelText("Search equations")).toHaveValue(`${block.title} ${block.equations[0].label}`);
+  const rows = await screen.findAllByRole("listitem");
+  expect(rows.length).toBeLessThan(4);
+  for (const row of rows) expect(row).toHaveTextContent(block.title);
 });

@@ -1,3 +1,5 @@
+import { PageHead } from "../bench/page-head";
+import { useView } from "../bench/view-store";
 import { EquationIndex } from "./equation-index";
 import { Excitation } from "./excitation";
 import { Instability } from "./instability";
@@ -9,7 +11,7 @@ export function Theory() {
   return (
     <main className={styles.page}>
       <header className={styles.top}>
-        <h1>Theory</h1>
+        <PageHead name="Theory" item={useView((s) => s.item)} />
       </header>
       <div className={styles.cards}>
         <PositiveReal />

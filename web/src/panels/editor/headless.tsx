@@ -5,7 +5,7 @@ import { useAnswer } from "../../api/queries";
 import type { BlockCard, NewRun, Run } from "../../api/types";
 import { showError } from "../../bench/send";
 import { valuesOf } from "../../bench/unit-values";
-import { setPage } from "../../bench/view-store";
+import { openPlace } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { formatFigure } from "../../ui/format";
 import { metricScale } from "../../ui/metric-name";
@@ -75,12 +75,6 @@ const figuresOf = ({ family, name }: BlockCard): string =>
 function Outcome({ run, card }: { run: Run; card: BlockCard }) {
   const { digest, metrics = {} } = (run.summary ?? {}) as { digest?: string; metrics?: Record<string, number> };
   const figures = Object.entries(metrics).filter(([name]) => name.startsWith(figuresOf(card)));
-  const show = () => {
-    const url = new URL(window.location.href);
-    url.searchParams.set("run", run.id);
-    window.history.replaceState(null, "", url);
-    setPage("runs");
-  };
   return (
     <>
       <dl className={styles.list}>
@@ -98,7 +92,7 @@ function Outcome({ run, card }: { run: Run; card: BlockCard }) {
           <dd className={styles.digest}>{digest ?? run.state}</dd>
         </div>
       </dl>
-      <Button size="compact-sm" variant="subtle" onClick={show}>
+      <Button size="compact-sm" variant="subtle" onClick={() => openPlace("runs", run.id)}>
         Open under Runs
       </Button>
     </>
