@@ -4,12 +4,13 @@ import { focusNextGroup } from "../bench/dock";
 import { openEditor } from "../bench/edit-unit";
 import { cueBefore, lectureRuns, nextCue } from "../bench/lecture";
 import { toggleNarrator } from "../bench/narrator";
-import type { PageName } from "../bench/view-store";
+import type { PageName } from "../bench/places";
 import { askCue } from "../bench/vote";
 import { askLatest } from "../bench/why";
 import { setLayout } from "./layouts";
 import { PAGES } from "./pages";
 import { togglePresent } from "./present";
+import { openSearch } from "./search/search";
 import { takeBack } from "./take-back";
 import { themeSwitch } from "./theme";
 
@@ -102,6 +103,14 @@ const KEYS: KeyBinding[] = [
   { key: "q", shown: "Q", does: "narrator on or quiet", group: "Look", run: toggleNarrator },
   { key: "d", shown: "D", does: "dark or light", group: "Look", run: () => themeSwitch.flip() },
   { key: "F6", shown: "F6", does: "next group of panels", group: "Look", run: focusNextGroup },
+  {
+    key: "k",
+    shown: "Ctrl K",
+    withControl: true,
+    does: "search panels, scenarios, equations, devices, settings, places",
+    group: "Look",
+    run: openSearch,
+  },
   { key: "?", shown: "?", does: "this sheet", group: "Look", run: actions.keys },
   ...Object.entries(PAGES).map(
     ([name, { key, title, needs }]): KeyBinding => ({

@@ -1,6 +1,7 @@
 import "@fontsource-variable/ibm-plex-sans/wght.css";
 import "@mantine/core/styles.css";
 import "@mantine/notifications/styles.css";
+import "@mantine/spotlight/styles.css";
 import "../ui/theme.css";
 import "./page.css";
 import { MantineProvider } from "@mantine/core";

@@ -1,0 +1,49 @@
+import { createSpotlight, Spotlight } from "@mantine/spotlight";
+import { IconSearch } from "@tabler/icons-react";
+import { useState } from "react";
+import { find } from "./find";
+import styles from "./search.module.css";
+import { useEntries } from "./use-entries";
+
+const [store, spotlight] = createSpotlight();
+
+/** Open the search, from a key or a button. */
+export const openSearch = spotlight.open;
+
+/** Finds panels, scenarios, equations, devices, settings and places by their words, and opens them. */
+export function Search() {
+  const [asked, setAsked] = useState("");
+  return (
+    <Spotlight.Root
+      store={store}
+      shortcut={null}
+      query={asked}
+      onQueryChange={setAsked}
+      attributes={{ content: { "aria-label": "Search" } }}
+      overlayProps={{ blur: 0 }}
+      scrollable
+      maxHeight="70vh"
+    >
+      <Spotlight.Search
+        aria-label="Search"
+        placeholder="Panel, scenario, equation, device, setting or place"
+        leftSection={<IconSearch size={18} />}
+      />
+      <Spotlight.ActionsList>
+        <Found asked={asked} />
+      </Spotlight.ActionsList>
+    </Spotlight.Root>
+  );
+}
+
+function Found({ asked }: { asked: string }) {
+  const groups = find(useEntries(), asked);
+  if (groups.length === 0) return <Spotlight.Empty>Nothing has all these words.</Spotlight.Empty>;
+  return groups.map(([group, entries]) => (
+    <Spotlight.ActionsGroup key={group} label={group} role="group" aria-label={group}>
+      {entries.map(({ key, title, about, open }) => (
+        <Spotlight.Action key={key} className={styles.action} label={title} description={about} onClick={open} />
+      ))}
+    </Spotlight.ActionsGroup>
+  ));
+}

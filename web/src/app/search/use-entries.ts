@@ -1,0 +1,115 @@
+import { useMemo } from "react";
+import { useShallow } from "zustand/react/shallow";
+import { api } from "../../api/api";
+import { useMe } from "../../api/me";
+import { micro } from "../../api/micro";
+import { useAnswer } from "../../api/queries";
+import { useCatalog } from "../../api/use-catalog";
+import { addPanel, showPanel, useDock } from "../../bench/dock";
+import { hasSeveral, type ViewName } from "../../bench/panel-views";
+import type { PageName } from "../../bench/places";
+import { openPlace, setPage, useView } from "../../bench/view-store";
+import { useInstances } from "../../panels/card/instances";
+import { parameterTitle } from "../../panels/card/parameter-title";
+import { useBench } from "../../stream/bench-store";
+import { entriesOf } from "../../theory/equations";
+import { isOffered, PAGES } from "../pages";
+import { PANELS, panelsOn, VIEW, viewsOn } from "../panels";
+import type { Entry } from "./find";
+
+/** All that can be found on the page of a person. */
+export function useEntries(): Entry[] {
+  const role = useMe((s) => s.me?.role);
+  const axes = useBench(useShallow((s) => s.bench?.axes));
+  const instances = useInstances();
+  const { blocks, block } = useCatalog();
+  const { value: scenarios } = useAnswer(["scenarios"], api.scenarios);
+  const { value: catalogue } = useAnswer(["devices"], api.deviceCatalogue);
+  const equations = useMemo(() => entriesOf(blocks), [blocks]);
+  const bench = axes && { axes };
+  const places = (Object.keys(PAGES) as PageName[]).filter((page) => isOffered(page, role));
+  return [
+    ...places.map((page): Entry => {
+      const { name, title } = PAGES[page];
+      return { group: "Places", key: page, title: name, about: title, open: () => setPage(page) };
+    }),
+    ...panelsOn(bench).flatMap((panel) =>
+      viewsOn(panel, bench).map((view, index): Entry => {
+        const of = PANELS[panel].title;
+        const isWhole = index === 0;
+        return {
+          group: "Panels",
+          key: view,
+          title: isWhole ? of : VIEW[view].title,
+          about: isWhole ? PANELS[panel].about : `A view of ${of}`,
+          words: VIEW[view].title,
+          open: () => openView(view, hasSeveral(panel)),
+        };
+      }),
+    ),
+    ...(scenarios ?? []).map(
+      ({ id, title }): Entry => ({
+        group: "Scenarios",
+        key: id,
+        title: micro(title),
+        about: id,
+        open: () => openPlace("gallery", id),
+      }),
+    ),
+    ...(catalogue?.devices ?? []).map(
+      ({ id, title, source }): Entry => ({
+        group: "Devices",
+        key: id,
+        title: micro(title) || id,
+        about: source || id,
+        words: id,
+        open: () => openPlace("designer", id),
+      }),
+    ),
+    ...instances.flatMap(({ id, family, name }) => {
+      const card = block(family, name);
+      return (card?.parameters ?? []).map(
+        (parameter): Entry => ({
+          group: "Settings",
+          key: `${id}.${parameter.name}`,
+          title: parameterTitle(parameter),
+          about: card?.title ?? name,
+          words: `${id}.${parameter.name}`,
+          open: () => {
+            useView.setState({ card: id });
+            openView("card");
+          },
+        }),
+      );
+    }),
+    ...equations.map(({ family, blocks: of, equation: { label, latex, source }, words }): Entry => {
+      const title = `${of[0]} ${label.replaceAll("_", " ")}`;
+      return {
+        group: "Equations",
+        key: `${family} ${title} ${latex}`,
+        title,
+        about: source,
+        words,
+        open: () => openPlace("theory", title),
+      };
+    }),
+  ];
+}
+
+/** Bring a view of a panel to the front; from another page once the panels are there. */
+function openView(view: ViewName, another = false): void {
+  const show = () => {
+    if (another) addPanel(view);
+    else showPanel(view);
+  };
+  if (useView.getState().page === "bench") {
+    show();
+    return;
+  }
+  const stop = useDock.subscribe(() => {
+    stop();
+    queueMicrotask(show); // after the layout
+  });
+  useView.setState({ extra: view });
+  setPage("bench");
+}
