@@ -1649,7 +1649,7 @@ export interface paths {
         post?: never;
         /**
          * Delete Link
-         * @description Delete a link; benches opened by it stay.
+         * @description Delete a link; benches opened by it stay, people who watch by it are gone.
          */
         delete: operations["delete_link"];
         options?: never;
@@ -2441,7 +2441,7 @@ export interface paths {
         put?: never;
         /**
          * Make Watcher
-         * @description Make a link to watch the bench.
+         * @description Make a link to watch the bench, or let people watch it by a link that was shared.
          */
         post: operations["make_watcher"];
         delete?: never;
@@ -6147,6 +6147,11 @@ export interface components {
              * @default 4
              */
             hours?: number;
+            /**
+             * Link
+             * @description Id of a link to an experiment by which people watch without the token
+             */
+            link?: string | null;
         };
         /**
          * NoiseFigure
