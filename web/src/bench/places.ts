@@ -1,4 +1,4 @@
-/** The pages: the live bench, or what is done around it, each with its path below the root of the server. */
+/** The pages, each with its path below the root of the server. */
 const PATHS = {
   bench: "",
   class: "class",
@@ -16,7 +16,7 @@ const PAGE_NAMES = Object.keys(PATHS) as PageName[];
 /** Pages that show one thing of many: an experiment, runs by their ids, a device, equations by their words. */
 const WITH_ITEM: PageName[] = ["gallery", "runs", "designer", "theory"];
 
-/** What an address opens: a page, and the one thing on it, if any. */
+/** A page, and the one thing that it shows of many, if any. */
 export interface Place {
   page: PageName;
   item: string;

@@ -3,6 +3,7 @@ import { IconFolderOpen } from "@tabler/icons-react";
 import { useCallback, useMemo, useRef, useState } from "react";
 import { api } from "../api/api";
 import { useMay } from "../api/me";
+import { micro } from "../api/micro";
 import { useAnswer } from "../api/queries";
 import { PageHead } from "../bench/page-head";
 import { setPage, useView } from "../bench/view-store";
@@ -49,7 +50,7 @@ export function GalleryPage() {
   return (
     <main className={styles.page}>
       <header className={styles.top}>
-        <PageHead name="Gallery" item={one && one.title} />
+        <PageHead name="Gallery" item={one?.title} />
         {item ? (
           <Button size="xs" variant="default" onClick={() => setPage("gallery")}>
             All experiments

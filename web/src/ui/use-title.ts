@@ -1,6 +1,6 @@
 import { useEffect } from "react";
 
-/** Name the window after what it shows, the smallest first. */
+/** Set the title of the window: the parts from the smallest to the page. */
 export function useTitle(...parts: (string | undefined)[]): void {
   const title = [...parts.filter(Boolean), "CombBench"].join(" | ");
   useEffect(() => {

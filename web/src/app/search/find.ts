@@ -1,4 +1,4 @@
-/** The kinds of what can be found, in the order in which they are shown. */
+/** The groups of results, in their order. */
 export const GROUPS = ["Places", "Panels", "Scenarios", "Devices", "Settings", "Equations"] as const;
 
 export interface Entry {
