@@ -74,18 +74,24 @@ it("holds the whole run once it has ended, with all steps, and while a step is r
   await board.events([...opened, ...log(END)]);
   board.status({ tick: END, pending: [], state: "paused" });
   await waitFor(() => expect(windowMs()).toBe(180));
-  expectNear(await truth(END), [0, ...steps, END].map((tick) => tick / END));
+  expectNear(
+    await truth(END),
+    [0, ...steps, END].map((tick) => tick / END),
+  );
   expect(screen.getByRole("combobox", { name: "Time window" })).toHaveDisplayValue(/^180\sms$/);
 
   await board.events([logEntry({ seq: 200, tick: 1990, kind: "reset", actor: "page" }), ...opened.map(again)]);
   board.status({ tick: 2500, pending: waiting(2500), state: "running" });
-  expectNear(await truth(2500), [0, steps[0], 2500].map((tick) => tick / END));
+  expectNear(
+    await truth(2500),
+    [0, steps[0], 2500].map((tick) => tick / END),
+  );
   expect(windowMs()).toBe(180);
 });
 
 const expectNear = (shares: number[], wanted: number[]) => {
   expect(shares).toHaveLength(wanted.length);
-  shares.forEach((share, i) => expect(share).toBeCloseTo(wanted[i], 1));
+  for (const [i, share] of shares.entries()) expect(share).toBeCloseTo(wanted[i], 1);
 };
 const again = (event: LogEntry): LogEntry => ({ ...event, seq: event.seq + 200 });
 
@@ -93,7 +99,10 @@ it("holds the whole of a recording while it plays", async () => {
   server.on("GET", "/recordings/:id", { ...recordings[0], start_tick: 1000, ticks: 6000 });
   const { windowMs, truth } = await mountLanes({ ...bench, replay_of: "recording-first", tick: 1000 });
   await waitFor(() => expect(windowMs()).toBe(120));
-  expectNear(await truth(4000), [0, 2000, 3000, 4000].map((tick) => (tick - 1000) / 6000));
+  expectNear(
+    await truth(4000),
+    [0, 2000, 3000, 4000].map((tick) => (tick - 1000) / 6000),
+  );
 });
 
 it("keeps a window that is chosen by hand", async () => {
