@@ -53,9 +53,9 @@ test("a first visit opens a bench that runs, ticks off what was tried, and shows
   await expect.poll(leaps).toBe(LATER.length + 2);
   await server.advance(4);
   await expect(page.getByTestId("bench-state")).toHaveText("paused");
-  const found = page.getByRole("list", { name: "What was found at each step" }).getByRole("listitem");
+  const found = page.getByRole("list", { name: "Findings at each step" }).getByRole("listitem");
   await expect(found).toHaveCount(0);
-  await page.getByRole("button", { name: "What was found" }).click();
+  await page.getByRole("button", { name: "Findings" }).click();
   await expect(found).toHaveCount(7);
   await expect(found.nth(1)).toContainText(/2 Added mass \+5\s%.*found mass \+5\s% after \d/);
   await expect(found.nth(6)).toContainText(/7 healed.*found healthy after/);
@@ -71,4 +71,12 @@ test("a first visit opens a bench that runs, ticks off what was tried, and shows
   await page.reload();
   await expect(page.getByTestId("bench-state")).toHaveText("paused");
   await expect(next).toHaveCount(0);
+
+  const controls = page.getByRole("button", { name: "Run", exact: true });
+  await expect(controls).toHaveCount(1);
+  await page.keyboard.press("j");
+  await expect(page.getByRole("heading", { name: "Benchmark" })).toBeVisible();
+  await expect(controls).toHaveCount(0);
+  await page.getByRole("button", { name: "Back to the bench" }).click();
+  await expect(controls).toHaveCount(1);
 });

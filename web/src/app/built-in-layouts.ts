@@ -13,7 +13,7 @@ export const LOOP_PX = { width: 326, height: 312 };
 /** A column of faults or controllers is read at this width. */
 export const LIST_PX = 310;
 
-/** In less than this a third column has no room; its panels stand behind others, as many as have room for their tabs. */
+/** In less than this a third column has no room; its panels are behind others, as many as have room for their tabs. */
 export const THREE_COLUMNS_PX = 1000;
 
 interface Where {

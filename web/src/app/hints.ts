@@ -12,7 +12,7 @@ export interface Hint {
 /** What a stranger is told of a bench: what it is, what to try, and which scenario shows it all. */
 export interface Hints {
   intro: string;
-  /** What the intro leaves out. */
+  /** The sentence after the intro. */
   more: string;
   hints: Hint[];
   guided: { scenario: string; label: string };
@@ -53,7 +53,7 @@ export function hintsOf(bench: Shown): Hints | undefined {
     more: axes
       ? "The controllers read the rate of turn from that."
       : diagnosed
-        ? "Diagnosis says what is wrong with it: a full lane means it is certain."
+        ? "Diagnosis names its fault: a full lane means it is certain."
         : "",
     hints: axes ? ofAxes(bench) : ofResonator(bench, diagnosed),
     guided: axes

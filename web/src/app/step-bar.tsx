@@ -106,7 +106,7 @@ export function Findings({ scored }: { scored: Scored[] }) {
   const several = scored.length > 1;
   const nothing = scored.length > 0 ? "nothing to find" : "done";
   return (
-    <ol className={rest.findings} aria-label={scored.length > 0 ? "What was found at each step" : "All steps"}>
+    <ol className={rest.findings} aria-label={scored.length > 0 ? "Findings at each step" : "All steps"}>
       {steps.map((step, i) => {
         const end = steps[i + 1]?.done ? (steps[i + 1].tick ?? Infinity) : Infinity;
         const found = scored.flatMap(({ id, switches: all }) => {

@@ -56,11 +56,11 @@ it("keeps the list of findings closed when the scenario ends", async () => {
     ...seven.events,
     logEntry({ seq: 900, tick: 2000, kind: "inject", actor: "scenario", command: { fault: "damping", severity: 0.3 } }),
   ]);
-  const found = await screen.findByRole("button", { name: "What was found" });
+  const found = await screen.findByRole("button", { name: "Findings" });
   expect(region("Steps of the scenario")).toHaveTextContent("ended");
   expect(screen.queryByRole("list")).not.toBeInTheDocument();
   await user.click(found);
-  expect(await screen.findByRole("list", { name: "What was found at each step" })).toBeVisible();
+  expect(await screen.findByRole("list", { name: "Findings at each step" })).toBeVisible();
 });
 
 it("shows the newest sentence of the narrator, and all of them on demand", async () => {

@@ -18,12 +18,12 @@ import { HintList, TryThis } from "./try-this";
 import { type TickedHints, useHints } from "./use-hints";
 
 /**
- * The row under the panels: what to try next or which step comes next, what has just happened, and the time of the bench.
- * The rest opens over the panels. An audience sees what happens alone.
+ * The row under the panels: the next hint or step, the newest sentence of the narrator, and the timeline. The rest opens
+ * over the panels. An audience sees the sentence alone.
  */
 export function Strip({ phone = false }: { phone?: boolean }) {
   const present = useView((s) => s.present);
-  // what comes next in a lecture is asked before it is shown
+  // the next step of a lecture is asked before it is shown
   const lectures = useLecture((s) => s.lecture !== undefined);
   const hasSteps = useSteps().length > 1 && !lectures;
   const drives = useMay("drive");
@@ -45,13 +45,13 @@ export function Strip({ phone = false }: { phone?: boolean }) {
   );
 }
 
-/** All that the strip has no room for: the hints, the steps with what was found, the sentences. */
+/** The rest of the strip: all hints, the steps with their findings, all sentences. */
 function Rest({ tips, hasSteps }: { tips: TickedHints | undefined; hasSteps: boolean }) {
   const [opened, setOpened] = useState(false);
   const narrates = useNarrator((s) => s.on);
   const said = useBench((s) => s.narration.sentences.length > 0);
   const scored = useScored();
-  const label = hasSteps ? (scored.length > 0 ? "What was found" : "All steps") : tips ? "All hints" : "What was said";
+  const label = hasSteps ? (scored.length > 0 ? "Findings" : "All steps") : tips ? "All hints" : "All sentences";
   return (
     <Popover opened={opened} onChange={setOpened} width="min(640px, 94vw)" position="top-end" shadow="md">
       <Popover.Target>

@@ -6,7 +6,7 @@ import styles from "./header.module.css";
 import { StateBadge } from "./state-badge";
 import { Visitor } from "./visitor";
 
-/** The strip along the top of the other pages: the bench that goes on meanwhile, and the way back to it. */
+/** The strip along the top of the other pages: the bench by its name and state, and the way back to it. */
 export function PageHeader() {
   const title = useBench((s) => s.bench?.title);
   return (

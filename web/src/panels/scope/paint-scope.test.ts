@@ -94,7 +94,7 @@ it("says no more than three quantities on one axis", () => {
 });
 
 const MAGNITUDES = [1e-9, 3.7e-4, 0.24, 1, 6.6, 99.9, 12345];
-/** Middles in sizes of what lies about them: about zero, above it, far below it. */
+/** Middles of a range, in its widths: about zero, above it, far below it. */
 const MIDDLES = [0, 0.3, 1.2, -40, 700];
 
 it.each(MAGNITUDES)("has a number above the highest and below the lowest point of traces of about %s", (size) => {
