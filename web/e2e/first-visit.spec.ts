@@ -21,15 +21,17 @@ test("a first visit opens a bench that runs, ticks off what was tried, and shows
   await expect(page.getByRole("img", { name: /Probability of healthy, mass \+5\s%, mass \+10\s%/ })).toBeVisible();
   const first = benchOf(page);
 
-  const notice = page.getByRole("region", { name: "Notice" });
-  const ticked = notice.locator("li[data-done=true]");
-  await expect(notice.getByRole("listitem")).toHaveCount(3);
-  await expect(ticked).toHaveCount(0);
+  const next = page.getByRole("region", { name: "Try this" });
+  await expect(next).toContainText(/\(1 of 3\): inject Added mass/);
   await server.advance(2);
   await page.getByRole("button", { name: /^Inject \+5.*Added mass$/ }).click();
-  await expect(ticked).toHaveText([/^inject Added mass/]);
+  await expect(next).toContainText(/\(2 of 3\): watch Diagnosis/);
   await server.advance(5);
+  await expect(next).toContainText(/\(3 of 3\)/);
+  await page.getByRole("button", { name: "All hints" }).click();
+  const ticked = page.getByRole("region", { name: "Things to try" }).locator("li[data-done=true]");
   await expect(ticked).toHaveText([/^inject Added mass/, /^watch Diagnosis/]);
+  await page.keyboard.press("Escape");
 
   await page.getByRole("button", { name: "Run the seven steps" }).click();
   await expect.poll(() => benchOf(page)).not.toBe(first);
@@ -51,7 +53,9 @@ test("a first visit opens a bench that runs, ticks off what was tried, and shows
   await expect.poll(leaps).toBe(LATER.length + 2);
   await server.advance(4);
   await expect(page.getByTestId("bench-state")).toHaveText("paused");
-  const found = page.getByRole("list", { name: "What was found at each step" }).getByRole("listitem");
+  const found = page.getByRole("list", { name: "Findings at each step" }).getByRole("listitem");
+  await expect(found).toHaveCount(0);
+  await page.getByRole("button", { name: "Findings" }).click();
   await expect(found).toHaveCount(7);
   await expect(found.nth(1)).toContainText(/2 Added mass \+5\s%.*found mass \+5\s% after \d/);
   await expect(found.nth(6)).toContainText(/7 healed.*found healthy after/);
@@ -60,9 +64,19 @@ test("a first visit opens a bench that runs, ticks off what was tried, and shows
   await server.advance(0.5);
   await expect(steps).toContainText(/2 of 7: Added mass \+5\s%, in 2\ss/);
 
+  await page.goBack();
+  await expect.poll(() => benchOf(page)).toBe(first);
   await page.getByRole("button", { name: "Dismiss the hints" }).click();
-  await expect(notice.getByRole("listitem")).toHaveCount(0);
+  await expect(next).toHaveCount(0);
   await page.reload();
-  await expect(page.getByTestId("bench-state")).toHaveText("running");
-  await expect(notice.getByRole("listitem")).toHaveCount(0);
+  await expect(page.getByTestId("bench-state")).toHaveText("paused");
+  await expect(next).toHaveCount(0);
+
+  const controls = page.getByRole("button", { name: "Run", exact: true });
+  await expect(controls).toHaveCount(1);
+  await page.keyboard.press("j");
+  await expect(page.getByRole("heading", { name: "Benchmark" })).toBeVisible();
+  await expect(controls).toHaveCount(0);
+  await page.getByRole("button", { name: "Back to the bench" }).click();
+  await expect(controls).toHaveCount(1);
 });

@@ -67,7 +67,7 @@ test("panels keep their sizes, and the open tab is in view, when the page opens 
     page.locator(".dv-groupview").evaluateAll((groups) => groups.map((g) => [g.clientWidth, g.clientHeight]));
   const open = page.getByRole("tab", { name: "Published" });
   await open.click();
-  const notice = page.getByRole("region", { name: "Notice" }); // takes room of its own
+  const notice = page.getByRole("region", { name: "Try this" });
   await expect(notice).toBeVisible();
   const before = await sizes();
   for (const tab of ["Log", "Diagnosis"]) {

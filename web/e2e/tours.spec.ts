@@ -12,6 +12,7 @@ test("a tour drives the page and puts all back at its end, and by Escape while i
   const before = await tabs();
   const bubble = page.locator("#driver-popover-content");
   const next = bubble.getByRole("button", { name: "Next" });
+  const hints = page.getByRole("button", { name: "All hints" });
   const offer = page.getByRole("button", { name: "Take the tour" });
   const count = async (kind: "benches" | "runs") => (await server.rows(kind)).length;
   const asBefore = async () => {
@@ -21,6 +22,7 @@ test("a tour drives the page and puts all back at its end, and by Escape while i
     await expect.poll(tabs).toEqual(before);
     await expect.poll(() => count("benches")).toBe(1);
   };
+  await hints.click();
   await offer.click();
   for (const title of ["A bench that runs", "Run, step, pace", "The motion", "A fault"]) {
     await expect(bubble).toContainText(title);
@@ -36,7 +38,10 @@ test("a tour drives the page and puts all back at its end, and by Escape while i
   await expect(bubble).toContainText("Where to go next");
   await bubble.getByRole("button", { name: "Done" }).press("Enter");
   await asBefore();
+  await hints.click();
+  await expect(page.getByRole("region", { name: "Things to try" })).toBeVisible();
   await expect(offer).toHaveCount(0);
+  await page.keyboard.press("Escape");
 
   await page.keyboard.press("?");
   await page.getByRole("button", { name: "Runs and claims", exact: true }).click();

@@ -58,7 +58,8 @@ test("the walk-through of the documents can be walked, in as many clicks as it s
     await expect(page.getByRole("img", { name: /^QR code of/ })).toBeVisible();
   });
   await page.keyboard.press("Escape");
-  await part("Look for a hidden fault", "hidden-fault", 2, async () => {
+  await part("Look for a hidden fault", "hidden-fault", 3, async () => {
+    await click(button("All hints"));
     await click(button("Find a hidden fault"));
     await click(button("Hide a fault"));
     await expect(page.getByText("Hidden while you look for the fault").first()).toBeVisible();

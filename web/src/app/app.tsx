@@ -3,7 +3,6 @@ import { useMediaQuery } from "@mantine/hooks";
 import { useCallback, useEffect, useState } from "react";
 import { ApiError } from "../api/client";
 import { may, useMe } from "../api/me";
-import { useLecture } from "../bench/lecture";
 import { benchInAddress, inAddress, openBench, showBench } from "../bench/open-bench";
 import { setPage, showAddress, useView } from "../bench/view-store";
 import { View3dHost } from "../panels/view3d/view3d-host";
@@ -14,7 +13,6 @@ import { EmptyState } from "../ui/empty-state";
 import { useTitle } from "../ui/use-title";
 import { Announcer } from "./announcer";
 import { Banner } from "./banner";
-import { Caption } from "./caption";
 import { ClassLines } from "./class-lines";
 import { EditorDrawer } from "./editor-drawer";
 import { Ended } from "./ended";
@@ -22,7 +20,7 @@ import { comeBack, openFirstBench } from "./first-bench";
 import { follow } from "./follow";
 import { FullServer } from "./full-server";
 import { Header } from "./header/header";
-import { PresentedHeader } from "./header/presented-header";
+import { PageHeader } from "./header/page-header";
 import { KeySheet } from "./key-sheet";
 import { LayoutSheet } from "./layout-sheet";
 import { LectureStrip } from "./lecture/lecture-strip";
@@ -35,8 +33,7 @@ import { Rail } from "./rail";
 import { ReplayBar } from "./replay-bar";
 import { Search } from "./search/search";
 import { ShareSheet } from "./share-sheet";
-import { StepBar } from "./step-bar";
-import { TimeBar } from "./time-bar";
+import { Strip } from "./strip";
 import { useKeys } from "./use-keys";
 import { useReadingSize } from "./use-reading-size";
 import { VoteCard } from "./vote-card";
@@ -47,18 +44,17 @@ interface Failure {
   advice: string;
 }
 
-/** The page: a header, a line for what needs to be known, and the panels. */
+/** The page: a header, a line for alarms, the panels, and the strip under them. */
 export function App() {
   const phone = useMediaQuery("(max-width: 600px)", undefined, { getInitialValueInEffect: false });
   const role = useMe((s) => s.me?.role);
   const asked = useView((s) => (s.lost ? "nowhere" : s.page));
   const page = asked === "nowhere" || isOffered(asked, role) ? asked : "bench";
-  const noted = useBench((s) => Boolean(s.bench?.opened?.note));
+  const onBench = page === "bench";
   const stale = useStaleSince() !== undefined;
   const Page = page === "nowhere" ? Nowhere : PAGES[page].component;
   const [failure, setFailure] = useState<Failure | undefined>(undefined);
   const present = useView((s) => s.present);
-  const lectures = useLecture((s) => s.lecture !== undefined);
   useKeys();
   useReadingSize(phone);
 
@@ -95,11 +91,10 @@ export function App() {
   if (!role && !failure) return null; // what is shown depends on who looks
   return (
     <div className="page" data-stale={stale} data-present={present}>
-      {phone || failure ? null : present ? <PresentedHeader /> : <Header />}
-      <ReplayBar />
+      {phone || present || failure ? null : onBench ? <Header /> : <PageHeader />}
+      {onBench && !present && <ReplayBar />}
       <ClassLines />
-      <Banner hints={!phone && !present && !lectures && page === "bench" && !noted} />
-      {page === "bench" && !present && !lectures && !failure && <StepBar />}
+      <Banner />
       <VoteCard />
       <OpenedLine />
       {failure?.code === "too_many_benches" ? (
@@ -116,14 +111,13 @@ export function App() {
         </EmptyState>
       ) : (
         <div className="body">
-          {!present && !(phone && page === "bench") && <Rail />}
-          {phone && page === "bench" ? <Phone /> : <Page />}
+          {!present && !(phone && onBench) && <Rail />}
+          {phone && onBench ? <Phone /> : <Page />}
           {!phone && <View3dHost />}
         </div>
       )}
-      {page === "bench" && <BenchTitle />}
-      {!failure && !present && !phone && page === "bench" && <Caption />}
-      {!failure && !present && !phone && page === "bench" && <TimeBar />}
+      {onBench && <BenchTitle />}
+      {!failure && !phone && onBench && <Strip />}
       {!failure && <LectureStrip />}
       <KeySheet />
       <NewBench />

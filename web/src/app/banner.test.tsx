@@ -22,14 +22,14 @@ const notice = () => screen.queryByRole("region", { name: "Notice" });
 
 it("says nothing while the connection holds", async () => {
   connect(bench);
-  mount(<Banner hints={false} />);
+  mount(<Banner />);
   await pass(900);
   expect(notice()).not.toBeInTheDocument();
 });
 
 it("counts down to the next attempt once a lost connection is more than a blink, and is gone after it", async () => {
   const board = connect(bench);
-  mount(<Banner hints={false} />);
+  mount(<Banner />);
   await board.drop();
   expect(notice()).not.toBeInTheDocument();
   await pass(500); // the first attempt
@@ -46,7 +46,7 @@ it("counts down to the next attempt once a lost connection is more than a blink,
 
 it("tries at once when asked to", async () => {
   const board = connect(bench);
-  const { user } = mount(<Banner hints={false} />);
+  const { user } = mount(<Banner />);
   await board.drop();
   await pass(500);
   for (const wait of [1000, 2000]) {
@@ -62,7 +62,7 @@ it("tries at once when asked to", async () => {
 
 it("says since when nothing was heard", async () => {
   const board = connect(bench);
-  mount(<Banner hints={false} />);
+  mount(<Banner />);
   await pass(3000);
   expect(notice()).toHaveTextContent(/^Nothing heard, stale since \d/);
   board.status({});
@@ -78,7 +78,7 @@ it.each([
   [4003, "This address may not open the bench", []],
 ])("says why a connection was closed for good with %i, and what can be done", async (code, title, offers) => {
   const board = connect(bench);
-  mount(<Banner hints={false} />);
+  mount(<Banner />);
   await board.drop(code);
   expect(notice()).toHaveTextContent(title);
   expect(screen.queryAllByRole("button").map((button) => button.textContent)).toEqual(offers);
@@ -87,7 +87,7 @@ it.each([
 it("offers a watcher no bench of their own", async () => {
   be("watcher");
   const board = connect(bench);
-  mount(<Banner hints={false} />);
+  mount(<Banner />);
   await board.drop(4404);
   expect(notice()).toHaveTextContent("This bench is gone");
   expect(screen.queryByRole("button")).not.toBeInTheDocument();
@@ -95,7 +95,7 @@ it("offers a watcher no bench of their own", async () => {
 
 it("says that the board has tripped, and resets the trip", async () => {
   const board = connect(bench);
-  const { user } = mount(<Banner hints={false} />);
+  const { user } = mount(<Banner />);
   board.status({ state: "tripped", trip: { reason: "tripped: displacement beyond 8 um", tick: 2000 } as never });
   expect(notice()).toHaveTextContent("Tripped: displacement beyond 8 µm");
   await user.click(screen.getByRole("button", { name: "Reset the trip" }));

@@ -1,5 +1,4 @@
-import { Button, CloseButton } from "@mantine/core";
-import { IconPlayerPlayFilled, IconSquare, IconSquareCheckFilled } from "@tabler/icons-react";
+import { Button } from "@mantine/core";
 import { type ReactNode, useEffect, useState } from "react";
 import { useMay } from "../api/me";
 import { actions } from "../bench/actions";
@@ -10,19 +9,15 @@ import { staleWords, useStaleSince } from "../stream/freshness";
 import { stream } from "../stream/stream";
 import { formatClock, formatTick } from "../ui/format";
 import styles from "./banner.module.css";
-import { openOwnBench, startAgain, startBeside } from "./first-bench";
-import { tourSeen } from "./tours/run-tour";
-import { OfferTour } from "./tours/tour-list";
-import { useHints } from "./use-hints";
+import { openOwnBench, startAgain } from "./first-bench";
 
-/** One line under the header when something needs to be known: a trip, a lost connection, silence; else what to try. */
-export function Banner({ hints = true }: { hints?: boolean }) {
+/** One line under the header when something needs to be known: a trip, a lost connection, silence, a hidden fault. */
+export function Banner() {
   const connection = useBench((s) => s.connection);
   const trip = useBench((s) => (s.bench?.state === "tripped" ? s.bench.trip : undefined));
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   const blind = useBench((s) => s.blind);
   const playing = useBench((s) => s.bench?.blind?.game);
-  const tips = useHints();
   const drives = useMay("drive");
   const teaches = useMay("teach");
   const stale = useStaleSince();
@@ -111,51 +106,7 @@ export function Banner({ hints = true }: { hints?: boolean }) {
         )}
       </Line>
     );
-  if (hints && tips && drives)
-    return (
-      <section className={styles.banner} data-tone="hint" aria-label="Notice">
-        <div className={styles.hints}>
-          <span>{tips.intro}</span>
-          <div className={styles.list}>
-            <strong>Try this:</strong>
-            <ul>
-              {tips.hints.map(({ id, text }) => (
-                <li key={id} data-done={tips.done.has(id)}>
-                  {tips.done.has(id) ? <IconSquareCheckFilled size={16} /> : <IconSquare size={16} />}
-                  {text}
-                  {tips.done.has(id) && <span className="visually-hidden">, done</span>}
-                </li>
-              ))}
-            </ul>
-            {teaches && !tourSeen() && <OfferTour />}
-            {tips.guided && <Guided {...tips.guided} />}
-            {tips.canHide && (
-              <Button size="compact-sm" variant="default" onClick={() => showPanel("blind", "faults")}>
-                Find a hidden fault
-              </Button>
-            )}
-          </div>
-        </div>
-        <CloseButton size="sm" aria-label="Dismiss the hints" onClick={tips.dismiss} />
-      </section>
-    );
   return null;
-}
-
-/** A scenario that shows by itself what there is to see. */
-function Guided({ scenario, label }: { scenario: string; label: string }) {
-  const [busy, setBusy] = useState(false);
-  const start = () => {
-    setBusy(true);
-    startBeside(scenario)
-      .catch(showError)
-      .finally(() => setBusy(false));
-  };
-  return (
-    <Button size="compact-sm" loading={busy} leftSection={<IconPlayerPlayFilled size={14} />} onClick={start}>
-      {label}
-    </Button>
-  );
 }
 
 const capital = (words: string): string => words.charAt(0).toUpperCase() + words.slice(1);

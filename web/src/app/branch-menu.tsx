@@ -1,10 +1,11 @@
-import { Button, Menu } from "@mantine/core";
+import { Menu } from "@mantine/core";
 import { IconGitBranch, IconPlayerPlayFilled } from "@tabler/icons-react";
 import { fits } from "../api/fits";
 import type { Bench } from "../api/types";
 import { cardOf, slotMates, useCatalog } from "../api/use-catalog";
 import { goOn, goOnHaving } from "../bench/past";
 import { send } from "../bench/send";
+import { StripButton } from "./strip-button";
 
 /** What can begin at the moment shown: the same again, or with one thing changed. The bench itself is left as it is. */
 export function BranchMenu({ bench }: { bench: Bench }) {
@@ -13,13 +14,11 @@ export function BranchMenu({ bench }: { bench: Bench }) {
   return (
     <Menu position="top-end" shadow="md">
       <Menu.Target>
-        <Button
-          size="compact-sm"
+        <StripButton
           variant={bench.origin?.is_past ? "filled" : "default"}
-          leftSection={<IconGitBranch size={16} />}
-        >
-          Branch here
-        </Button>
+          icon={<IconGitBranch size={16} />}
+          label="Branch here"
+        />
       </Menu.Target>
       <Menu.Dropdown>
         <Menu.Item leftSection={<IconPlayerPlayFilled size={14} />} onClick={() => void goOn("as it was")}>

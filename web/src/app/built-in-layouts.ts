@@ -13,7 +13,7 @@ export const LOOP_PX = { width: 326, height: 312 };
 /** A column of faults or controllers is read at this width. */
 export const LIST_PX = 310;
 
-/** In less than this a third column has no room; its panels stand behind others. */
+/** In less than this a third column has no room; its panels are behind others, as many as have room for their tabs. */
 export const THREE_COLUMNS_PX = 1000;
 
 interface Where {
@@ -64,15 +64,15 @@ export function size(
     api.getPanel(id)?.api.setSize({ ...(w ? { width: w * width } : {}), ...(h ? { height: h * height } : {}) });
 }
 
-/** Displacement and tracking error, one behind the other. */
-function addMotion(api: DockviewApi): void {
+/** Displacement and tracking error, one behind the other; the voltage too where its tab has room. */
+function addMotion(api: DockviewApi, wide: boolean): void {
   addTo(api, "motion", "time", {}, MOTION, "Displacement");
   addTo(api, "tracking", "time", { within: "motion", inactive: true }, TRACKING, "Tracking error");
-  addTo(api, "voltage", "time", { within: "motion", inactive: true }, VOLTAGE, "Voltage");
+  if (wide) addTo(api, "voltage", "time", { within: "motion", inactive: true }, VOLTAGE, "Voltage");
 }
 
 /** Panels one behind the other, the first in front. */
-function addBehind(api: DockviewApi, front: string, views: ViewName[]): void {
+export function addBehind(api: DockviewApi, front: string, views: ViewName[]): void {
   for (const view of views) addTo(api, view, view, { within: front, inactive: true });
 }
 
@@ -95,12 +95,15 @@ export const BUILT_IN: Layouts = {
     });
   },
   lab(api, width, height) {
-    addMotion(api);
+    const wide = width >= THREE_COLUMNS_PX;
+    addMotion(api, wide);
     addTo(api, "schematic", "schematic", { left: "motion" });
     addTo(api, "faults", "faults", { below: "schematic" });
-    addBehind(api, "faults", ["controllers", "device"]);
+    addBehind(api, "schematic", ["device"]);
+    addBehind(api, "faults", ["controllers"]);
     addTo(api, "lanes", "lanes", { below: "motion" });
-    addBehind(api, "lanes", ["sheet", "why", "identify", "twins", "narrator", "claims"]);
+    addBehind(api, "lanes", ["sheet", "why"]);
+    if (wide) addBehind(api, "lanes", ["identify", "twins", "narrator", "claims"]);
     size(api, width, height, {
       schematic: { w: Math.max(0.26, LOOP_PX.width / width), h: Math.max(0.34, LOOP_PX.height / height) },
       motion: { h: 0.48 },
@@ -108,15 +111,18 @@ export const BUILT_IN: Layouts = {
   },
   research(api, width, height) {
     const wide = width >= THREE_COLUMNS_PX;
-    addMotion(api);
+    addMotion(api, wide);
     addTo(api, "schematic", "schematic", { left: "motion" });
     addTo(api, "faults", "faults", { below: "schematic" });
-    addBehind(api, "faults", ["controllers", "device", "sheet"]);
+    addBehind(api, "faults", ["controllers"]);
     addTo(api, "view3d", "view3d", wide ? { right: "motion" } : { within: "schematic", inactive: true });
-    addTo(api, "why", "why", wide ? { below: "view3d" } : { within: "faults", inactive: true });
-    addBehind(api, "why", ["narrator", "claims"]);
     addTo(api, "lanes", "lanes", { below: "motion" });
-    addBehind(api, "lanes", ["identify", "twins"]);
+    if (wide) {
+      addTo(api, "why", "why", { below: "view3d" });
+      addBehind(api, "why", ["narrator", "claims"]);
+      addBehind(api, "schematic", ["device"]);
+      addBehind(api, "lanes", ["sheet", "identify", "twins"]);
+    } else addBehind(api, "lanes", ["why", "device"]);
     size(api, width, height, {
       schematic: { w: Math.max(0.225, LOOP_PX.width / width), h: Math.max(0.32, LOOP_PX.height / height) },
       ...(wide ? { view3d: { w: 0.25, h: 0.45 } } : {}),

@@ -1,18 +1,17 @@
-import { CloseButton } from "@mantine/core";
-import { showSentence, toggleNarrator, useNarrator } from "../bench/narrator";
-import { useView } from "../bench/view-store";
+import { showSentence, useNarrator } from "../bench/narrator";
 import { useBench } from "../stream/bench-store";
-import styles from "./caption.module.css";
+import styles from "./strip.module.css";
 import { moreText, useCaption } from "./use-caption";
 
-/** The line under the panels of a lecture or a replay: the newest sentence of the narrator. A click shows its place. */
-export function Caption() {
+const EVENTS = "Events are described here as they happen.";
+const LANES = "Each lane of Diagnosis is one guess at the device. A full lane means it is certain.";
+
+/** The newest sentence of the narrator, and before the first one the bench in a sentence. A click shows its place. */
+export function Caption({ intro }: { intro?: string }) {
   const on = useNarrator((s) => s.on);
-  const isWanted = useView((s) => s.layout === "lecture" || s.large);
-  const replay = useBench((s) => Boolean(s.bench?.replay_of));
   const caption = useCaption();
   const diagnosed = useBench((s) => Object.keys(s.bench?.diagnosers ?? {}).length > 0);
-  if (!on || !(isWanted || replay)) return null;
+  if (!on) return null;
   return (
     // spoken by the page's live region, not here a second time
     <section className={styles.caption} aria-label="What happens now" data-kind={caption?.sentence.kind}>
@@ -22,12 +21,8 @@ export function Caption() {
           {caption.sentence.text}
         </button>
       ) : (
-        <p>{diagnosed ? LANES : "Faults, switches and trips are told here."}</p>
+        <p>{intro ?? (diagnosed ? LANES : EVENTS)}</p>
       )}
-      <CloseButton size="sm" aria-label="Turn the narrator off (Q)" onClick={toggleNarrator} />
     </section>
   );
 }
-
-const LANES =
-  "Each lane of Diagnosis is one guess at the device, as a model. The fuller a lane, the more the guess is believed. Faults, switches and verdicts are told here.";

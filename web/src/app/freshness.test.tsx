@@ -9,8 +9,7 @@ import { mount } from "../testing/render";
 import { Banner } from "./banner";
 import { RunControls } from "./header/run-controls";
 import { StateBadge } from "./header/state-badge";
-import { StepBar } from "./step-bar";
-import { TimeBar } from "./time-bar";
+import { Strip } from "./strip";
 
 const recorded = await recordedBench("seven-steps");
 const catalog = await recordedAnswer("catalog");
@@ -35,10 +34,9 @@ async function mountAll() {
     <>
       <StateBadge />
       <RunControls />
-      <Banner hints={false} />
-      <StepBar />
+      <Banner />
       <LiveButton past={false} onLive={vi.fn()} />
-      <TimeBar />
+      <Strip />
     </>,
   );
   await pass(0);

@@ -12,8 +12,10 @@ export interface Hint {
 /** What a stranger is told of a bench: what it is, what to try, and which scenario shows it all. */
 export interface Hints {
   intro: string;
+  /** The sentence after the intro. */
+  more: string;
   hints: Hint[];
-  guided: { scenario: string; label: string } | undefined;
+  guided: { scenario: string; label: string };
   /** Whether a fault can be hidden, to be found. */
   canHide: boolean;
 }
@@ -39,37 +41,26 @@ const namesMass = (diagnosers: Shown["diagnosers"], label: unknown) =>
   });
 
 /** What to say of a bench; nothing where nothing can be tried. */
-export function hintsOf(bench: Shown, hasSteps: boolean): Hints | undefined {
+export function hintsOf(bench: Shown): Hints | undefined {
   if (bench.replay_of) return undefined;
   const diagnosed = Object.keys(bench.diagnosers).length > 0;
   const axes = hasAxes(bench);
   if (!axes && !bench.signals.some((signal) => signal.name === "plant.displacement")) return undefined;
   return {
     intro: axes
-      ? "A live gyroscope: a plate swings along x, and turning it pushes it along y. The controllers read the rate of turn from that."
-      : `A live comb resonator: a voltage shakes a plate on thin beams.${diagnosed ? " Diagnosis says what is wrong with it: a full lane means that it is sure." : ""}`,
-    hints: [
-      ...(axes ? ofAxes(bench) : hasSteps ? [] : ofResonator(bench, diagnosed)),
-      ...(hasSteps ? ofSteps(diagnosed) : []),
-    ],
-    guided: hasSteps
-      ? undefined
-      : axes
-        ? { scenario: "gyro-diagnosis", label: "Run four faults, step by step" }
-        : { scenario: "ch5-seven-step", label: "Run the seven steps" },
-    canHide: diagnosed && !hasSteps,
+      ? "A live gyroscope: a plate swings along x, and turning it pushes it along y."
+      : "A live comb resonator: a voltage shakes a plate on thin beams.",
+    more: axes
+      ? "The controllers read the rate of turn from that."
+      : diagnosed
+        ? "Diagnosis names its fault: a full lane means it is certain."
+        : "",
+    hints: axes ? ofAxes(bench) : ofResonator(bench, diagnosed),
+    guided: axes
+      ? { scenario: "gyro-diagnosis", label: "Run four faults, step by step" }
+      : { scenario: "ch5-seven-step", label: "Run the seven steps" },
+    canHide: diagnosed,
   };
-}
-
-function ofSteps(diagnosed: boolean): Hint[] {
-  return [
-    ...(diagnosed ? [{ id: "find", text: "watch Diagnosis find each fault", isDone: found }] : []),
-    {
-      id: "skip",
-      text: "skip to the next step",
-      isDone: (event) => event.kind === "fast_forward" && byHand(event),
-    },
-  ];
 }
 
 const switchesSense = (event: LogEntry) => {

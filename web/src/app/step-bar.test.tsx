@@ -6,7 +6,7 @@ import { server } from "../testing/fake-server";
 import { connect } from "../testing/fake-transport";
 import { recordedAnswer, recordedBench } from "../testing/recorded";
 import { mount } from "../testing/render";
-import { StepBar } from "./step-bar";
+import { Strip } from "./strip";
 
 const recorded = await recordedBench("seven-steps");
 const catalog = await recordedAnswer("catalog");
@@ -20,11 +20,11 @@ beforeEach(() => void server.on("GET", "/catalog", catalog));
 
 async function show(bench: Partial<Bench>, events: LogEntry[]) {
   const board = connect({ ...recorded.bench, pending: [], tick: 900_000, ...bench });
-  const { user } = mount(<StepBar />);
+  const { user } = mount(<Strip />);
   await board.events(events);
-  const button = await screen.findByRole("button", { name: /^(All steps|What was found)$/ });
-  if (button.getAttribute("aria-expanded") === "false") await user.click(button);
-  const list = screen.getByRole("list");
+  const button = await screen.findByRole("button", { name: /^(All steps|Findings)$/ });
+  await user.click(button);
+  const list = await screen.findByRole("list", { name: /^(All steps|Findings at each step)$/ });
   const said = within(list).getAllByRole("listitem");
   return { name: button.textContent, said: said.map((one) => one.lastElementChild?.textContent) };
 }
@@ -67,7 +67,7 @@ it("tells what was found after which delay, and what was said before", async () 
     found(5, 340, "m+5", 37),
     injected("damping", 5),
   ]);
-  expect(name).toBe("What was found");
+  expect(name).toBe("Findings");
   expect(said.map((one) => one?.replace(/\s/g, " "))).toEqual([
     "said healthy before",
     "found mass +5 % after 740 µs",

@@ -1,6 +1,6 @@
 import { Button } from "@mantine/core";
-import { IconListCheck, IconPlayerTrackNext, IconRepeat } from "@tabler/icons-react";
-import { useMemo, useState } from "react";
+import { IconPlayerTrackNext, IconRepeat } from "@tabler/icons-react";
+import { useMemo } from "react";
 import { useMay } from "../api/me";
 import type { Bench } from "../api/types";
 import { actions } from "../bench/actions";
@@ -12,17 +12,56 @@ import { useBench } from "../stream/bench-store";
 import { currentEvents } from "../stream/event-log";
 import { staleWords, useBoardState, useStaleSince } from "../stream/freshness";
 import { formatIn, formatSi } from "../ui/format";
-import styles from "./step-bar.module.css";
+import rest from "./rest.module.css";
+import styles from "./strip.module.css";
+import { StripButton } from "./strip-button";
 
-/** The steps of a scenario: which comes next and when, on to it or back, and in the end what was found at each. */
+/** The steps of a scenario: which comes next and when, on to it or back. */
 export function StepBar() {
   const steps = useSteps();
   const bench = useBench((s) => (steps.length > 1 ? s.bench : undefined));
-  return bench ? <Bar key={bench.id} bench={bench} steps={steps} /> : null;
+  const repeats = useRepeats(steps);
+  const drives = useDrives();
+  if (!bench) return null;
+  const next = steps.findIndex((step) => !step.done);
+  const now = steps[(next < 0 ? steps.length : next) - 1];
+  return (
+    <section className={styles.lead} data-of-bench="" aria-label="Steps of the scenario">
+      <StepWords bench={bench} steps={steps} />
+      {repeats && (
+        <StripButton
+          icon={<IconRepeat size={16} />}
+          label="Replay step"
+          title={`Begin the scenario again just before "${now.words}"; what was changed by hand is not kept`}
+          onClick={() => actions.replayStep(now.tick)}
+        />
+      )}
+      {drives && (
+        <Button
+          size="compact-sm"
+          leftSection={<IconPlayerTrackNext size={16} />}
+          title="Run as fast as possible to just before the next step"
+          disabled={bench.fast_forward !== null || hasEnded(bench, steps) || (next < 0 && !bench.samples)}
+          onClick={actions.skip}
+        >
+          {next < 0 ? "To the end" : "Skip"}
+        </Button>
+      )}
+    </section>
+  );
 }
 
+/** Whether the person drives a board that is known to run. */
+function useDrives(): boolean {
+  const mayDrive = useMay("drive");
+  return useBoardState() !== undefined && mayDrive;
+}
+
+/** Whether a step can begin again: each comes again after a reset. */
+const useRepeats = (steps: readonly BenchStep[]): boolean => useDrives() && steps.every((step) => step.ofScenario);
+
 /** Which step of a scenario comes next, or was the last. */
-export function StepWords({ bench, steps }: { bench: Bench; steps: BenchStep[] }) {
+function StepWords({ bench, steps }: { bench: Bench; steps: BenchStep[] }) {
   const next = steps.findIndex((step) => !step.done);
   const shown = next < 0 ? steps.length - 1 : next;
   const { words, tick, when } = steps[shown];
@@ -43,92 +82,38 @@ export function StepWords({ bench, steps }: { bench: Bench; steps: BenchStep[] }
   );
 }
 
-function Bar({ bench, steps }: { bench: Bench; steps: BenchStep[] }) {
-  const next = steps.findIndex((step) => !step.done);
-  const now = steps[(next < 0 ? steps.length : next) - 1];
-  const ended = hasEnded(bench, steps);
-  const scored = useScored(bench);
-  const [asked, setAsked] = useState<boolean | undefined>(undefined);
-  const open = asked ?? (ended && scored.length > 0);
-  const mayDrive = useMay("drive");
-  const drives = useBoardState() !== undefined && mayDrive;
-  const repeats = drives && steps.every((step) => step.ofScenario);
-  return (
-    <section className={styles.bar} data-of-bench="" aria-label="Steps of the scenario">
-      <StepWords bench={bench} steps={steps} />
-      <div className={styles.actions}>
-        <Button
-          size="compact-sm"
-          variant="subtle"
-          leftSection={<IconListCheck size={16} />}
-          aria-expanded={open}
-          onClick={() => setAsked(!open)}
-        >
-          {scored.length > 0 ? "What was found" : "All steps"}
-        </Button>
-        {repeats && (
-          <Button
-            size="compact-sm"
-            variant="default"
-            leftSection={<IconRepeat size={16} />}
-            title={`Begin the scenario again just before "${now.words}"; what was changed by hand is not kept`}
-            onClick={() => actions.replayStep(now.tick)}
-          >
-            Replay step
-          </Button>
-        )}
-        {drives && (
-          <Button
-            size="compact-sm"
-            leftSection={<IconPlayerTrackNext size={16} />}
-            title="Run as fast as possible to just before the next step"
-            disabled={bench.fast_forward !== null || ended || (next < 0 && !bench.samples)}
-            onClick={actions.skip}
-          >
-            {next < 0 ? "To the end" : "Skip"}
-          </Button>
-        )}
-      </div>
-      {open && <Findings bench={bench} steps={steps} repeats={repeats} scored={scored} />}
-    </section>
-  );
-}
-
 interface Scored {
   id: string;
   switches: TruthSwitch[];
 }
 
 /** The diagnosers that are compared with the truth, and its changes as each met them. */
-function useScored({ diagnosers }: Bench): Scored[] {
+export function useScored(): Scored[] {
+  const diagnosers = useBench((s) => s.bench?.diagnosers);
   const events = useBench((s) => s.events);
   return useMemo(() => {
     const current = currentEvents(events);
-    const all = Object.keys(diagnosers).map((id) => ({ id, switches: truthSwitches(current, id) }));
+    const all = Object.keys(diagnosers ?? {}).map((id) => ({ id, switches: truthSwitches(current, id) }));
     return all.filter(({ switches }) => switches.length > 0);
   }, [events, diagnosers]);
 }
 
-interface FindingsProps {
-  bench: Bench;
-  steps: BenchStep[];
-  repeats: boolean;
-  scored: Scored[];
-}
-
 /** The findings of each diagnoser at each step; of no diagnoser, the steps alone. A click begins a step again. */
-function Findings({ bench, steps, repeats, scored }: FindingsProps) {
+export function Findings({ scored }: { scored: Scored[] }) {
+  const steps = useSteps();
+  const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  const repeats = useRepeats(steps);
   const several = scored.length > 1;
   const nothing = scored.length > 0 ? "nothing to find" : "done";
   return (
-    <ol className={styles.findings} aria-label={scored.length > 0 ? "What was found at each step" : "All steps"}>
+    <ol className={rest.findings} aria-label={scored.length > 0 ? "Findings at each step" : "All steps"}>
       {steps.map((step, i) => {
         const end = steps[i + 1]?.done ? (steps[i + 1].tick ?? Infinity) : Infinity;
         const found = scored.flatMap(({ id, switches: all }) => {
           const change = step.done
             ? all.findLast(({ tick }) => tick >= (step.tick ?? Infinity) && tick < end)
             : undefined;
-          return change ? [`${several ? `${id.replaceAll("_", " ")} ` : ""}${foundWords(change, bench.dt_ms)}`] : [];
+          return change ? [`${several ? `${id.replaceAll("_", " ")} ` : ""}${foundWords(change, dtMs)}`] : [];
         });
         const words = step.done ? found.join("; ") || nothing : "to come";
         return (

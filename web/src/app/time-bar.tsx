@@ -13,11 +13,12 @@ import { staleWords, useStaleSince } from "../stream/freshness";
 import { formatMoment, formatPercent } from "../ui/format";
 import { Slider } from "../ui/slider";
 import { BranchMenu } from "./branch-menu";
+import { StripButton } from "./strip-button";
 import styles from "./time-bar.module.css";
 
 const MOST_MARKS = 200;
 
-/** The time of the bench under all panels: dragged back, they show that moment, and another future can begin there. */
+/** The time of the bench: dragged back, all panels show that moment, and another future can begin there. */
 export function TimeBar() {
   const bench = useBench((s) => s.bench);
   const teaches = useMay("teach");
@@ -49,14 +50,12 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
     else if (tick < end) lookBack(tick);
   };
   return (
-    <section className={styles.bar} data-of-bench="" data-past={isPast} aria-label="Timeline">
-      <p className={styles.words}>
+    <section className={styles.timeline} data-of-bench="" data-past={isPast} aria-label="Timeline">
+      <p>
         {stale ? (
-          <strong>Timeline, {staleWords(stale)}</strong>
-        ) : isPast ? (
-          <strong>As it was at {formatMoment(shown * bench.dt_ms)}</strong>
+          <strong>{staleWords(stale)}</strong>
         ) : (
-          <strong>Timeline</strong>
+          isPast && <strong>As it was at {formatMoment(shown * bench.dt_ms)}</strong>
         )}
         {bench.travel && (
           <span role="status"> computed again: {formatPercent(0.1 * Math.floor(10 * bench.travel.share), 0)}</span>
@@ -91,12 +90,7 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
 
 function BackToNow() {
   return (
-    <Button
-      size="compact-sm"
-      variant="default"
-      leftSection={<IconPlayerTrackNextFilled size={14} />}
-      onClick={() => void backToNow()}
-    >
+    <Button size="compact-sm" leftSection={<IconPlayerTrackNextFilled size={14} />} onClick={() => void backToNow()}>
       Back to now
     </Button>
   );
@@ -105,15 +99,12 @@ function BackToNow() {
 /** From a branch to the bench it is of. */
 function Other() {
   return (
-    <Button
-      size="compact-sm"
-      variant="default"
-      leftSection={<IconGitBranch size={16} />}
+    <StripButton
+      icon={<IconGitBranch size={16} />}
+      label="The other future"
       title="Show the bench that this one branched off"
       onClick={() => void backToNow()}
-    >
-      The other future
-    </Button>
+    />
   );
 }
 
@@ -121,13 +112,11 @@ function Other() {
 function Compare() {
   const count = useBehind((s) => s.behind.length);
   return (
-    <Button
-      size="compact-sm"
+    <StripButton
       variant={count > 0 ? "light" : "default"}
-      leftSection={<IconArrowsDiff size={16} />}
+      icon={<IconArrowsDiff size={16} />}
+      label={count > 0 ? `Compared with ${count}` : "Compare"}
       onClick={() => showPanel("behind", "lanes")}
-    >
-      {count > 0 ? `Compared with ${count}` : "Compare"}
-    </Button>
+    />
   );
 }

@@ -4,6 +4,7 @@ import { linearTicks, powerTicks } from "../ui/ticks";
 import { timeLabels, timeSplits, timeUnit } from "../ui/time-axis";
 import type { UnitScale } from "../ui/unit-scale";
 import type { Box, Field, Look, Pen } from "./pen";
+import { type TickedRange, ticksOf } from "./ticked-range";
 
 export type Range = readonly [number, number];
 export type Place = (value: number) => number;
@@ -44,6 +45,12 @@ export function linearAxis(range: Range, title?: string, scale?: Pick<UnitScale,
     say: scale ? (ticks) => labelsOn(scale, ticks) : tickLabels,
   };
 }
+
+/** An axis that ends with ticks. */
+export const tickedAxis = (range: TickedRange, scale: UnitScale): Axis => ({
+  ...linearAxis([range.min, range.max], undefined, scale),
+  ticks: () => ticksOf(range),
+});
 
 /** A logarithmic axis with a tick at each power of ten, or at the ticks given. */
 export function logAxis(

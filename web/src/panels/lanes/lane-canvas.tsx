@@ -48,6 +48,8 @@ export function LaneCanvas({ label, legend, signals, time, left, right, paint, o
   const dirty = useRef(true);
   const pick = useRef(onPick);
   pick.current = onPick;
+  const whole = useRef(time.whole);
+  whole.current = time.whole;
   const { canvas, size } = useCanvas();
   const { windowMs, view } = time;
 
@@ -61,13 +63,13 @@ export function LaneCanvas({ label, legend, signals, time, left, right, paint, o
     const held = time.held();
     if (picture.frozen !== (held !== undefined)) return;
     frame.current = picture;
-    shown.current = held ?? { start: picture.startTick, end: picture.endTick };
+    shown.current = held ?? whole.current ?? { start: picture.startTick, end: picture.endTick };
     dirty.current = true;
   });
 
   useEffect(() => {
     const moved = () => {
-      shown.current = time.held() ?? shown.current;
+      shown.current = time.held() ?? time.whole ?? shown.current;
       dirty.current = true;
     };
     const stops = [time.listen(moved), hover.listen(moved)];

@@ -37,7 +37,9 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
       </div>
       <div>
         <dt title={last?.isStartUp ? START_UP : undefined}>{last?.isStartUp ? "start-up" : "delay"}</dt>
-        <dd>{delayText(last, dtMs)}</dd>
+        <dd>
+          <Delay last={last} dtMs={dtMs} />
+        </dd>
       </div>
       <div>
         <dt>correct</dt>
@@ -58,13 +60,18 @@ export const START_UP = "No fault has acted yet. This is the time that the diagn
 export const isRight = ({ winner, truth, unexplained }: Score): boolean =>
   truth >= 0 && winner === truth && !unexplained;
 
-function delayText(last: TruthSwitch | undefined, dtMs: number): string {
+function Delay({ last, dtMs }: { last: TruthSwitch | undefined; dtMs: number }) {
   if (!last) return "–";
   if (!last.findable) return "not among the hypotheses";
   if (last.delay === undefined) return "not found yet";
   if (last.delay === 0) return "said before";
   if (last.isStartUp) return formatSi(last.delay * dtMs, "ms", 3);
-  return `${formatCount(last.delay, "sample")} · ${formatSi(last.delay * dtMs, "ms", 3)}`;
+  return (
+    <>
+      <span className={styles.samples}>{formatCount(last.delay, "sample")} · </span>
+      {formatSi(last.delay * dtMs, "ms", 3)}
+    </>
+  );
 }
 
 /** The bank itself knows from its residuals that what it names is not so. */

@@ -1,10 +1,8 @@
 import { NativeSelect } from "@mantine/core";
 import { useMemo, useRef, useState } from "react";
-import { longestStep, useSteps } from "../../bench/steps";
 import type { TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { TIME_WINDOWS_MS } from "../../ui/time-axis";
 import { contestants } from "./contestants";
 import { DiagnoserLanes } from "./diagnoser-lanes";
 import { LaneTools } from "./lane-tools";
@@ -12,19 +10,9 @@ import styles from "./lanes.module.css";
 import { OfferDiagnoser } from "./offer-diagnoser";
 import { Race } from "./race";
 import { useLaneTime } from "./use-lane-time";
+import { useRunWindow } from "./use-run-window";
 
 const ALL = "";
-
-const USUAL_MS = 20;
-/** What a window shows of a step and of what was before it, in steps. */
-const AROUND = 1.5;
-
-/** A window that shows each step of a scenario whole. */
-function usualWindow(step: number | undefined, dtMs: number | undefined): number {
-  if (!step || !dtMs) return USUAL_MS;
-  const windows = TIME_WINDOWS_MS.lanes;
-  return windows.find((ms) => ms >= AROUND * step * dtMs) ?? windows[windows.length - 1];
-}
 
 /** What the diagnosers of the bench believe, against what is true: all of them in a race, or one in full. */
 export function LanesPanel() {
@@ -32,12 +20,11 @@ export function LanesPanel() {
   const signals = useBench((s) => s.bench?.signals);
   const blind = useBench((s) => s.blind);
   const dtMs = useBench((s) => s.bench?.dt_ms);
-  const end = useBench((s) => s.bench?.samples);
-  const step = longestStep(useSteps(), end);
+  const usual = useRunWindow();
   const [chosenMs, setWindowMs] = useState<number | undefined>(undefined);
-  const windowMs = chosenMs ?? usualWindow(step, dtMs);
   const [wanted, setWanted] = useState(ALL);
-  const time = useLaneTime(windowMs, dtMs);
+  const { windowMs, whole } = chosenMs === undefined ? usual : { windowMs: chosenMs, whole: undefined };
+  const time = useLaneTime(windowMs, dtMs, whole);
   const picture = useRef<TakePicture>(null);
   const all = useMemo(
     () => contestants({ diagnosers: diagnosers ?? {}, signals: signals ?? [] }),

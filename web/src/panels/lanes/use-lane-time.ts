@@ -1,7 +1,7 @@
 import { useEffect, useMemo, useRef } from "react";
 import { type TimeWindow, useTimeView } from "../scope/use-time-view";
 
-interface Span {
+export interface Span {
   start: number;
   end: number;
 }
@@ -12,12 +12,14 @@ export interface LaneTime {
   view: TimeWindow;
   /** Ticks held while detached from live; undefined while live. */
   held(): Span | undefined;
+  /** Ticks shown while live, whatever the newest of them; undefined where the newest is at the end. */
+  whole: Span | undefined;
   look(start: number, end: number): void;
   goLive(): void;
   listen(moved: () => void): () => void;
 }
 
-export function useLaneTime(windowMs: number, dtMs: number | undefined): LaneTime {
+export function useLaneTime(windowMs: number, dtMs: number | undefined, whole?: Span): LaneTime {
   const listeners = useRef(new Set<() => void>());
   const { view, span, look, goLive } = useTimeView(windowMs, dtMs, () => {
     for (const moved of listeners.current) moved();
@@ -25,11 +27,13 @@ export function useLaneTime(windowMs: number, dtMs: number | undefined): LaneTim
   useEffect(() => {
     for (const moved of listeners.current) moved();
   });
+  const { start, end } = whole ?? {};
   return useMemo(
     () => ({
       windowMs,
       view,
       held: () => span.current,
+      whole: start === undefined || end === undefined ? undefined : { start, end },
       look,
       goLive,
       listen: (moved) => {
@@ -39,6 +43,6 @@ export function useLaneTime(windowMs: number, dtMs: number | undefined): LaneTim
         };
       },
     }),
-    [windowMs, view, span, look, goLive],
+    [windowMs, view, start, end, span, look, goLive],
   );
 }

@@ -1,36 +1,44 @@
+import { type TickedRange, type TickRoom, tickedRange } from "../../picture/ticked-range";
+
 /** A vertical range that grows at once and shrinks only when it has been too wide for a while. */
-export interface AxisRange {
-  min: number;
-  max: number;
+export interface AxisRange extends TickedRange {
   /** Since when the data would fit a much smaller range, in ms; undefined while they do not. */
   looseSince: number | undefined;
 }
 
 const LOOSE = 0.55;
 const SHRINK_AFTER_MS = 1200;
+/** Half a range over half of what it holds, at least. */
+const AIR = 1.06;
+const ROOM: TickRoom = { most: 8 };
 
-export function nextRange(now: AxisRange | undefined, low: number, high: number, timeMs: number): AxisRange {
-  if (!(low <= high)) return now ?? { min: -1, max: 1, looseSince: undefined };
-  const fit = roundRange(low, high);
+export function nextRange(
+  now: AxisRange | undefined,
+  low: number,
+  high: number,
+  timeMs: number,
+  room = ROOM,
+): AxisRange {
+  if (!(low <= high)) return now ?? { min: -1, max: 1, step: 1, looseSince: undefined };
+  const fit = roundRange(low, high, room);
   if (!now) return { ...fit, looseSince: undefined };
-  const grow = low < now.min || high > now.max;
-  if (grow) return { min: Math.min(fit.min, now.min), max: Math.max(fit.max, now.max), looseSince: undefined };
+  const [from, to] = withAir(low, high);
+  if (from < now.min || to > now.max)
+    return { ...tickedRange(Math.min(from, now.min), Math.max(to, now.max), room), looseSince: undefined };
   if (fit.max - fit.min > LOOSE * (now.max - now.min))
     return now.looseSince === undefined ? now : { ...now, looseSince: undefined };
   if (now.looseSince === undefined) return { ...now, looseSince: timeMs };
   return timeMs - now.looseSince >= SHRINK_AFTER_MS ? { ...fit, looseSince: undefined } : now;
 }
 
-/** Round a range outwards to a step of 1, 2 or 5, with a little air; a flat line gets room around it. */
-export function roundRange(low: number, high: number): { min: number; max: number } {
+/** A range in round steps, with a tick clear of either end of the values. */
+export const roundRange = (low: number, high: number, room = ROOM): TickedRange =>
+  tickedRange(...withAir(low, high), room);
+
+/** What values need: a little air beyond both ends, and a flat line some around it. */
+function withAir(low: number, high: number): [number, number] {
   const middle = (low + high) / 2;
   const least = Math.max(Math.abs(middle) * 1e-3, 1e-12);
-  const half = Math.max((high - low) / 2, high - low < least ? Math.max(Math.abs(middle) * 0.2, 1e-3) : 0) * 1.06;
-  const step = niceStep(half / 16);
-  return { min: Math.floor((middle - half) / step) * step, max: Math.ceil((middle + half) / step) * step };
-}
-
-function niceStep(raw: number): number {
-  const power = 10 ** Math.floor(Math.log10(raw));
-  return power * ([1, 2, 5, 10].find((m) => m * power >= raw * 0.9999) ?? 10);
+  const half = Math.max((high - low) / 2, high - low < least ? Math.max(Math.abs(middle) * 0.2, 1e-3) : 0) * AIR;
+  return [middle - half, middle + half];
 }

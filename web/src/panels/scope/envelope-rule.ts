@@ -41,7 +41,7 @@ export const samplesOf = ({ startTick, endTick, columns }: Pick<PanelFrame, "sta
 export function bandsOf(
   frame: PanelFrame,
   envelopes: Envelope[],
-  ranges: (AxisRange | undefined)[],
+  ranges: (Pick<AxisRange, "min" | "max"> | undefined)[],
 ): Banded | undefined {
   const samples = samplesOf(frame);
   if (samples <= 1) return undefined;

@@ -1,8 +1,13 @@
 // @vitest-environment jsdom
 import { expect, it, vi } from "vitest";
+import { placeOn } from "../../picture/axes";
 import { pictureSvg } from "../../picture/picture";
+import { tickRoom } from "../../picture/ticked-range";
+import { RecordingPen } from "../../testing/recording-pen";
 import { TRACE_COLOURS } from "../../ui/palette";
-import { axisTitle, type ScopeShown, scopePicture } from "./paint-scope";
+import { unitScale } from "../../ui/unit-scale";
+import { nextRange } from "./axis-range";
+import { axisTitle, paintScope, type ScopeShown, scopePicture } from "./paint-scope";
 
 vi.spyOn(HTMLCanvasElement.prototype, "getContext").mockReturnValue(null);
 
@@ -20,8 +25,8 @@ const PICTURE: ScopeShown = {
   units: ["um", "V"],
   scales: [MICRO, { factor: 1, unit: "V", decimals: 2, exponent: "" }],
   ranges: [
-    { min: -1, max: 1 },
-    { min: -5, max: 5 },
+    { min: -1, max: 1, step: 0.5 },
+    { min: -5, max: 5, step: 5 },
   ],
   span: { start: 100, end: 200 },
   origin: 0,
@@ -86,4 +91,36 @@ it("says no more than three quantities on one axis", () => {
   expect(axisTitle(["a.p", "b.q", "c.r", "d.s"], MICRO)).toBe("p, q, r, …, µm");
   expect(axisTitle(["a.p.b", "a.p.c", "a.p.d", "a.p.e"], MICRO)).toBe("p, µm");
   expect(axisTitle(["plant.displacement", "model.displacement"], MICRO)).toBe("displacement, µm");
+});
+
+const MAGNITUDES = [1e-9, 3.7e-4, 0.24, 1, 6.6, 99.9, 12345];
+/** Middles of a range, in its widths: about zero, above it, far below it. */
+const MIDDLES = [0, 0.3, 1.2, -40, 700];
+
+it.each(MAGNITUDES)("has a number above the highest and below the lowest point of traces of about %s", (size) => {
+  for (const middle of MIDDLES)
+    for (const [tall, fontSize] of [
+      [60, 12],
+      [131, 15],
+      [210, 12],
+      [700, 20],
+    ] as const) {
+      const [low, high] = [size * (middle - 0.5), size * (middle + 0.5)];
+      const range = nextRange(undefined, low, high, 0, tickRoom(tall, fontSize));
+      const pen = new RecordingPen();
+      const field = { left: 60, right: 400, top: 20, bottom: 20 + tall };
+      const scales = [unitScale("um", Math.max(Math.abs(range.min), Math.abs(range.max)))];
+      const shown = { ...PICTURE, units: ["um"], scales, ranges: [range], traces: PICTURE.traces.slice(0, 1) };
+      paintScope(pen, field, shown, { scheme: "dark", fontSize }, { ink: () => undefined });
+      const y = placeOn({ range: [range.min, range.max] }, field.bottom, field.top);
+      const numbers = pen.texts.filter(({ align, text }) => align === "right" && /\d/.test(text));
+      const heights = numbers.map(({ points }) => points[0][1]);
+      const told = `${low} to ${high} on ${tall} px`;
+      expect(Math.min(...heights), told).toBeLessThan(y(high) - 1);
+      expect(Math.max(...heights), told).toBeGreaterThan(y(low) + 1);
+      expect(Math.min(...heights), told).toBeGreaterThanOrEqual(field.top - 0.01);
+      expect(Math.max(...heights), told).toBeLessThanOrEqual(field.bottom + 0.01);
+      expect(new Set(numbers.map(({ text }) => text)).size, told).toBe(numbers.length);
+      expect(y(low) - y(high), told).toBeGreaterThan(0.3 * tall);
+    }
 });

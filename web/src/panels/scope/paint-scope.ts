@@ -1,10 +1,11 @@
 import type { PrintedMark } from "../../api/types";
 import type { Marks } from "../../bench/marks";
-import { type Axis, linearAxis, paintColumns, paintFrame, paintRows, placeOn, timeAxis } from "../../picture/axes";
+import { type Axis, paintColumns, paintFrame, paintRows, placeOn, tickedAxis, timeAxis } from "../../picture/axes";
 import type { EventAxis } from "../../picture/event-marks";
 import type { Box, Field, Look, Pen } from "../../picture/pen";
 import type { Picture } from "../../picture/picture";
 import { paintPrinted } from "../../picture/printed-marks";
+import { type TickedRange, ticksOf } from "../../picture/ticked-range";
 import { strokeEnvelope, within } from "../../picture/traces";
 import { formatSi } from "../../ui/format";
 import { CANVAS, DASHES, faded, fontFor, type Scheme, TRACE_COLOURS } from "../../ui/palette";
@@ -48,7 +49,7 @@ export interface ScopeShown {
   units: string[];
   scales: UnitScale[];
   /** Of each unit's axis, in the unit of the signals. */
-  ranges: { min: number; max: number }[];
+  ranges: TickedRange[];
   /** Ticks shown. */
   span: { start: number; end: number };
   /** Tick that the time axis calls zero. */
@@ -83,8 +84,7 @@ export function paintScope(pen: Pen, field: Field, shown: ScopeShown, look: Look
   units.forEach((unit, i) => {
     const onLeft = i === 0;
     const edge = right + (i - 1) * (options.isTitled ? TITLED_AXIS : AXIS) * fontSize;
-    const range = [ranges[i].min, ranges[i].max] as const;
-    const axis = shown.isLog ? magnitudeAxis(range, unit) : linearAxis(range, undefined, scales[i]);
+    const axis = shown.isLog ? magnitudeAxis(ranges[i], unit) : tickedAxis(ranges[i], scales[i]);
     paintRows(pen, field, axis, look, onLeft ? undefined : edge);
     pen.font = fontFor(fontSize, 1, 600);
     if (options.isTitled) {
@@ -128,15 +128,14 @@ function printedOn({ traces, units, ranges, span }: ScopeShown, { bottom, top }:
 const FEW_DECADES = 2;
 
 /** An axis whose values are decimal logarithms of magnitudes. */
-function magnitudeAxis(range: readonly [number, number], unit: string): Axis {
+function magnitudeAxis(range: TickedRange, unit: string): Axis {
   const own = unit.startsWith(DIFFERENCE) ? unit.slice(DIFFERENCE.length) : unit;
-  const [low, high] = range;
-  const steps = high - low > FEW_DECADES ? [1] : [1, 2, 5];
-  const decades = Array.from({ length: Math.floor(high) - Math.floor(low) + 1 }, (_, i) => Math.floor(low) + i);
-  const ticks = decades.flatMap((decade) => steps.map((step) => decade + Math.log10(step)));
+  const { min, max, step } = range;
+  const parts = max - min > FEW_DECADES ? [1] : [1, 2, 5];
+  const ticks = ticksOf({ min, max, step }).flatMap((tick) => parts.map((part) => tick + Math.log10(part)));
   return {
-    range,
-    ticks: () => ticks.filter((tick) => tick >= low && tick <= high),
+    range: [min, max],
+    ticks: () => ticks.filter((tick) => tick <= max),
     say: (shown) => shown.map((tick) => formatSi(10 ** tick, own, 1)),
   };
 }

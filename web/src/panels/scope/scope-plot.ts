@@ -5,6 +5,7 @@ import type { Marks } from "../../bench/marks";
 import { markEvents } from "../../picture/event-marks";
 import type { Field, Look } from "../../picture/pen";
 import { reachMarks } from "../../picture/printed-marks";
+import { tickRoom } from "../../picture/ticked-range";
 import { columnAt, columnTimes, type PanelFrame } from "../../stream/panel-frame";
 import { hover } from "../../ui/hover";
 import { CANVAS, DASHES, faded, fontFor } from "../../ui/palette";
@@ -95,7 +96,10 @@ export class ScopePlot {
   }
 
   resize(width: number, height: number): void {
-    if (width > 20 && height > 20) this.plot.setSize({ width, height });
+    if (width <= 20 || height <= 20) return;
+    this.plot.setSize({ width, height });
+    this.ranges = []; // there is room for other ticks
+    if (this.frame) this.draw(this.frame, this.span, this.trigger);
   }
 
   /** Width of the data area in pixels of the screen. */
@@ -168,7 +172,7 @@ export class ScopePlot {
       times: this.times,
       units: this.units,
       scales: this.scales,
-      ranges: this.units.map((_, axis) => this.ranges[axis] ?? { min: -1, max: 1 }),
+      ranges: this.units.map((_, axis) => this.ranges[axis] ?? { min: -1, max: 1, step: 1 }),
       span: this.span,
       origin: this.origin,
       isTriggered: this.trigger !== undefined,
@@ -244,6 +248,7 @@ export class ScopePlot {
 
   private fitRanges(): void {
     const now = performance.now();
+    const room = { ...tickRoom(this.area.height, this.options.fontSize), ...(this.options.isLog && { finest: 1 }) };
     this.units.forEach((unit, axis) => {
       let low = Number.POSITIVE_INFINITY;
       let high = Number.NEGATIVE_INFINITY;
@@ -257,7 +262,7 @@ export class ScopePlot {
       });
       if (this.options.isLog) low = Math.max(low, high - MOST_DECADES);
       else if (low <= high) [low, high] = reachMarks([low, high], this.options.printed(), unit, this.span);
-      const range = nextRange(this.ranges[axis], low, high, now);
+      const range = nextRange(this.ranges[axis], low, high, now, room);
       if (range === this.ranges[axis]) return;
       const size = this.options.isLog ? 10 ** range.max : Math.max(Math.abs(range.min), Math.abs(range.max));
       this.scales[axis] = scaleOn(unit, size);

@@ -1,0 +1,74 @@
+import { Button, CloseButton } from "@mantine/core";
+import { IconPlayerPlayFilled, IconSquare, IconSquareCheckFilled } from "@tabler/icons-react";
+import { useState } from "react";
+import { useMay } from "../api/me";
+import { showPanel } from "../bench/dock";
+import { showError } from "../bench/send";
+import { startBeside } from "./first-bench";
+import type { Hints } from "./hints";
+import rest from "./rest.module.css";
+import styles from "./strip.module.css";
+import { tourSeen } from "./tours/run-tour";
+import { OfferTour } from "./tours/tour-list";
+import type { TickedHints } from "./use-hints";
+
+/** The next thing to try on the bench. */
+export function TryThis({ tips }: { tips: TickedHints }) {
+  const { hints, done } = tips;
+  const at = hints.findIndex(({ id }) => !done.has(id));
+  return (
+    <section className={styles.lead} aria-label="Try this">
+      <p className={styles.words}>
+        <strong>Try this{at >= 0 && hints.length > 1 ? ` (${at + 1} of ${hints.length})` : ""}:</strong>{" "}
+        {hints[at]?.text}
+      </p>
+      {tips.guided && <Guided {...tips.guided} />}
+      <CloseButton size="sm" aria-label="Dismiss the hints" onClick={tips.dismiss} />
+    </section>
+  );
+}
+
+/** The bench in a sentence, all that can be tried on it, and what there is beside. */
+export function HintList({ tips }: { tips: TickedHints }) {
+  const teaches = useMay("teach");
+  return (
+    <section aria-label="Things to try">
+      <p>
+        {tips.intro} {tips.more}
+      </p>
+      <ul className={rest.hints}>
+        {tips.hints.map(({ id, text }) => (
+          <li key={id} data-done={tips.done.has(id)}>
+            {tips.done.has(id) ? <IconSquareCheckFilled size={16} /> : <IconSquare size={16} />}
+            {text}
+            {tips.done.has(id) && <span className="visually-hidden">, done</span>}
+          </li>
+        ))}
+      </ul>
+      <div className={rest.actions}>
+        {teaches && !tourSeen() && <OfferTour />}
+        {tips.canHide && (
+          <Button size="compact-sm" variant="default" onClick={() => showPanel("blind", "faults")}>
+            Find a hidden fault
+          </Button>
+        )}
+      </div>
+    </section>
+  );
+}
+
+/** A scenario that shows by itself what there is to see. */
+function Guided({ scenario, label }: Hints["guided"]) {
+  const [busy, setBusy] = useState(false);
+  const start = () => {
+    setBusy(true);
+    startBeside(scenario)
+      .catch(showError)
+      .finally(() => setBusy(false));
+  };
+  return (
+    <Button size="compact-sm" loading={busy} leftSection={<IconPlayerPlayFilled size={14} />} onClick={start}>
+      {label}
+    </Button>
+  );
+}
