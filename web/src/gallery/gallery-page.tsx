@@ -3,7 +3,6 @@ import { IconFolderOpen } from "@tabler/icons-react";
 import { useCallback, useMemo, useRef, useState } from "react";
 import { api } from "../api/api";
 import { useMay } from "../api/me";
-import { micro } from "../api/micro";
 import { useAnswer } from "../api/queries";
 import { PageHead } from "../bench/page-head";
 import { setPage, useView } from "../bench/view-store";
