@@ -11,7 +11,11 @@ const [FIRST_LOOK] = Object.values(
   }),
 );
 
-it.each(["lecture", "lab", "research"] as const)("holds every step of the first look in the scope of the rate, at its end: %s", (name) => {
+it.each([
+  "lecture",
+  "lab",
+  "research",
+] as const)("holds every step of the first look in the scope of the rate, at its end: %s", (name) => {
   const dock = createDockview(document.createElement("div"), {
     createComponent: () => ({ element: document.createElement("div"), init: () => undefined }),
   });
