@@ -88,7 +88,7 @@ def test_a_map_has_a_place_for_each_pair_and_is_turned_on_demand() -> None:
 
 
 def test_a_ranking_has_the_numbers_in_the_order_of_their_rank_correlation() -> None:
-    """A figure that rises with a number has 1 with it, whatever the shape, -1 where it falls, and little with others."""
+    """A figure that rises with a number has 1 with it, whatever the shape, -1 where it falls, little with others."""
     sweep = sweep_of(latin_hypercube={"points": 60, "ranges": RANGES})
     shown = picture_of(sweep, lambda v: -np.exp(5.0 * v["reference.amplitude_um"]))
     assert shown.ranking[0].name == "reference.amplitude_um" == shown.across
