@@ -56,7 +56,9 @@ export function Phone() {
           }
           lower={<Lower usual={isFlat ? "lanes" : "locus"} />}
         />
-        <Caption />
+        <div className={styles.caption}>
+          <Caption />
+        </div>
         <PhoneBar onMore={() => setMore(true)} />
         <PhoneMore opened={more} onClose={() => setMore(false)} />
       </div>
