@@ -153,7 +153,7 @@ def _claim(entry: Expectation, measured: float | None, drawn: list[Mark], is_ove
         printed_low=_closed(agreeing[0]),
         printed_high=_closed(agreeing[1]),
         is_published=entry.agreeing is not None,
-        expected=entry.text(),
+        expected=entry.words(),
         low=low,
         high=high,
         measured=measured,

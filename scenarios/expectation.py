@@ -96,7 +96,15 @@ class Expectation(Table):
         return self.value - (self.tolerance or 0.0), self.value + (self.tolerance or 0.0)
 
     def text(self) -> str:
-        """Write the expectation as text, with the unit of its metric."""
+        """Write the expectation for programs: plain characters, in the unit of its metric."""
+        if self.value is not None:
+            return f"{format_short(self.value, '', 6)} ± {format_short(self.tolerance or 0.0, '', 6)}"
+        parts = [f">= {format_short(self.min, '', 6)}"] if self.min is not None else []
+        parts += [f"<= {format_short(self.max, '', 6)}"] if self.max is not None else []
+        return " and ".join(parts)
+
+    def words(self) -> str:
+        """Write the expectation for readers: with a unit and its prefix."""
         unit = metric_unit(self.metric)
         if self.value is not None:
             return format_within(self.value, self.tolerance or 0.0, unit)

@@ -21,6 +21,7 @@ def judge(scenario: Scenario, metrics: dict[str, float], pid: Mapping[str, float
             "metric": entry.metric,
             "published": entry.published,
             "expected": entry.text(),
+            "expected_words": entry.words(),
             "measured": metrics.get(entry.metric),
             "ok": entry.holds(metrics.get(entry.metric)),
             "published_value": entry.published_value,

@@ -85,7 +85,7 @@ def _expectation(entry: dict[str, Any]) -> list[str]:
     return [
         metric_scale(metric).name,
         entry["published"],
-        entry["expected"],
+        entry.get("expected_words", entry["expected"]),
         metric_text(metric, entry["measured"], 6),
         "holds" if entry["ok"] else "does not hold",
         *(metric_text(metric, entry.get(name), 6) for name in OTHERS),

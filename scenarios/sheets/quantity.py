@@ -7,12 +7,13 @@ import re
 from typing import NamedTuple
 
 from core.errors import InputError, short
-from core.format import MINUS, PREFIXES, UNITS, unit_text
+from core.format import MINUS, PREFIXES, RAISED, UNITS, unit_text
 
 _FORM = re.compile(r"^([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)$", re.DOTALL)
 _PREFIX = {prefix.strip(): scale for scale, prefix in PREFIXES if prefix.strip()} | {"u": 1e-6, "μ": 1e-6}
 _BASES = {name for _, name in UNITS.values()}
 LONGEST = 80
+LOWERED = {raised: chr(plain) for plain, raised in RAISED.items()}
 
 
 class Quantity(NamedTuple):
@@ -49,6 +50,7 @@ def parse_quantity(text: str) -> Quantity:
     plain = " ".join(text.split())
     if len(plain) > LONGEST:
         raise InputError(f"has more than {LONGEST} characters", "answer")
+    plain = re.sub(r"[·×] ?10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)", lambda power: f"e{power[1].translate(LOWERED)}", plain)
     plain = plain.replace(MINUS, "-").replace("·10^", "e").replace("×10^", "e").replace(" e", "e")
     if re.match(r"^[+-]?\d+,\d", plain):
         raise InputError("needs a decimal point, 2.48 and not 2,48", "answer")

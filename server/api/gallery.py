@@ -38,6 +38,7 @@ class Expected(BaseModel):
     published: str
     published_value: float | None
     expected: str
+    expected_words: str = Field(description="The same for readers, with a unit and its prefix")
     verdict: Verdict | None = Field(description="That of the measured value; until it is run, if the expectation holds")
     fitted: list[str] = Field(description="Fields of the scenario that were chosen so that it agrees")
     reason: str = Field(description="Why nothing is said by comparing it with the open loop")
@@ -167,6 +168,7 @@ def _card(scenario: Scenario, run: Run | None, figures: Figures) -> GalleryCard:
             published=entry.published,
             published_value=entry.published_value,
             expected=entry.text(),
+            expected_words=entry.words(),
             verdict=measurement["verdict"] if measurement else entry.promised(),
             fitted=entry.fitted,
             reason=entry.reason,

@@ -181,6 +181,7 @@ _DOORS = {
         DELETE {API}/sweeps/{{sweep_id}}
         GET {API}/sweeps/{{sweep_id}}/points
         GET {API}/sweeps/{{sweep_id}}/distribution
+        GET {API}/sweeps/{{sweep_id}}/picture
         GET {API}/sweeps/{{sweep_id}}/runs
         GET {API}/sweeps/{{sweep_id}}/report
         GET {API}/sweeps/{{sweep_id}}/script

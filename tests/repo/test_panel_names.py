@@ -23,8 +23,8 @@ def panels(root: Path) -> dict[str, set[str]]:
     owners = (root / "web/src/bench/panel-views.ts").read_text()
     titles = (root / "web/src/app/panels.tsx").read_text()
     of_panels, of_views = titles.split("export const VIEW:")
-    named = dict(re.findall(r'^  (\w+): \{ title: "([^"]+)"', of_panels, re.M))
-    views = dict(re.findall(r'^  (\w+): \{ title: "([^"]+)"', of_views, re.M))
+    named = dict(re.findall(r'^  (\w+): \{\s+title: "([^"]+)"', of_panels, re.M))
+    views = dict(re.findall(r'^  (\w+): \{\s+title: "([^"]+)"', of_views, re.M))
     found = re.findall(r"^  (\w+): \[([^\]]+)\],$", owners, re.M)
     return {named[panel]: {views[view] for view in re.findall(r'"(\w+)"', inside)} for panel, inside in found}
 

@@ -4568,6 +4568,11 @@ export interface components {
             /** Expected */
             expected: string;
             /**
+             * Expected Words
+             * @description The same for readers, with a unit and its prefix
+             */
+            expected_words: string;
+            /**
              * Verdict
              * @description That of the measured value; until it is run, if the expectation holds
              */

@@ -8,7 +8,7 @@ const SHOWN = 3;
 
 type Expected = GalleryCard["expectations"][number];
 /** A row; runs kept from earlier lack what has been added since. */
-type Entry = Omit<Expected, "fitted" | "reason" | "comparator" | "pid_too"> & Partial<Expected>;
+type Entry = Omit<Expected, "fitted" | "reason" | "comparator" | "pid_too" | "expected_words"> & Partial<Expected>;
 
 interface ExpectationTableProps {
   entries: Entry[];
@@ -73,7 +73,7 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
                   )}
                   {all && remarks(entry).map((text) => <small key={text}>{text}</small>)}
                 </th>
-                <td>{entry.expected}</td>
+                <td>{entry.expected_words ?? entry.expected}</td>
                 <td className={styles.measured} data-ok={entry.ok}>
                   {say(entry.measured)}
                   {entry.ok === false && " ✗"}
