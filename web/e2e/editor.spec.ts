@@ -131,6 +131,8 @@ test("a mistake is said with its place, a text that trips is marked, and the las
   await expect(difference.locator(".cm-deletedChunk")).toContainText('title = "PI"');
   await difference.getByRole("button", { name: "Close" }).click();
   await page.reload();
+  await expect(page.getByTestId("bench-state")).toBeVisible();
+  await page.keyboard.press("o");
   await expect(text(page)).toContainText('title = "PI of today"');
   const goBack = async () => {
     await editor(page).getByRole("button", { name: "Back to the last that worked" }).click();

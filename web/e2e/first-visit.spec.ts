@@ -6,7 +6,13 @@ interface Event {
   tick: number;
 }
 
-const LATER = ["Added mass +10", "Beam stiffness +5", "Beam stiffness +10", "Damping +30", "healed"];
+const LATER = [
+  "Added mass +10",
+  "Added mass removed, beam stiffness +5",
+  "Beam stiffness +10",
+  "Beam stiffness removed, damping +30",
+  "healed",
+];
 
 test("a first visit opens a bench that runs, ticks off what was tried, and shows the seven steps at a press", async ({
   page,

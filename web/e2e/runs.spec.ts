@@ -50,7 +50,8 @@ test("a run is started from the page and its files are offered; a campaign is st
   await seeds.fill("2");
   await form.getByRole("button", { name: "Start 4 runs" }).click();
   await expect(result.getByText("4 of 4 runs · done")).toBeVisible();
-  const rows = result.getByRole("table").first().locator("tbody tr");
+  await result.getByText("All points as a table").click();
+  const rows = result.locator("details").getByRole("table").locator("tbody tr");
   await expect(rows).toHaveCount(2);
   await expect(rows.first()).toContainText("0.05");
   await result.getByRole("button", { name: "noise, µm" }).dblclick();

@@ -55,7 +55,7 @@ test("a student works through a lab sheet and hands it in, and the tile of the t
 
   // the run is closed until the prediction is committed, which is judged after the run
   const run = step(ada, "Run: 5 % more mass");
-  await expect(run).toContainText("closed until");
+  await expect(run).toContainText("Complete the previous steps first");
   const guess = step(ada, "Predict: a heavier plate");
   await guess.getByRole("radio", { name: "It shrinks" }).check();
   await guess.getByRole("button", { name: "Commit the prediction" }).click();

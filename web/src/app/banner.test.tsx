@@ -71,7 +71,7 @@ it("says since when nothing was heard", async () => {
 });
 
 it.each([
-  [4404, "This bench is gone", ["Start it again", "Open my own"]],
+  [4404, "This bench was closed", ["Start it again", "Open my own"]],
   [4403, "This bench is not yours", ["Start it again", "Open my own"]],
   [4401, "You are not logged in", ["Reload"]],
   [4001, "The server speaks a newer version", ["Reload"]],
@@ -89,14 +89,14 @@ it("offers a watcher no bench of their own", async () => {
   const board = connect(bench);
   mount(<Banner />);
   await board.drop(4404);
-  expect(notice()).toHaveTextContent("This bench is gone");
+  expect(notice()).toHaveTextContent("This bench was closed");
   expect(screen.queryByRole("button")).not.toBeInTheDocument();
 });
 
 it("says that the board has tripped, and resets the trip", async () => {
   const board = connect(bench);
   const { user } = mount(<Banner />);
-  board.status({ state: "tripped", trip: { reason: "tripped: displacement beyond 8 um", tick: 2000 } as never });
+  board.status({ state: "tripped", trip: { reason: "tripped: displacement beyond 8 µm", tick: 2000 } as never });
   expect(notice()).toHaveTextContent("Tripped: displacement beyond 8 µm");
   await user.click(screen.getByRole("button", { name: "Reset the trip" }));
   expect(board.commands).toEqual([{ reset_trip: true }]);

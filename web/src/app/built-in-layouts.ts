@@ -100,9 +100,9 @@ export const BUILT_IN: Layouts = {
     addTo(api, "schematic", "schematic", { left: "motion" });
     addTo(api, "faults", "faults", { below: "schematic" });
     addBehind(api, "schematic", ["device"]);
-    addBehind(api, "faults", ["controllers"]);
+    addBehind(api, "faults", ["controllers", "sheet"]);
     addTo(api, "lanes", "lanes", { below: "motion" });
-    addBehind(api, "lanes", ["sheet", "why"]);
+    addBehind(api, "lanes", ["why"]);
     if (wide) addBehind(api, "lanes", ["identify", "twins", "narrator", "claims"]);
     size(api, width, height, {
       schematic: { w: Math.max(0.26, LOOP_PX.width / width), h: Math.max(0.34, LOOP_PX.height / height) },
@@ -114,14 +114,14 @@ export const BUILT_IN: Layouts = {
     addMotion(api, wide);
     addTo(api, "schematic", "schematic", { left: "motion" });
     addTo(api, "faults", "faults", { below: "schematic" });
-    addBehind(api, "faults", ["controllers"]);
+    addBehind(api, "faults", wide ? ["controllers", "sheet"] : ["controllers"]);
     addTo(api, "view3d", "view3d", wide ? { right: "motion" } : { within: "schematic", inactive: true });
     addTo(api, "lanes", "lanes", { below: "motion" });
     if (wide) {
       addTo(api, "why", "why", { below: "view3d" });
       addBehind(api, "why", ["narrator", "claims"]);
       addBehind(api, "schematic", ["device"]);
-      addBehind(api, "lanes", ["sheet", "identify", "twins"]);
+      addBehind(api, "lanes", ["identify", "twins"]);
     } else addBehind(api, "lanes", ["why", "device"]);
     size(api, width, height, {
       schematic: { w: Math.max(0.225, LOOP_PX.width / width), h: Math.max(0.32, LOOP_PX.height / height) },

@@ -20,11 +20,11 @@ afterEach(() => useMe.setState({ me: undefined }));
 
 test("each role is offered the pages and keys of what it may do", () => {
   be("teacher");
-  expect(pages("teacher")).toEqual(["bench", "class", "gallery", "runs", "designer", "theory"]);
+  expect(pages("teacher")).toEqual(["bench", "class", "gallery", "runs", "benchmark", "designer", "theory"]);
   expect(keys()).toEqual(expect.arrayContaining(["Space", "F", "Shift S", "K", "M", "U", "N", "1"]));
 
   be("student");
-  expect(pages("student")).toEqual(["bench", "gallery", "runs", "designer", "theory"]);
+  expect(pages("student")).toEqual(["bench", "gallery", "runs", "benchmark", "designer", "theory"]);
   expect(keys()).toEqual(expect.arrayContaining(["Space", "H", "N", "V", "U", "1"]));
   for (const key of ["F", "Shift S", "K", "M"]) expect(keys()).not.toContain(key);
 

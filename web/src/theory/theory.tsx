@@ -8,24 +8,34 @@ import { Instability } from "./instability";
 import { PositiveReal } from "./positive-real";
 import styles from "./theory.module.css";
 
-const paper = (title: string, body: ReactNode) => ({
-  title,
-  body: (
+/** A calculator by its title, or the equations that the place names. */
+function Paper({ title, children }: { title?: string; children: ReactNode }) {
+  const asked = useView((s) => s.item);
+  return (
     <div className={styles.page}>
       <header className={styles.top}>
-        <PageHead name="Theory" item={title} heading={title} />
+        <PageHead name="Theory" item={title ?? asked} />
       </header>
-      {body}
+      {children}
     </div>
-  ),
-});
+  );
+}
+
+const calculator = (title: string, body: ReactNode) => ({ title, body: <Paper title={title}>{body}</Paper> });
 
 const EQUATIONS = "equations";
 const TABS = {
-  [EQUATIONS]: paper("Equations", <EquationIndex />),
-  "positive-real": paper("Positive real", <PositiveReal />),
-  excitation: paper("Excitation", <Excitation />),
-  stability: paper("Stability", <Instability />),
+  [EQUATIONS]: {
+    title: "Equations",
+    body: (
+      <Paper>
+        <EquationIndex />
+      </Paper>
+    ),
+  },
+  "positive-real": calculator("Positive real", <PositiveReal />),
+  excitation: calculator("Excitation", <Excitation />),
+  stability: calculator("Stability", <Instability />),
 };
 
 /** Every equation with its errata, and calculators for appendices A and B; a place of no tab finds equations by its words. */

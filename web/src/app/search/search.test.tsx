@@ -40,7 +40,7 @@ it("Ctrl K opens it with the places and panels there are for the person", async 
   be("student");
   const { option } = await open();
   expect(await option(/^Gallery/)).toBeVisible();
-  expect(screen.queryByRole("button", { name: /^Runs/ })).not.toBeInTheDocument();
+  expect(screen.queryByRole("button", { name: /^Class/ })).not.toBeInTheDocument();
   expect(await option(/^Diagnosis/)).toBeVisible();
   expect(screen.queryByRole("button", { name: /^Motion/ })).not.toBeInTheDocument();
 });

@@ -5,6 +5,7 @@ import { paintDot, paintLine, paintRule, within } from "../../picture/traces";
 import { formatIn, formatNumber } from "../../ui/format";
 import { TRACE_COLOURS } from "../../ui/palette";
 import type { UnitScale } from "../../ui/unit-scale";
+import { roundTo } from "../../ui/unit-scale";
 import type { LocusAxes, Points } from "./locus-axes";
 
 export interface LocusTrace {
@@ -29,7 +30,7 @@ export const tiltText = (degrees: number | undefined) =>
 /** By how much y is drawn larger than x, in one digit that does not flicker; nothing where both have one scale. */
 function stretchText({ x, y }: LocusAxes): string {
   const stretch = (x[1] - x[0]) / (y[1] - y[0]);
-  return stretch < 1.5 ? "" : ` (×${formatNumber(Number(stretch.toPrecision(1)), 0)})`;
+  return stretch < 1.5 ? "" : ` (×${formatNumber(roundTo(stretch, 1), 0)})`;
 }
 
 /** The path of the mass in its plane, and the line along which it swings. */

@@ -127,5 +127,5 @@ it("says why there is no map", async () => {
 it("shows a gyroscope the turn of its mass", async () => {
   const { board } = mountPanel(gyroscope.bench);
   expect(board.subscriptions[0].signals).toEqual(["plant.x", "plant.x_velocity"]);
-  expect(screen.getByText(/^The turn of a moving mass/)).toBeVisible();
+  expect(screen.getByText(/^Rotation of the moving mass/)).toBeVisible();
 });

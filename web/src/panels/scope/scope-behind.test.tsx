@@ -32,7 +32,7 @@ const printed: PrintedMark = {
   low: 0.5,
   high: 1,
   problem: "",
-  words: "0.5 um",
+  words: "0.5 µm",
   from_tick: 0,
   until_tick: 4000,
 };

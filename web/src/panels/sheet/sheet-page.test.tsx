@@ -61,7 +61,7 @@ it("sends an answer, and shows the points that it earns", async () => {
 });
 
 it("says at its field why an answer cannot be read", async () => {
-  server.on("POST", `${STEPS}/answer`, new Refusal(422, "answer: has no unit", { hint: "Write 3 um." }));
+  server.on("POST", `${STEPS}/answer`, new Refusal(422, "answer: has no unit", { hint: "Write 3 µm." }));
   const { user } = await mountPage();
   await user.type(screen.getByRole("textbox", { name: "How large?" }), "3");
   await user.click(screen.getByRole("button", { name: "Answer" }));

@@ -64,7 +64,7 @@ it("marks the part that a fault acts on, and names the fault", async () => {
 it("draws another device for one without a drawing, and says so", async () => {
   connect(healthy);
   mount(<View3dPanel />);
-  expect(await screen.findByText(/LCR-350 stands for a device without a drawing/)).toBeVisible();
+  expect(await screen.findByText(/This device has no drawing; LCR-350 is shown/)).toBeVisible();
   await vi.waitFor(async () => expect((await plan()).querySelectorAll("path").length).toBeGreaterThan(5));
 });
 
