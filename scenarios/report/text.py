@@ -66,4 +66,4 @@ def _figures(entry: dict[str, Any]) -> str:
     said += [] if "measured" in figures else ["not measured"]
     said += ["which meets the claim too"] if entry.get("pid_too") else []
     said += [f"published: {entry['published']}"] if entry["published"] else []
-    return f"{entry['expected']}: {', '.join(said)}"
+    return f"{entry['expected_words']}: {', '.join(said)}"

@@ -43,7 +43,7 @@ test("figures are made when the gallery is opened; it searches, runs an experime
     await card.getByRole("button", { name: /headless/ }).click();
     await expect(card.getByText("measured as expected")).toBeVisible();
     await expect(card.getByRole("row", { name: /correct fraction/ })).toContainText(/≥\s0\.\d+.*0\.9\d+/);
-    const report = await page.request.get(await addressOf(card.getByRole("link")));
+    const report = await page.request.get(await addressOf(card.getByRole("link", { name: /^Report/ })));
     expect(await report.text()).toContain("Expectations");
     await card.getByRole("button", { name: /live$/ }).click();
     await expect(page.getByRole("button", { name: /^Seven-step/ })).toBeVisible();

@@ -55,7 +55,7 @@ test("a full server says what to do, and a bench that it closed while idle opens
     const { id: first } = await server.ask<{ id: string }>("POST", "/benches", { scenario: "first-look", keep: true });
     await page.goto(server.url);
     await expect(page.getByRole("heading", { name: "This server has no free bench" })).toBeVisible();
-    await expect(page.getByText("wait until somebody closes one")).toBeVisible();
+    await expect(page.getByText("Wait until one is closed")).toBeVisible();
     await page.getByRole("button", { name: /^Join / }).click();
     await expect(page.getByTestId("bench-state")).toHaveText("running");
 
