@@ -46,7 +46,7 @@ BODIES: dict[str, list[Any]] = {
     "/api/v1/benches/{bench_id}/identification": [
         {"points": 4, "cycles": 2, "settle": 1},
         {"points": 200, "cycles": 1000, "settle": 100},
-        {"points": 4, "cycles": 2, "settle": 1, "amplitude_v": 1000},
+        {"points": 4, "cycles": 2, "settle": 1, "amplitude_v": 20},
     ],
     "/api/v1/benches": [{"scenario": "first-look"}],
     "/api/v1/benches/{bench_id}/blind": [{"seed": 1}],
