@@ -1,7 +1,7 @@
 import type { DockviewApi, SerializedDockview } from "dockview-react";
 import { api } from "../api/api";
 import { hasAxes } from "../api/fits";
-import { dockNow, forgetClosed, holdDock, restoreLayout, type SharedLayout } from "../bench/dock";
+import { dockNow, forgetClosed, restoreLayout, type SharedLayout, useDock } from "../bench/dock";
 import { inAddress } from "../bench/open-bench";
 import type { PanelName } from "../bench/panel-views";
 import { showError } from "../bench/send";
@@ -60,7 +60,7 @@ export function layOutFor(withAxes: boolean): void {
 
 /** The dock to lay out; called once it stands. A panel without a title of its own has that of its kind. */
 export function attachDock(api: DockviewApi): void {
-  holdDock(api);
+  useDock.setState({ dock: api });
   api.onDidAddGroup((group) => group.api.setConstraints({ minimumWidth: LEAST_PX }));
   api.onDidAddPanel((panel) => {
     if (!panel.title || panel.title === panel.id)

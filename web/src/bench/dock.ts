@@ -27,29 +27,23 @@ interface Closed {
 const MOST_CLOSED = 20;
 const CLOSED_NOTICE = "panel-closed";
 
-let current: DockviewApi | undefined;
+/** The dock of the page; a phone has none. */
+export const useDock = create<{ dock: DockviewApi | undefined; closed: Closed[] }>(() => ({
+  dock: undefined,
+  closed: [],
+}));
 
-/** The dock of the page, for who lays it out anew whenever there is another. */
-export const useDock = create<{ dock: DockviewApi | undefined }>(() => ({ dock: undefined }));
-let closed: Closed[] = [];
-
-/** The dock, once the page has one; a phone has none. */
-export const dockNow = (): DockviewApi | undefined => current;
-
-/** Take a dock as the page's; panels may be opened in it from here on. */
-export function holdDock(api: DockviewApi): void {
-  current = api;
-  useDock.setState({ dock: api });
-}
+/** The dock, once the page has one. */
+export const dockNow = (): DockviewApi | undefined => useDock.getState().dock;
 
 /** How the panels stand now, to be kept with a recording. */
-export const layoutNow = () => current?.toJSON() as Document | undefined;
+export const layoutNow = () => dockNow()?.toJSON() as Document | undefined;
 
 /** Put the panels as they stood; returns whether this version knows them all. */
 export function restoreLayout(layout: Document | SerializedDockview): boolean {
   try {
     forgetClosed();
-    current?.fromJSON(withGaps(folded(layout as unknown as SerializedDockview)));
+    dockNow()?.fromJSON(withGaps(folded(layout as unknown as SerializedDockview)));
     requestAnimationFrame(revealActiveTabs);
     return true;
   } catch (error) {
@@ -60,13 +54,15 @@ export function restoreLayout(layout: Document | SerializedDockview): boolean {
 
 /** Close a panel; it can be brought back. */
 export function closePanel(panel: IDockviewPanel): void {
-  if (!current) return;
+  const dock = dockNow();
+  if (!dock) return;
   const { group, title } = panel;
-  const before = current.toJSON();
+  const before = dock.toJSON();
   const index = group.panels.indexOf(panel);
   panel.api.close();
-  const after = JSON.stringify(current.toJSON().grid);
-  closed = [...closed, { panel: before.panels[panel.id], group: group.id, index, before, after }].slice(-MOST_CLOSED);
+  const after = JSON.stringify(dock.toJSON().grid);
+  const last = { panel: before.panels[panel.id], group: group.id, index, before, after };
+  useDock.setState(({ closed }) => ({ closed: [...closed, last].slice(-MOST_CLOSED) }));
   notifications.hide(CLOSED_NOTICE);
   notifications.show({ id: CLOSED_NOTICE, title: `${title} closed.`, message: undoButton() });
 }
@@ -80,43 +76,49 @@ const undoButton = () =>
 
 /** Another layout is about to stand: what was closed in this one does not belong there. */
 export function forgetClosed(): void {
-  closed = [];
+  useDock.setState({ closed: [] });
   notifications.hide(CLOSED_NOTICE);
 }
 
 /** Bring the panel closed last back to its place; false when there is none. */
 export function reopenClosed(): boolean {
+  const { dock, closed } = useDock.getState();
   const last = closed.at(-1);
-  if (!current || !last) return false;
-  closed = closed.slice(0, -1);
+  if (!dock || !last) return false;
+  useDock.setState({ closed: closed.slice(0, -1) });
   notifications.hide(CLOSED_NOTICE);
   const { panel, group, index, before, after } = last;
-  if (current.getPanel(panel.id)) return reopenClosed();
-  if (JSON.stringify(current.toJSON().grid) === after)
-    current.fromJSON(withGaps(before), { reuseExistingPanels: true }); // nothing else has moved
+  if (dock.getPanel(panel.id)) return reopenClosed();
+  if (JSON.stringify(dock.toJSON().grid) === after)
+    dock.fromJSON(withGaps(before), { reuseExistingPanels: true }); // nothing else has moved
   else
-    current.addPanel({
+    dock.addPanel({
       id: panel.id,
       component: panel.contentComponent ?? "scope",
       ...(panel.title ? { title: panel.title } : {}),
       params: panel.params ?? {},
-      ...(current.getGroup(group) ? { position: { referenceGroup: group, index } } : {}),
+      ...(dock.getGroup(group) ? { position: { referenceGroup: group, index } } : {}),
     });
-  current.getPanel(panel.id)?.api.setActive();
+  dock.getPanel(panel.id)?.api.setActive();
   return true;
 }
 
 /** Open another panel with a view, among the panels that have one of another view if there is one, else beside the active panel. */
 export function addPanel(view: string, among?: string): IDockviewPanel | undefined {
   const component = panelOf(view);
-  if (!current || !component) return undefined;
-  return current.addPanel({ id: `${component}-${Date.now()}`, component, params: { view }, position: within(among) });
+  if (!component) return undefined;
+  return dockNow()?.addPanel({
+    id: `${component}-${Date.now()}`,
+    component,
+    params: { view },
+    position: within(among),
+  });
 }
 
 /** Open a scope on some signals, among the panels that have a view if there is one, else beside the active panel. */
 export function addScope(title: string, signals: string[], among?: string): void {
   const params = { scope: scopeConfig(signals) };
-  current?.addPanel({ id: `scope-${Date.now()}`, component: "scope", title, params, position: within(among) });
+  dockNow()?.addPanel({ id: `scope-${Date.now()}`, component: "scope", title, params, position: within(among) });
 }
 
 function within(among: string | undefined) {
@@ -131,7 +133,7 @@ export const viewOf = ({ params, view }: IDockviewPanel): string =>
 /** The panel that shows a view, else the panel that has it among others. */
 export function panelWith(view: string): IDockviewPanel | undefined {
   const owner = panelOf(view);
-  const all = current?.panels.filter((panel) => panel.view.contentComponent === owner) ?? [];
+  const all = dockNow()?.panels.filter((panel) => panel.view.contentComponent === owner) ?? [];
   return all.find((panel) => viewOf(panel) === view) ?? (owner && hasSeveral(owner) ? undefined : all[0]);
 }
 
@@ -142,7 +144,7 @@ export function turnTo(panel: IDockviewPanel, view: string): void {
 
 /** Move the keyboard to the next group of panels. */
 export function focusNextGroup(): void {
-  const groups = current?.groups ?? [];
+  const groups = dockNow()?.groups ?? [];
   const at = groups.findIndex((g) => g.element.contains(document.activeElement));
   const next = groups[(at + 1) % groups.length];
   next?.activePanel?.api.setActive();
@@ -163,18 +165,19 @@ export function showPanel(view: string, among?: string): void {
 
 /** Bring a view to the front in a column of its own at the right edge; without a dock nothing happens. */
 export function showAtEdge(view: string, width: number): void {
-  if (!current) return;
-  if (current.hasMaximizedGroup()) current.exitMaximizedGroup();
+  const dock = dockNow();
+  if (!dock) return;
+  if (dock.hasMaximizedGroup()) dock.exitMaximizedGroup();
   const panel = panelWith(view);
   if (panel) turnTo(panel, view);
   if (panel && panel.group.panels.length === 1) {
     panel.api.setActive();
     return;
   }
-  const group = current.addGroup({ direction: "right" });
+  const group = dock.addGroup({ direction: "right" });
   if (panel) panel.api.moveTo({ group });
   else addPanel(view)?.api.moveTo({ group });
-  group.api.setSize({ width: Math.min(width, current.width / 2) });
+  group.api.setSize({ width: Math.min(width, dock.width / 2) });
 }
 
 /**
@@ -183,8 +186,9 @@ export function showAtEdge(view: string, width: number): void {
  * A page without a dock has its own place for it.
  */
 export function showBeside(view: string, anchor: string): void {
-  if (!current) return;
-  if (current.hasMaximizedGroup()) current.exitMaximizedGroup();
+  const dock = dockNow();
+  if (!dock) return;
+  if (dock.hasMaximizedGroup()) dock.exitMaximizedGroup();
   const beside = panelWith(anchor);
   if (beside) turnTo(beside, anchor);
   let panel = panelWith(view);
@@ -200,7 +204,7 @@ export function showBeside(view: string, anchor: string): void {
 
 /** The tabs of a narrow group scroll; the one whose panel is shown must be among those seen. */
 function revealActiveTabs(): void {
-  for (const group of current?.groups ?? [])
+  for (const group of dockNow()?.groups ?? [])
     group.element
       .querySelector("[role=tab][aria-selected=true]")
       ?.scrollIntoView({ block: "nearest", inline: "center" });

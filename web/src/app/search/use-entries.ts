@@ -105,7 +105,8 @@ function openView(view: ViewName, another = false): void {
     show();
     return;
   }
-  const stop = useDock.subscribe(() => {
+  const stop = useDock.subscribe((now, before) => {
+    if (now.dock === before.dock) return;
     stop();
     queueMicrotask(show); // after the layout
   });
