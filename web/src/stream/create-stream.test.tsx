@@ -102,6 +102,7 @@ it("says why the server refused a message, and subscribes on", () => {
 });
 
 it("counts refusals of a bench behind, and is silent of hidden signals", () => {
+  server.on("GET", "/benches", { benches: [] }); // the benches behind are looked at again
   const board = connect({ ...bench, blind: { id: "question-1" } as never });
   const refuse = (field: string) =>
     board.say({ type: "error", error: { code: "wrong", message: "No.", field, hint: "" } } as never);

@@ -1,11 +1,11 @@
 // @vitest-environment jsdom
 import { act } from "react";
 import { createRoot } from "react-dom/client";
-import { expect, it } from "vitest";
+import { expect, it, vi } from "vitest";
 import { useChanged } from "./use-changed";
 
 it("draws again for what is another value, and for nothing else", () => {
-  Object.assign(globalThis, { IS_REACT_ACT_ENVIRONMENT: true });
+  vi.stubGlobal("IS_REACT_ACT_ENVIRONMENT", true);
   let set: (next: { at: number }) => void = () => undefined;
   const drawn: number[] = [];
   const Shown = () => {
