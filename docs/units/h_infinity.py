@@ -70,7 +70,7 @@ class HInfinity(Block):
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
-        """Pack the controller over a sample: its poles are those of an oscillator, driven by the error."""
+        """Pack the controller over a sample: its poles are the poles of an oscillator, driven by the error."""
         p = cls.Packed.blank()
         device = context.device
         h = context.dt_ms * device.natural_frequency

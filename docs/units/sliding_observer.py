@@ -26,7 +26,7 @@ class SlidingObserver(Block):
     weaknesses = ("noise of the sensor reaches the velocity as the root of its size times the bound",)
 
     class Params(BlockParams):
-        """Bound of what the nominal device does not explain, and the gains of the feedback."""
+        """Bound of the forces outside the nominal model, and the gains of the feedback."""
 
         bound_um_ms2: float = parameter(100.0, "bound of the unexplained acceleration", "um/ms^2", gt=1e-6, le=1e9)
         proportional_v_um: float = parameter(-10.0, "gain of the displacement", "V/um", ge=-1e3, le=1e3)
