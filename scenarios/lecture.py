@@ -1,4 +1,4 @@
-"""A lecture: cues to go through, each an exact state of a bench, what is shown of it, and notes to speak from."""
+"""A lecture: cues in order, each an exact state of a bench, its panels, and notes to speak from."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class Question(Table):
 
 
 class Cue(Table):
-    """A cue: with ``scenario`` it begins an experiment, without it goes on with that of the cue before."""
+    """A cue: with ``scenario`` it begins an experiment, without it continues the experiment of the cue before."""
 
     title: Words = Field(min_length=1, max_length=100)
     minutes: float = Field(gt=0, le=60, description="planned")
@@ -146,7 +146,7 @@ class Lecture:
     id : str
         The name of its file.
     document : dict
-        What is in the file.
+        Content of the file.
     """
 
     def __init__(self, id: str, document: dict[str, Any]) -> None:
@@ -197,7 +197,7 @@ class Lecture:
         return found
 
     def check(self) -> dict[str, Any]:
-        """Run every cue headless; return what the notes claim beside what was measured, JSON-ready."""
+        """Run every cue headless; return the claims of the notes with the measured values, JSON-ready."""
         cues = []
         for cue, state in zip(self.head.cues, self.states, strict=True):
             summary = run(state.scenario, figures_only=True).summary()
@@ -207,7 +207,7 @@ class Lecture:
 
 
 def _state(cue: Cue, before: State | None) -> State:
-    """Return the state of a cue, which may go on with the experiment of the one before."""
+    """Return the state of a cue, which may continue the experiment of the cue before."""
     if cue.scenario is not None or before is None:
         library = get(cue.scenario or "")
         document = written(library.document, cue.set)
@@ -254,12 +254,12 @@ def _state(cue: Cue, before: State | None) -> State:
 
 
 def _bare(document: dict[str, Any]) -> dict[str, Any]:
-    """Return a scenario without what is done and expected."""
+    """Return a scenario without its events and expectations."""
     return {key: value for key, value in document.items() if key not in ("events", "expect", "printed")}
 
 
 def _of_cue(field: str, done: int) -> str:
-    """Return the field of a cue for one of its scenario: its events come after those of the cues before."""
+    """Return the field of a cue for a field of its scenario: its events come after the events of the cues before."""
     parts = field.split(".")
     if parts[0] == "events" and len(parts) > 1:
         return ".".join(["events", str(int(parts[1]) - done), *parts[2:]])

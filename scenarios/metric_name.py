@@ -79,7 +79,7 @@ def _parts(metric: str) -> tuple[str, str]:
         pieces = pieces[1:]
     unit, said = "", list[str]()
     for piece in pieces:
-        if piece.isdigit() and said:  # the number of a step belongs to what is counted
+        if piece.isdigit() and said:  # the number of a step belongs to the counted noun
             said[-1] += f" {piece}"
             continue
         words, found = _without_unit(piece)

@@ -21,7 +21,7 @@ PIECE = 4096
 
 
 class Trace(Protocol):
-    """What takes the samples of a run as they come."""
+    """Receives the samples of a run during the run."""
 
     def begin(self, board: Board, signals: list[Signal]) -> None:
         """Make room for these signals of a board that is at its first tick."""
@@ -64,7 +64,7 @@ class Samples:
 
     def __exit__(self, *_: object) -> None:
         if self._file is not None:
-            self._file.close()  # what has been asked for stays until nobody holds it
+            self._file.close()  # samples that were returned stay until they are unused
 
     def add(self, rows: FloatArray) -> None:
         """Add rows, each with a number for every column."""

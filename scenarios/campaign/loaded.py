@@ -18,4 +18,4 @@ if marker is not None and marker.exists():  # otherwise each is compiled by who 
     outcomes([(short, 1)])
     outcomes([(short, seed) for seed in range(FEWEST)])
 
-gc.freeze()  # what is loaded stays: no collection looks at it again, and no process copies it
+gc.freeze()  # loaded objects stay: no collection looks at them again, and no process copies them

@@ -17,11 +17,11 @@ from scenarios.key import content_hash
 Values = dict[str, Any]
 Labels = dict[str, str | float]
 Step = tuple[Labels, Values]
-"""One step of an axis: what it is called in tables, and what it writes over a scenario."""
+"""One step of an axis: its label in tables, and the values it writes over a scenario."""
 
 
 class Axis(Protocol):
-    """Steps to combine with those of other axes."""
+    """Steps to combine with the steps of other axes."""
 
     def __len__(self) -> int:
         """Return the number of steps."""
@@ -56,7 +56,7 @@ class Rows:
         return ({self._number: float(at + 1)} if self._number else {**values}), values
 
     def column(self, path: str) -> FloatArray:
-        """Return what the steps write to a field."""
+        """Return the values that the steps write to a field."""
         column: FloatArray = self._rows[:, self.paths.index(path)]
         return column
 
@@ -70,7 +70,7 @@ class Rows:
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """One set of values: what it is called in tables, and what it writes over a scenario."""
+    """One set of values: its labels in tables, and the values it writes over a scenario."""
 
     labels: Labels
     values: Values

@@ -28,7 +28,7 @@ class Signs:
 
 
 _received: tuple[Signs, int] | None = None
-"""In a worker: the signs, and which of them are those of the work in hand."""
+"""In a worker: the signs, and the place of the present work among them."""
 
 
 def receive(signs: Signs) -> None:
@@ -47,7 +47,7 @@ def watched(place: int, function: Callable[..., T], *arguments: object) -> T:
 
 
 def tell(ticks: int) -> None:
-    """Say how many ticks of the work are done; elsewhere than in a worker nobody listens.
+    """Report how many ticks of the work are done; without effect outside a worker.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A run with its seeds: a campaign of one point, the same with other controllers beside it; its summary.
+"""A run with its seeds: a campaign of one point, and the same run with other controllers for comparison; its summary.
 
 Whoever carries the runs out (command line, server, a point of a campaign), the summary is made here, from outcomes.
 """

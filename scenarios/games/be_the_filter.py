@@ -1,4 +1,4 @@
-"""Be the filter: tune a bank of Kalman filters to a device, a noise and faults that nobody tells."""
+"""Be the filter: tune a bank of Kalman filters to an unknown device, noise and faults."""
 
 from __future__ import annotations
 
@@ -134,12 +134,12 @@ class BeTheFilter(Game[Settings]):
     turned = ("assumed_noise_scale", "process_noise_v", "probability_floor")
 
     def bench(self, seed: int, handed: Settings | None = None) -> Document:
-        """Return the live bench of a seed as a scenario, the bank set as somebody would hand it in."""
+        """Return the live bench of a seed as a scenario, the bank set to the answer."""
         hidden = Hidden(seed)
         return {**document(hidden, handed or Settings()), "seed": hidden.draws.whole("live", NOISE_SEEDS)}
 
     def judge(self, seed: int, handed: Settings) -> Outcome:
-        """Return the points of what was handed in, beside those of the default settings."""
+        """Return the points of an answer, with the points of the default settings."""
         hidden = Hidden(seed)
         usual, sixth = Settings(), sixth_of(hidden, handed)
         brier, credit = _brier(hidden, handed, sixth), sixth.credit
@@ -167,7 +167,7 @@ class BeTheFilter(Game[Settings]):
         )
 
     def hidden(self, seed: int) -> list[Fact]:
-        """Tell what a seed hides."""
+        """Return the hidden values of a seed."""
         one = Hidden(seed)
         scale = one.noise_um**2 / DATA_SHEET_UM**2
         fault = ", ".join(
@@ -185,12 +185,12 @@ class BeTheFilter(Game[Settings]):
 
 
 def points(brier: float) -> float:
-    """Return the points of a Brier score: 100 for 0, none for that of even odds."""
+    """Return the points of a Brier score: 100 for 0, none for the score of even odds."""
     return 100.0 * (1.0 - brier / GUESS)
 
 
 def _brier(hidden: Hidden, settings: Settings, sixth: Sixth) -> dict[str, float]:
-    """Return mean Brier scores over the noise seeds: of all samples, of those of the five, of the unknown fault's."""
+    """Return mean Brier scores over the noise seeds: of all samples, of the five states, of the unknown fault."""
     truth = hidden.truth
     scenario = Scenario.load({**document(hidden, settings), "samples": len(truth)})
     parts = {"all": truth >= 0, "given": truth != UNKNOWN, "unknown": truth == UNKNOWN}
@@ -214,7 +214,7 @@ def counted(said: Sequence[FloatArray], sixth: Sixth) -> FloatArray:
     said : sequence of ndarray
         Probability of each hypothesis of the bank.
     sixth : Sixth
-        How that of the sixth counts.
+        Rule for the samples of the sixth.
     """
     q = np.zeros((UNKNOWN + 1, len(said[0])))
     for place, p in enumerate(said):

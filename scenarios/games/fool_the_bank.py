@@ -81,7 +81,7 @@ class FoolTheBank(Game[Named]):
         return [_kind(name) for name in [*changed, *[name for name in order if name not in MECHANICAL][:2]]]
 
     def read(self, seed: int, values: Mapping[str, Any]) -> Named:
-        """Check what somebody names at a seed: one of its faults, within the range of that fault."""
+        """Check the fault named at a seed: one of its faults, within the range of that fault."""
         handed = super().read(seed, values)
         kinds = {one.name: one for one in self.kinds(seed)}
         if handed.fault not in kinds:
@@ -98,7 +98,7 @@ class FoolTheBank(Game[Named]):
         return {**document(seed), "seed": Draws(self.id, seed).whole("live", NOISE_SEEDS)}
 
     def judge(self, seed: int, handed: Named) -> Outcome:
-        """Return the points of what was named, and where the edge is."""
+        """Return the points of the named fault, and the severity of the edge."""
         kind = _kind(handed.fault)
         size, end = abs(handed.severity), kind.maximum if handed.severity > 0.0 else kind.minimum
         bank = Edge(seed, handed.fault, end)
@@ -118,7 +118,7 @@ class FoolTheBank(Game[Named]):
         return Outcome(points=worth, figures=figures, said=f"{count} {words}", worked=worked)
 
     def hidden(self, seed: int) -> list[Fact]:
-        """Tell what a seed hides."""
+        """Return the hidden values of a seed."""
         bench = Scenario.load(document(seed))
         noise = format_short(bench.document["sensor"]["noise_um"], "um")
         return [Fact(name="Sensor noise", said=noise), device_fact(bench)]

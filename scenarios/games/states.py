@@ -1,4 +1,4 @@
-"""What a seed hides from one who would be the filter: a device, its noise, and an order of states."""
+"""The hidden values of a seed in the game Be the filter: a device, its noise, and an order of states."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ DATA_SHEET_UM = 0.4
 NOISE_UM = ((0.15, 0.28), (0.55, 0.75))
 DRIVE_V = (0.05, 0.8)
 FACTORS = {"mass": (0.85, 1.25), "stiffness": (0.88, 1.15), "damping": (0.6, 1.8)}
-"""Ends of what the unknown fault is drawn from; two of the three are changed."""
+"""Ends of the ranges of the unknown fault; two of the three are changed."""
 APART = (0.12, 0.8)
 """Distance of the unknown fault from the nearest of the five, as a share of the healthy amplitude."""
 FIRST, EACH, CHANGES = 1500, 1000, 6
@@ -41,7 +41,7 @@ FIRST, EACH, CHANGES = 1500, 1000, 6
 
 
 class Hidden:
-    """What a seed hides.
+    """The hidden values of a seed.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Hidden:
     unknown : Hypothesis
         The fault that none of the five says.
     states : list of int
-        What is true from each change on, the beginning first: places among the five, or `UNKNOWN`.
+        The truth from each change on, the beginning first: places among the five, or `UNKNOWN`.
     """
 
     def __init__(self, seed: int) -> None:

@@ -1,7 +1,7 @@
 """Long columns, block by block: numpy adds up a block, and blocks are added in their order.
 
-The bits of a sum do not depend on how the samples came, and a column that lies in a temporary file is never in memory
-as a whole.
+The bits of a sum do not depend on the sizes of the pieces, and a column in a temporary file is never in memory as a
+whole.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ ALL = slice(None)
 
 
 def loaded(column: FloatArray, at: IntArray | slice = ALL) -> FloatArray:
-    """Return samples of a column in memory; those of a temporary file are read, and the pages they took are let go."""
+    """Return samples of a column in memory; samples of a temporary file are read, and their pages are released."""
     if not isinstance(column, np.memmap):
         return column if at is ALL else column[at]
     read = np.array(column[at])
@@ -38,7 +38,7 @@ def blocks(*columns: FloatArray, more: int = 0) -> Iterable[list[FloatArray]]:
 
 
 def total(of: Callable[..., Any], *columns: FloatArray) -> Any:
-    """Return the sum of what a function makes of the blocks of columns."""
+    """Return the sum of the results of a function over the blocks of columns."""
     found = None
     for block in blocks(*columns):
         now = np.sum(of(*block))

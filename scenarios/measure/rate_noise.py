@@ -20,7 +20,7 @@ def rate_noise_metrics(taus_s: Sequence[float], state: Allan.State) -> dict[str,
     taus_s : sequence of float, shape (octaves,)
         Averaging times of the read-out, s.
     state : Allan.State
-        What it has gathered.
+        State of the Allan figures.
     """
     averages = np.array(state.averages)
     noise = fit(taus_s, np.sqrt(0.5 * state.squares / np.maximum(averages, 1.0)), averages)

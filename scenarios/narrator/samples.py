@@ -66,7 +66,7 @@ class Samples:
         self._rows, self.first = None, self.end
 
     def copy(self) -> Samples:
-        """Return what goes on from here by itself."""
+        """Return an independent copy."""
         twin = Samples(self._columns, self._outputs, list(self._places))
         twin._ring, twin.began, twin.first, twin.end = self._ring.copy(), self.began, self.end, self.end
         return twin

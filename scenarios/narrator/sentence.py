@@ -8,7 +8,7 @@ from pydantic import BaseModel, Field
 
 Kind = Literal["trip", "switch", "heal", "fault", "verdict", "false_verdict", "settled"]
 KINDS: tuple[Kind, ...] = ("trip", "switch", "heal", "fault", "verdict", "false_verdict", "settled")
-"""The kinds in the order in which sentences of one tick are told."""
+"""The kinds in the order of the sentences of one tick."""
 
 
 class Sentence(BaseModel):

@@ -1,6 +1,6 @@
-"""What runs inside an exported FMU: a device, exact from sample to sample under a held voltage.
+"""The code inside an exported FMU: a device, exact from sample to sample under a held voltage.
 
-It goes into the FMU as it stands, with its numbers in ``device.json`` beside it, and needs nothing but Python there.
+The file goes into the FMU unchanged, with its numbers in ``device.json``, and needs only Python there.
 """
 
 from __future__ import annotations

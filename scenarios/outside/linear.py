@@ -17,7 +17,7 @@ from scenarios.schema import Scenario
 
 MS_PER_S = 1e3
 READABLE = ("error", "reference", "model", "measured", "applied")
-"""What a linear controller may read; the error is that of the model minus what is measured."""
+"""The inputs that a linear controller may read; the error is the model minus the measurement."""
 
 
 def device(scenario: Scenario) -> Any:
@@ -25,8 +25,8 @@ def device(scenario: Scenario) -> Any:
 
     .. math:: \ddot y=-\tfrac{\beta}{m}\dot y-\tfrac km y+\tfrac Fm u
 
-    Mass, damping and stiffness are those in its environment, without faults; the states are displacement and velocity.
-    A plant of first order has one state.
+    Mass, damping and stiffness are the values in its environment, without faults; the states are displacement and
+    velocity. A plant of first order has one state.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def device(scenario: Scenario) -> Any:
 
 
 def sampled_device(scenario: Scenario) -> Any:
-    """Return the device with the voltage held from sample to sample: exactly what the linear plant does."""
+    """Return the device with the voltage held from sample to sample: exactly the linear plant."""
     return control.sample_system(device(scenario), interval_s(scenario), "zoh", name="sampled_device")
 
 

@@ -30,7 +30,7 @@ BY_NUMBERS: tuple[Kind, ...] = ("rows", "lines", "map")
 
 
 class Part(BaseModel):
-    """A figure over what was varied, for one combination of the rest: variants, texts of the grid."""
+    """A figure over a varied quantity, for one combination of the rest: variants, texts of the grid."""
 
     labels: Labels
     x: list[float] = Field(description="Values across; none for rows")
@@ -85,7 +85,8 @@ def campaign_picture(
     measured : iterable of str
         All figures that a run has.
     figure, across : str
-        What is wanted in place of the figure that varies most, and of the number that it goes with most closely.
+        The chosen figure in place of the figure that varies most, and the chosen quantity in place of the number with
+        the closest correlation.
 
     Raises
     ------
@@ -143,7 +144,7 @@ def _ranking(values: Mapping[str, FloatArray], means: FloatArray) -> list[Rank]:
 
 
 def _parts(points: Sequence[PointTally], figure: str, axes: Mapping[str, FloatArray], kind: Kind) -> list[Part]:
-    """Divide the points by what is on no axis, each part in the order of its axes."""
+    """Divide the points by the labels that are on no axis, each part in the order of its axes."""
     places: list[tuple[float, ...]] = list(zip(*(column.tolist() for column in axes.values()), strict=True))
     parts: dict[str, Part] = {}
     for place, point in sorted(zip(places or [()] * len(points), points, strict=True), key=lambda one: one[0]):

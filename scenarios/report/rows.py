@@ -1,4 +1,4 @@
-"""The painter of named rows over one axis as SVG text: dots with what they may be off by, or bars from zero."""
+"""The painter of named rows over one axis as SVG text: dots with their error bars, or bars from zero."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ MOST_EVENTS = 300
 CLOSE_UP = 300
 """Number of ticks at the end that are drawn one by one."""
 OTHERS = ("open_loop", "pid")
-"""Controllers in place of those of the scenario, whose figures stand beside its own."""
+"""Controllers in place of the controllers of the scenario, whose figures are printed next to its own."""
 CHARTS = (
     ("Displacement", ("model.displacement", "plant.displacement", "sensor.displacement")),
     ("Voltage", ("reference.voltage", "drive.voltage")),

@@ -87,7 +87,7 @@ def known_limits(step: Hold, facts: Mapping[str, float]) -> list[tuple[float, fl
 
 
 def measure(condition: Limits, window: Window) -> Value:
-    """Return what a condition is about."""
+    """Return the value of a condition."""
     board = window.board
     if condition.verdict is not None:
         score = board.scores().get(condition.verdict)
@@ -108,7 +108,7 @@ def measure(condition: Limits, window: Window) -> Value:
 
 
 def setting_of(spec: Spec, path: str) -> float | str:
-    """Return a setting of a bench as it is now, one that was never written too.
+    """Return a setting of a bench as it is now, also a setting that was never written.
 
     Raises
     ------

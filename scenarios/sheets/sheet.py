@@ -68,7 +68,7 @@ class Head(Part):
 
 
 class Hint(Part):
-    """Help, and what it costs; the price is said before."""
+    """Help, and its cost; the price is shown before."""
 
     text: Words
     costs: float = Field(ge=0, description="Points")
@@ -220,7 +220,7 @@ class Question(Answered):
 
 
 class Prediction(Answered):
-    """Answered once and for all before a run; what it was worth is told when a later step is done."""
+    """Answered once, before a run; its points are shown when a later step is done."""
 
     kind: Literal["prediction"]
     until: Name = Field(description="The step behind which it is judged")

@@ -13,7 +13,7 @@ PEER = "mmae"
 
 
 def diagnoser_costs(units: Iterable[str], own: Document) -> dict[str, Cost]:
-    """Return what a sample costs on the bench of the seven steps, in ns and over the Kalman bank of six models."""
+    """Return the cost of a sample on the bench of the seven steps, in ns and over the Kalman bank of six models."""
     names = list(dict.fromkeys([PEER, *units]))
     board = seven_step_bench({"diagnosers": {name: {"kind": name} for name in names}, "units": own})
     ns = block_costs(board, *names)

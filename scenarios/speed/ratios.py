@@ -30,7 +30,7 @@ Figures = list[dict[str, Any]]
 
 
 class Speed:
-    """What is measured: the boards, the peers, and the table that is made of their costs."""
+    """The measurement: the boards, the peers, and the table of their costs."""
 
     def __init__(self) -> None:
         self.bench = boards.seven_step_bench(boards.NOISY)
@@ -97,7 +97,7 @@ class Speed:
         return [one.key for one in self.one.wiring.instances if one.block.family in ("control", "readout")]
 
     def table(self, costs: Costs) -> Figures:
-        """Return the rows of what was measured in turn."""
+        """Return the rows of the candidates measured in turn."""
         return [*self._boards(costs), *self._parts(costs), *self._gyroscopes(costs)]
 
     def _boards(self, costs: Costs) -> Figures:

@@ -1,4 +1,4 @@
-"""Cost of a unit of one's own, measured on a bench that has it, and what the wall adds."""
+"""Cost of a user unit, measured on a bench that has it, and the additional cost of the wall."""
 
 from __future__ import annotations
 

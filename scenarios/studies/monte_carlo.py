@@ -20,7 +20,8 @@ class MonteCarlo(Study):
 
     ``diagnosis.<id>.*`` are means over the runs, a step that was never found counting with its whole length;
     ``.correct_fraction_std`` is the spread from run to run, ``.confusion.<truth>.<verdict>`` the share of the samples
-    of a truth, all runs together. ``compare.*`` are the means of the first of two diagnosers over those of the second.
+    of a truth, all runs together. ``compare.*`` are the means of the first of two diagnosers over the means of the
+    second.
     """
 
     title = "Monte Carlo"

@@ -38,7 +38,7 @@ class Sensing(Study):
 
     @classmethod
     def figures(cls, board: Board, params: Any) -> dict[str, float]:
-        """Return the share of runs that lost the direction, and the error of those that did not."""
+        """Return the share of runs that lost the direction, and the error of the other runs."""
         runs = [_run(board, board.spec.seed + i, params.duration_ms) for i in range(params.runs)]
         kept = [rms for lost, rms in runs if lost <= LOST]
         figures = {"sensing.lost_share": 1.0 - len(kept) / len(runs)}
@@ -48,7 +48,7 @@ class Sensing(Study):
 
     @classmethod
     def picture(cls, board: Board, params: Any) -> Picture:
-        """Return the motion and what the sensor makes of it, over four periods of the first run."""
+        """Return the motion and the output of the sensor, over four periods of the first run."""
         trace = _trace(board, params.duration_ms)
         shown = slice(0, min(len(trace[TRACED[0]]), round(2.0 / board.dt_ms)))
         time_ms = (np.arange(len(trace[TRACED[0]]))[shown] * board.dt_ms).tolist()
