@@ -189,7 +189,7 @@ def gallery(
     only: Annotated[str, typer.Option(metavar="GLOB", help="Only ids that match.")] = "*",
     as_json: JsonOption = False,
 ) -> None:
-    """Run every library scenario: published claim, expectation, measured, verdict, and what the open loop gives."""
+    """Run every library scenario: published claim, expectation, measured, verdict, and the figure of the open loop."""
     from scenarios.campaign.single import beside
 
     chosen = [get(name) for name in ids() if fnmatch.fnmatch(name, only)]

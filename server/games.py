@@ -1,4 +1,4 @@
-"""The command for games: lists them, judges what somebody would hand in, and tells what a seed hides."""
+"""The command for games: lists them, judges an answer, and shows the hidden values of a seed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def game(
     hidden: Annotated[bool, typer.Option("--hidden", help="Tell what the seed hides instead.")] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Play a game headless: the points of what is handed in, the same bits as on the page; 2 invalid input."""
+    """Play a game headless: the points of an answer, the same bits as on the page; 2 invalid input."""
     from scenarios.games import GAMES, game_of
     from scenarios.games.game import check_seed
 
@@ -49,7 +49,7 @@ def game(
 
 
 def _explain(document: dict[str, Any]) -> None:
-    """Print what is to be done, and what may be handed in."""
+    """Print the task, and the values of an answer."""
     say(document["task"])
     say()
     say(document["rule"])

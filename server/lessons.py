@@ -1,4 +1,4 @@
-"""The commands for what is taught: lectures and lab sheets, listed and checked."""
+"""The commands for teaching: lectures and lab sheets, listed and checked."""
 
 from __future__ import annotations
 

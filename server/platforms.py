@@ -28,7 +28,7 @@ class Platform(BaseModel):
     @field_validator("auth_login_url", "auth_token_url", "key_set_url")
     @classmethod
     def _is_address(cls, given: str) -> str:
-        """Refuse what is no address of the web."""
+        """Refuse a text that is no address of the web."""
         parts = urlsplit(given)
         if parts.scheme not in ("http", "https") or not parts.hostname:
             raise ValueError("must be an address such as https://moodle.example/mod/lti/auth.php")

@@ -59,7 +59,7 @@ class Ended:
 
 
 def read_sweep(path: Path, units: Iterable[Path] = ()) -> Sweep:
-    """Read a campaign file; a scenario named by a path is looked for beside it, and gets units from files.
+    """Read a campaign file; a scenario named by a path is relative to it, and gets units from files.
 
     Raises
     ------
@@ -96,8 +96,8 @@ def carry_out(
     Raises
     ------
     InputError
-        When the folder holds another campaign, or one that is not to be gone on with, or cannot be written; and when
-        the address of the scheduler is none. Nothing is written then.
+        When the folder holds another campaign, or a campaign that must not be continued, or cannot be written; and when
+        the address of the scheduler is invalid. Nothing is written then.
     Stopped
         When no worker computes any more, or nothing can be written; the table has the runs that are done.
     """
@@ -154,7 +154,7 @@ def write(sweep: Sweep, parts: Parts, folder: Path, processes: Processes) -> tup
     int
         How many runs could not be carried out.
     list of str
-        What the others warn of, once each.
+        The warnings of the others, once each.
     """
     survey, count = Survey(sweep, parts), len(sweep.points)
     size = max(FEW_LISTED, -(-count // PIECES))

@@ -118,7 +118,7 @@ class ForkFrom(StrictBody):
 
 
 class BenchName(StrictBody):
-    """What a bench is called."""
+    """Name of a bench."""
 
     name: str = Field(max_length=MAX_NAME, description="Empty: by the title of its scenario alone")
 
@@ -151,7 +151,7 @@ async def create_bench(body: NewBench, service: ServiceDep, person: PersonDep, r
 
 @router.get("")
 async def list_benches(service: ServiceDep, person: PersonDep) -> BenchList:
-    """List the live benches without those of students, which their class lists; a student sees the own bench."""
+    """List the live benches without the benches of students, which their class lists; a student sees the own bench."""
     if person.is_teacher:
         return BenchList(benches=service.views.all(person))
     found = service.benches.find(service.people.bench_of(person))
@@ -173,13 +173,13 @@ async def name_bench(body: BenchName, session: SessionDep, service: ServiceDep, 
 
 @router.delete("/{bench_id}", status_code=204, dependencies=[RateLimited])
 async def delete_bench(session: SessionDep, service: ServiceDep) -> None:
-    """Close a bench; what it recorded stays."""
+    """Close a bench; its recordings stay."""
     await service.close_bench(session)
 
 
 @router.post("/{bench_id}/reopen", dependencies=[RateLimited])
 async def reopen_bench(bench_id: str, service: ServiceDep, person: PersonDep) -> Bench:
-    """Return a bench; one that was let go is opened again by the same id, with the same bits, standing or running."""
+    """Return a bench; a closed idle bench is opened again under its id, with the same bits, paused or running."""
     session = await service.reopening.bring_back(bench_id)
     service.idling.saw(bench_id)
     return service.views.of(session, person)
@@ -206,14 +206,14 @@ async def list_events(
     after: Annotated[int, Query(ge=0, le=2**53)] = 0,
     limit: Annotated[int | None, Query(ge=1, le=100_000)] = None,
 ) -> EventList:
-    """List what happened after an event."""
+    """List the events after an event."""
     lost, events = session.events.after(after, limit)
     return EventList(events=events, last=session.events.last, lost=lost)
 
 
 @router.get("/{bench_id}/scenario", response_class=Response, responses={200: {"content": {"text/plain": {}}}})
 async def save_scenario(session: SessionDep, service: ServiceDep) -> Response:
-    """Return what happened as a scenario in TOML.
+    """Return the history of a bench as a scenario in TOML.
 
     It begins with the digest. Run headless, it gives the same bits.
     """
@@ -237,7 +237,7 @@ async def get_digest(session: SessionDep, service: ServiceDep) -> Digest:
 async def fork_bench(
     body: ForkFrom, session: SessionDep, service: ServiceDep, person: PersonDep, response: Response
 ) -> Bench:
-    """Make a second bench that goes on from this moment, a snapshot or a tick of the past, bit for bit."""
+    """Make a second bench that continues from this moment, a snapshot or a tick of the past, bit for bit."""
     forks = service.benches.forks
     if body.tick is None:
         twin = await forks.now(session, body.snapshot, paused=body.paused)
@@ -254,7 +254,7 @@ async def vary_bench(
 ) -> Bench:
     """Make a second bench from tick 0, set as this one is now but for some values; other signals are allowed.
 
-    With ``repeat`` it begins as this one began, but for the values, and what was done on this one is done again.
+    With ``repeat`` it begins as this bench began, but with the values, and the commands to this bench are repeated.
     """
     forks = service.benches.forks
     made = await (forks.repeated if body.repeat else forks.variant)(session, body.set)

@@ -39,7 +39,7 @@ IdentityDep = Annotated[Identity, Depends(get_identity)]
 
 
 def get_session(bench_id: str, service: ServiceDep) -> Session:
-    """Return the bench in the path, which somebody asks for so, or refuse with 404."""
+    """Return the bench in the path and note its use, or refuse with 404."""
     session = service.benches.get(bench_id)
     service.idling.saw(bench_id)
     return session

@@ -15,7 +15,7 @@ router = APIRouter(prefix="/benches/{bench_id}/driving", tags=["classes"], route
 
 
 class DrivingTurn(Body):
-    """What is asked for."""
+    """The requested change of the driver."""
 
     do: Literal["ask", "hand_over", "refuse", "take", "leave"] = Field(
         description=(
@@ -33,7 +33,7 @@ class DrivingTurn(Body):
 
 
 class Drives(BaseModel):
-    """Who is at the bench now."""
+    """The users of the bench now."""
 
     company: Company | None = Field(description="Null while it is one person")
 

@@ -59,7 +59,7 @@ class MeasuredTone(BaseModel):
 
 
 class FittedCurve(BaseModel):
-    """The response of the device found, and that of the nominal one."""
+    """The response of the device found, and the response of the nominal device."""
 
     frequency_hz: list[float]
     found_um_per_v: list[float]

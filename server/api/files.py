@@ -41,7 +41,7 @@ async def table_response(service: Service, table: pa.Table, name: str, kind: For
 async def written_response(
     service: Service, put: Callable[[BinaryIO], None], name: str, kind: Format
 ) -> StreamingResponse:
-    """Send what is written into a file."""
+    """Send the content that a function writes into a file."""
     try:
         file = tempfile.TemporaryFile(prefix="combbench-")
     except FileNotFoundError as error:  # Python raises this if no temporary folder has room

@@ -75,7 +75,7 @@ class GalleryCard(BaseModel):
 
 
 class FigureProgress(BaseModel):
-    """How many figures are there."""
+    """Number of finished figures."""
 
     made: int
     total: int
@@ -139,7 +139,7 @@ async def run_gallery(body: Chosen, service: ServiceDep) -> Gallery:
 
 @cache
 def _topics(scenario: Scenario) -> list[str]:
-    """Return what a scenario is about, in the words of the catalogue."""
+    """Return the topics of a scenario, in the words of the catalogue."""
     controllers, faults = blocks("control"), blocks("faults")
     specs: list[Spec] = [scenario.spec, *scenario.twins.values()]
     topics = [str(scenario.document.get("device", {}).get("id", ""))]

@@ -35,7 +35,7 @@ class LectureList(BaseModel):
 
 
 class CueDetail(BaseModel):
-    """A cue: the notes of the speaker, and what is shown of the bench."""
+    """A cue: the notes of the speaker, and the panels of the bench."""
 
     title: str
     minutes: float

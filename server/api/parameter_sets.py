@@ -1,4 +1,4 @@
-"""Named sets of parameters: keep those of a bench, put them on another, see how two differ."""
+"""Named sets of parameters: save the parameters of a bench, apply them to another, compare two sets."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Difference(BaseModel):
 
 
 class Applied(BaseModel):
-    """What a set has changed on a bench."""
+    """The changes of a bench by a set."""
 
     result: CommandResult | None = Field(description="Null: the bench had these values already")
     left_out: list[str] = Field(description="Paths of the set that this bench does not have")

@@ -29,7 +29,7 @@ class Octave(BaseModel):
 
 
 class NoiseFigure(BaseModel):
-    """One of the three noises: what the record tells of it, and what the bench was given."""
+    """One of the three noises: its estimate from the record, and its parameter on the bench."""
 
     name: str
     letter: str

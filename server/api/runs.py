@@ -179,7 +179,7 @@ async def get_run_thumbnail(run_id: str, service: ServiceDep) -> Response:
 
 @router.get("/{run_id}/scenario", response_class=Response, responses={200: {"content": {"text/plain": {}}}})
 async def get_run_scenario(run_id: str, service: ServiceDep) -> Response:
-    """Return what a run carries out as a scenario in TOML; a bench made of it has the same bits."""
+    """Return the scenario of a run in TOML; a bench made of it has the same bits."""
     scenario = await service.jobs.scenario(run_id)
     name = f'attachment; filename="{scenario.id}.toml"'
     return Response(scenario.toml(), media_type="text/plain", headers={"Content-Disposition": name})

@@ -99,7 +99,7 @@ def get_scenario(scenario_id: str) -> ScenarioText:
 
 @router.post("/check", response_model=ScenarioText)
 async def check_scenario(body: ScenarioSource, computing: ComputingDep) -> Response:
-    """Check a scenario without running it; the answer 422 says what is wrong with it."""
+    """Check a scenario without running it; the answer 422 lists its errors."""
     return Response(await computing.call(_checked, body.scenario), media_type="application/json")
 
 

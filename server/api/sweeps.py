@@ -71,7 +71,7 @@ class SweepPoints(BaseModel):
     responses={200: {"model": SweepRun, "description": "The same campaign is there already"}},
 )
 async def start_sweep(body: NewSweep, service: ServiceDep, response: Response) -> SweepRun:
-    """Start a campaign, or go on with one that was stopped; a second request for a campaign returns the same one."""
+    """Start a campaign, or continue a stopped campaign; a second request for a campaign returns the same one."""
     document = body.sweep if isinstance(body.sweep, dict) else await asyncio.to_thread(read_toml, body.sweep, "sweep")
     label = clean_label(body.label)
     await service.keeping.room()
@@ -157,7 +157,7 @@ async def get_sweep_picture(
     figure: Annotated[str, Query(max_length=200, description="A figure; none for the one that varies most")] = "",
     across: Annotated[str, Query(max_length=200, description="A number that varies, for the axis across")] = "",
 ) -> CampaignPicture:
-    """Return a figure over what was varied, and how to draw it: rows, lines, a map, or a ranking with dots."""
+    """Return a figure over the varied quantities, and its drawing: rows, lines, a map, or a ranking with dots."""
     return await service.sweeps.read(sweep_id, lambda survey: surveyed_picture(survey, figure, across))
 
 

@@ -122,7 +122,7 @@ class InstabilityMap(BaseModel):
 
 
 class HypothesesSource(Body):
-    """A device, what may be wrong with it, and the tones that drive it."""
+    """A device, its possible faults, and the tones that drive it."""
 
     device: dict[str, Any] = Field({}, description="Catalogue id, and values written over it")
     hypotheses: list[Hypothesis] = Field(min_length=2, max_length=16, description="Factors on the device")

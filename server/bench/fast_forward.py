@@ -17,7 +17,7 @@ Reason = Literal["quiet_lead", "skip"]
 
 
 class FastForwarding:
-    """Where a bench that runs as fast as possible goes on at its time scale; on the engine thread.
+    """The tick at which a fast-forwarding bench returns to its time scale; on the engine thread.
 
     Parameters
     ----------

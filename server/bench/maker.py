@@ -1,4 +1,4 @@
-"""Puts benches around boards and recordings; nobody has them yet."""
+"""Puts benches around boards and recordings; they are not published yet."""
 
 from __future__ import annotations
 

@@ -78,8 +78,8 @@ def is_id(source: str | dict[str, Any]) -> TypeGuard[str]:
 def usual_scale(board: TickSource) -> float:
     """Return the time scale that suits a device.
 
-    That of a resonator; near real time for a plant in seconds; between them for a plant with axes, whose amplitude and
-    rate take some hundred periods to settle.
+    The scale of a resonator; near real time for a plant in seconds; between them for a plant with axes, whose amplitude
+    and rate take some hundred periods to settle.
     """
     if board.spec.axes:
         return AXES_SCALE

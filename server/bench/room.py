@@ -12,7 +12,7 @@ from server.settings import Settings
 
 
 class Room:
-    """Counts the benches that are live and those that are being made.
+    """Counts the live benches and the benches that are being made.
 
     Parameters
     ----------

@@ -54,14 +54,14 @@ class Undoable(BaseModel):
 
 
 class Somebody(BaseModel):
-    """Somebody at a bench."""
+    """A person at a bench."""
 
     id: str
     name: str
 
 
 class Company(BaseModel):
-    """Who is at a bench that several have open."""
+    """The users of a bench that several have open."""
 
     is_leased: bool = Field(description="Two or more who may drive have it open, so only one of them does")
     driver: Somebody | None = Field(
@@ -76,7 +76,7 @@ class Company(BaseModel):
 
 
 class Origin(BaseModel):
-    """The moment of another bench that a bench goes on from."""
+    """The moment of another bench from which a bench continues."""
 
     bench: str = Field(description="The other bench, which may be gone by now")
     tick: int

@@ -15,7 +15,7 @@ from core.errors import InputError
 from core.own.admission import Terms, admit
 
 MOST_BYTES = 1 << 30
-"""Memory that a process may take beyond that of its beginning."""
+"""Memory that a process may take beyond its memory at the beginning."""
 
 _limited: list[bool] = []
 

@@ -33,9 +33,9 @@ async def begin_for(
     classes : Classes
         Their classes, from whose secret all is drawn.
     blinds : Blinds
-        Where it is kept what is hidden.
+        Store of the hidden faults.
     students : list of Person
-        Who is asked.
+        The students.
     source : str or dict
         The scenario of the bench; what happens in it is left out.
     shows : bool

@@ -69,7 +69,7 @@ class Classes:
     benches : StudentBenches
         Their benches.
     audit : Audit
-        The log of what people did.
+        The log of actions of users.
     lesson : Lesson
         Shows them benches.
     blinds : Blinds
@@ -148,7 +148,7 @@ class Classes:
         return self._shown(row)
 
     async def close_joining(self, class_id: str) -> Class:
-        """Let nobody else join."""
+        """Close joining."""
 
         def close(row: ClassRow) -> None:
             row.code_hash = row.code_until = None
@@ -200,7 +200,7 @@ class Classes:
         self._audit.add(person.name, "joined", "joined the class", person.class_id)
 
     def is_called(self, class_id: str, name: str) -> bool:
-        """Whether somebody in a class has a name."""
+        """Whether a name is taken in a class."""
         return name.casefold() in {person.name.casefold() for person in self._people.students(class_id)}
 
     async def prolong(self, class_id: str, until: datetime) -> ClassRow:
@@ -254,7 +254,7 @@ class Classes:
         return [self._people.removal(person), votes, games]
 
     async def end(self, class_id: str) -> None:
-        """End a class: close sessions and benches, delete names and what people did."""
+        """End a class: close sessions and benches, delete names and the list of actions."""
         await self.row(class_id)
         students = self._people.students(class_id)
         gone = delete(ClassRow).where(ClassRow.id == class_id)
@@ -302,7 +302,7 @@ class Classes:
         return row
 
     async def draw(self, person: Person, *what: str) -> int:
-        """Return the number that is drawn for somebody and a purpose; see `draw`."""
+        """Return the number that is drawn for a person and a purpose; see `draw`."""
         secret = (await self.row(person.class_id)).secret if person.class_id else ""
         return draw(secret, person.id, *what)
 

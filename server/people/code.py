@@ -32,12 +32,12 @@ def shown(class_id: str, code: str) -> str:
 
 
 def shard_of(typed: str) -> str:
-    """Return the letter of the process whose code somebody typed, where several serve one address; "" for none."""
+    """Return the letter of the process of a typed code, where several serve one address; "" for none."""
     first = split(typed)[0][:1]
     return first if first and first in LETTERS else ""
 
 
 def split(typed: str) -> tuple[str, str]:
-    """Return class and secret of a code as somebody typed it: small or capital, with or without spaces."""
+    """Return class and secret of a typed code: small or capital, with or without spaces."""
     letters = re.sub(r"[\s-]+", "", typed).lower()
     return letters[:CLASS_LETTERS], letters[CLASS_LETTERS:]

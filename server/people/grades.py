@@ -17,7 +17,7 @@ DANGEROUS = ("=", "+", "-", "@", "\t", "\r")
 
 
 class StepGrade(BaseModel):
-    """A step of somebody's sheet."""
+    """A step of a student's sheet."""
 
     step: str
     kind: str

@@ -1,4 +1,4 @@
-"""The page by which people join a class, which needs no session, and how often somebody may try."""
+"""The page to join a class, which needs no session, and the limit of attempts."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def join_page(action: str, code: str = "", name: str = "", refusal: ErrorBody | 
     action : str
         Where the form goes.
     code, name : str
-        What has been given so far.
+        The fields so far.
     refusal : ErrorBody, optional
         Why it did not work.
     """
@@ -102,5 +102,5 @@ def join_page(action: str, code: str = "", name: str = "", refusal: ErrorBody | 
 
 
 def _whose(refusal: ErrorBody) -> str:
-    """Return what is wrong; a complaint about a value says whose."""
+    """Return the error; an error in a value names its field."""
     return f"{refusal.field} {refusal.message}" if refusal.code == "invalid" else refusal.message

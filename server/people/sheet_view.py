@@ -1,4 +1,4 @@
-"""A sheet as somebody sees it: the steps so far, with answers and points, and nothing of later steps."""
+"""A sheet as a student sees it: the steps so far, with answers and points, and nothing of later steps."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ State = Literal["done", "open", "closed"]
 
 
 class GivenView(BaseModel):
-    """An answer, what it was worth, and why; null while that is not told."""
+    """An answer, its points, and the reason; null while they are hidden."""
 
     text: str
     reason: str | None
@@ -72,7 +72,7 @@ class SectionView(BaseModel):
 
 
 class SheetView(BaseModel):
-    """A sheet as somebody sees it."""
+    """A sheet as a student sees it."""
 
     id: str
     title: str

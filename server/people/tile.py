@@ -17,12 +17,12 @@ from server.people.sheet_work import SheetBrief
 
 COLUMNS = 48
 SPAN_MS = 4.0
-"""What the small trace shows: the last so much of device time, minima and maxima of so many columns."""
+"""Content of the small trace: the last so much of device time, minima and maxima of so many columns."""
 SHOWN = ("plant.displacement", "plant.x")
 
 
 class Verdict(BaseModel):
-    """What a diagnoser says, and what is true."""
+    """The verdict of a diagnoser, and the truth."""
 
     diagnoser: str
     says: str | None
@@ -74,7 +74,7 @@ def tile_of(person: Person, bench: Session | None, watchers: int, *, hand: bool)
 
 
 def _verdict(diagnoser: str, score: Scores, factors: list[dict[str, float]]) -> Verdict:
-    """Return what a diagnoser says, beside the truth."""
+    """Return the verdict of a diagnoser, with the truth."""
 
     def named(index: int) -> str | None:
         return score.names[index] if 0 <= index < len(score.names) else None

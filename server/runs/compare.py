@@ -16,7 +16,7 @@ from server.errors import ApiError
 from server.runs.listing import Run
 
 MOST = 8
-"""Runs that can be told apart in one table and one chart."""
+"""Runs that are distinguishable in one table and one chart."""
 
 
 class FigureRow(BaseModel):

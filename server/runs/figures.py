@@ -86,7 +86,7 @@ class Figures:
         self._ready = ready
 
     async def ask(self, first: list[str]) -> None:
-        """Read the figures that are there, then make the others, these scenarios first."""
+        """Read the existing figures, then make the others, these scenarios first."""
         self._first = first
         async with self._reading:
             if self._missing is None:

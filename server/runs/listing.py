@@ -1,4 +1,4 @@
-"""Runs and campaigns as rows: which are asked for, how they are called, how those that have ended are removed."""
+"""Runs and campaigns as rows: their selection, their names, the removal of ended rows."""
 
 from __future__ import annotations
 
@@ -140,15 +140,15 @@ class Requests:
             return await self._database.run(work)
 
     async def all(self, kind: Kind, wanted: RunFilter) -> list[RequestRow]:
-        """List those that are asked for, newest first, without their documents."""
+        """List the selected rows, newest first, without their documents."""
         return await self._rows(wanted.of(kind).options(defer(RequestRow.document)))
 
     async def some(self, kind: Kind, ids: Sequence[str]) -> list[RequestRow]:
-        """Return those of some that are known."""
+        """Return the known rows among some ids."""
         return await self._rows(select(RequestRow).where(RequestRow.id.in_(ids), RequestRow.kind == kind))
 
     async def recover(self) -> list[RequestRow]:
-        """Return those of this process that wait or are under way, in the order in which they were asked for.
+        """Return the waiting and active rows of this process, in the order of their requests.
 
         The first process that starts with a letter takes over the requests of the time before letters.
         """

@@ -34,7 +34,7 @@ class Keep:
     most_bytes : int
         Of the numbers of a trace; taps that have no room are left out, then outputs that no figure is made of.
     everything : bool
-        Keep the signals of blocks that only look on as well.
+        Keep the signals of blocks in shadow as well.
     """
 
     folder: str

@@ -47,7 +47,7 @@ WAY_IN = (
 
 
 class Gate:
-    """Lets through only people whom the server knows, to what they may do, from this server's own page.
+    """Admits only persons known to the server, within their rights, from this server's own page.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Gate:
     identity : Identity
         Knows the teacher.
     people : People
-        Knows everybody else, and what each may do.
+        Holds all other persons, and their rights.
     driving : Driving
         Knows who drives each bench.
     origin : OriginPolicy
@@ -65,7 +65,7 @@ class Gate:
         Revives the bench in the path, or the bench of a student, after a restart: a hidden fault stays hidden from
         the first request on.
     is_blind : callable
-        Whether a fault is hidden from a person, on the bench in the path or on that of a student.
+        Whether a fault is hidden from a person, on the bench in the path or on the bench of a student.
     open_paths : frozenset of str
         Further paths that need no session.
     prefix : str
@@ -73,8 +73,8 @@ class Gate:
     frames : Frames, optional
         The doors of learning platforms, if there are any.
     units : str
-        Whose scenarios may carry units of their own: nobody's (``off``), those of the teacher, or those of
-        all people it knows (``everyone``).
+        Persons whose scenarios may carry their own units: none (``off``), the teacher, or all known persons
+        (``everyone``).
     student_events : int
         Events that a scenario of a student may have.
     """
@@ -148,7 +148,7 @@ class Gate:
             await self._refuse(scope, receive, send, 403, CLOSE_ROLE, "forbidden", f"only {whose} may do that")
 
     def _person(self, connection: HTTPConnection) -> Person | None:
-        """Return who it is; what somebody sends on purpose counts before a cookie."""
+        """Return the person; an explicit secret counts before a cookie."""
         if self._frames is not None and (ticket := connection.query_params.get(TICKET)):
             return self._frames.holder(ticket, connection.scope["path"])
         if (person := self._people.by_secret(bearer_of(connection))) is not None:

@@ -122,7 +122,7 @@ class Identity:
 
 
 def bearer_of(connection: HTTPConnection) -> str:
-    """Return what the caller sent as a bearer; a page can give a WebSocket no header, but a protocol more to speak."""
+    """Return the bearer of the caller; a page can give a WebSocket no header, but an additional protocol."""
     scheme, _, value = connection.headers.get("authorization", "").partition(" ")
     if scheme.lower() == "bearer":
         return value.strip()

@@ -1,7 +1,7 @@
 """The origin of requests: Host and Origin must be this server's own.
 
-This stops DNS rebinding (a strange name resolving to this machine) and other sites' pages talking to the
-bench in the name of the person who has it open. CORS middleware does not suffice: it ignores WebSockets.
+This stops DNS rebinding (a strange name resolving to this machine) and other sites' pages that send commands to the
+bench in the name of its user. CORS middleware does not suffice: it ignores WebSockets.
 """
 
 from __future__ import annotations

@@ -30,7 +30,7 @@ class Keeping:
     Parameters
     ----------
     database, shared : Database
-        Where the rows of recordings and those of runs are; usually one and the same.
+        Storage of the rows of recordings and of runs; usually one and the same.
     settings : Settings
         Folder, quota, retention.
     """

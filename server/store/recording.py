@@ -51,7 +51,7 @@ class RecordingFile:
         Raises
         ------
         OSError
-            When the disk is full, or will be once the Parquet file stands beside this one.
+            When the disk is full, or will be with the additional Parquet file.
         """
         free = free_bytes(self._path.parent)
         if free < self._reserve_bytes + self._sink.tell():
@@ -160,7 +160,7 @@ def convert(path: Path) -> int:
 
 
 def _whole_batches(reader: pa.RecordBatchStreamReader) -> Iterator[pa.RecordBatch]:
-    """Yield batches until the end, or until the one that was cut off."""
+    """Yield batches until the end, or until an incomplete batch."""
     while True:
         try:
             yield reader.read_next_batch()

@@ -1,4 +1,4 @@
-"""Recordings: rows in the database, files beside it."""
+"""Recordings: rows in the database, files in the data folder."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ class Recordings:
         self._unclosed: dict[str, dict[str, Any]] = {}
 
     def path(self, recording_id: str) -> Path:
-        """Return the file of a recording; the id must be one that the service made, never a caller's text."""
+        """Return the file of a recording; the id must come from the service, never from a caller's text."""
         return self._folder / f"{recording_id}.parquet"
 
     async def open(self, about: About, schema: pa.Schema) -> tuple[Recording, RecordingFile]:
@@ -181,7 +181,7 @@ class Recordings:
             await asyncio.to_thread(self._close, recording_id, values)
 
     async def all(self, benches: list[str] | None = None) -> list[Recording]:
-        """List recordings, newest first: all of them, or those of some benches."""
+        """List recordings, newest first: all of them, or the recordings of some benches."""
         await self._settle()
         query = select(RecordingRow).order_by(RecordingRow.created.desc())
         if benches is not None:

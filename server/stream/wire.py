@@ -55,7 +55,7 @@ class TriggerSpec(Message):
 
 
 class BehindSpec(Message):
-    """Another bench whose signals of the same names are shown behind those of a panel."""
+    """Another bench whose signals of the same names are shown behind the signals of a panel."""
 
     bench: str = Field(max_length=64)
     shift_ticks: int = Field(0, ge=-MAX_TICK, le=MAX_TICK, description="Its tick minus that of this bench")
@@ -167,7 +167,7 @@ class Events(BaseModel):
 
 
 class Narrated(BaseModel):
-    """What the narrator says: the sentences behind the first ``after`` of the present run; any others are void."""
+    """The sentences of the narrator after the first ``after`` of the present run; any others are void."""
 
     type: Literal["narration"] = "narration"
     after: int
@@ -230,7 +230,7 @@ class Notice(BaseModel):
 
 
 class Ping(BaseModel):
-    """Asks the page of the driver whether it is there; the page answers at once by a pong."""
+    """Asks the page of the driver for a sign; the page answers at once by a pong."""
 
     type: Literal["ping"] = "ping"
 

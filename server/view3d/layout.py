@@ -17,7 +17,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 View = tuple[tuple[tuple[float, float], ...], tuple[float, float], tuple[float, float]]
-"""What a camera shows: a box in um, and where it stands for a tall and for a wide picture, azimuth and elevation."""
+"""The view of a camera: a box in um, and azimuth and elevation for a tall and for a wide picture."""
 
 UM_PER_UNIT = 100.0
 HEIGHTS, WIDTHS = 4.0, 2.5
@@ -157,7 +157,7 @@ class Layout:
     def views(self) -> dict[str, View]:
         """Return the presets of the camera.
 
-        Tall pictures have +x to the right; in wide ones the device lies on its side, +x up.
+        Tall pictures have +x to the right; in wide pictures the device is turned, +x up.
         """
         top, length, width = self.top_um, self.half_length_um, self.half_width_um
         whole = ((-length, length), (-width, width), (0.0, top))

@@ -23,7 +23,7 @@ class Observing(Protocol):
     """Reads the moments of one bench."""
 
     def pose(self, looked: int | None = None) -> Any:
-        """Return the pose of a tick that is looked at, if the history has it; else that of now."""
+        """Return the pose of a past tick, if the history has it; else the present pose."""
 
 
 class Scene(Protocol):
@@ -58,7 +58,7 @@ class Looked:
 class Show:
     """The scene of one bench and the number of its viewers.
 
-    A page that looks at another moment gets a scene of its own from then on, so that it moves nobody else's.
+    A page that shows another moment gets a scene of its own from then on, so that other pages keep their moment.
 
     Parameters
     ----------
