@@ -137,7 +137,7 @@ def from_validation(error: ValidationError, known: Mapping[str, Sequence[str]] |
     error : ValidationError
         The error pydantic raised.
     known : mapping of str to sequence of str, optional
-        Field names allowed under each dotted parent, to suggest the one that was meant.
+        Field names allowed under each dotted parent, to suggest the intended name.
     """
     complaints = error.errors(include_url=False)
     first, path = complaints[0], field_of(complaints[0])

@@ -117,12 +117,12 @@ def format_percent(share: float, decimals: int = 1) -> str:
 
 
 def format_share(share: float, decimals: int = 4) -> str:
-    """Write a share as a part of one, told from 0 and 1 in the same way."""
+    """Write a share as a part of one, distinct from 0 and 1 in the same way."""
     return _part(share, 1.0, "", decimals)
 
 
 def format_figure(metric: str, value: float | None, digits: int = 4, unit: str = "") -> str:
-    """Write a measured figure by the name of its metric, none as a dash; what is whole, as a count is, whole."""
+    """Write a measured figure by the name of its metric, None as a dash; a count is written as a whole number."""
     if value is None:
         return NOTHING
     if metric.endswith("_fraction"):
@@ -210,13 +210,13 @@ def round_to(value: float, digits: int) -> float:
 
 
 def _pair(value: str, spread: str, scale: UnitScale) -> str:
-    """Join a value and what it may be off by, with the power of ten and the unit of both."""
+    """Join a value and its uncertainty, with the power of ten and the unit of both."""
     pair = f"{value}{PLUS_MINUS}{spread}"
     return _with_unit(f"({pair}){scale.exponent}" if scale.exponent else pair, scale.unit)
 
 
 def _part(part: float, whole: float, unit: str, decimals: int) -> str:
-    """Write a part of a whole; one that would read as none or all of it gets up to two more decimals, then a bound."""
+    """Write a part of a whole; if it would read as none or all, it gets up to two more decimals, then a bound."""
     if not math.isfinite(part):
         return NOTHING
     ends, most = (0.0, whole), decimals + 2
@@ -232,7 +232,7 @@ def _part(part: float, whole: float, unit: str, decimals: int) -> str:
 
 
 def _least(value: float, decimals: int) -> str:
-    """Write a number; one that is not zero and would read as zero gets a bound."""
+    """Write a number; a number other than zero that would read as zero gets a bound."""
     if value != 0.0 and float(_fixed(value, decimals)) == 0.0:
         return f"<{SPACE}{format_number(10.0**-decimals, decimals)}"
     return format_number(value, decimals)

@@ -1,7 +1,7 @@
 """Algebra of the small matrices of packing, in plain loops: the same bits on every machine.
 
 The machine's linear algebra picks its code, and with it the order of its sums, by the processor and by the number of
-its cores; what a step reads must not depend on either.
+its cores; the numbers of a step must not depend on either.
 """
 
 from __future__ import annotations
@@ -160,7 +160,7 @@ def _exponential(a: FloatArray) -> FloatArray:
 
 @kernel
 def _settled(p: FloatArray, more: FloatArray) -> bool:
-    """Add to a sum; say whether what was added was nothing beside it."""
+    """Add to a sum; return whether the addition was negligible."""
     largest = added = 0.0
     for i in range(p.shape[0]):
         for j in range(p.shape[1]):

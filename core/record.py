@@ -26,7 +26,7 @@ Boards side by side share it, so that a branch on it is a branch for all of them
 
 BLANK_BITS = 0x7FF8_B1A2_4B1A_24B1
 BLANK = np.uint64(BLANK_BITS)
-"""Bits of a number that nobody has packed yet: not a number, and not the one that arithmetic makes."""
+"""Bits of a number that is not packed yet: not a number, and different from the NaN of arithmetic."""
 
 SCALAR, VECTOR, RECORD, RECORDS = "number", "vector", "record", "records"
 """Kinds of fields."""
@@ -34,7 +34,7 @@ SCALAR, VECTOR, RECORD, RECORDS = "number", "vector", "record", "records"
 
 @dataclass(frozen=True)
 class Field:
-    """Where a field stands.
+    """Place of a field.
 
     Parameters
     ----------
@@ -42,11 +42,11 @@ class Field:
     offset : int
         From the start of the record; for a tail, its turn among the tails.
     count : int
-        Numbers of a vector, records of several; 0 for a tail, whose length is that of the array.
+        Numbers of a vector, records of several; 0 for a tail, whose length is the length of the array.
     inner : Layout, optional
         Of the record, or of each of several.
     tail : bool
-        Whether it stands behind the fixed fields.
+        Whether it comes after the fixed fields.
     is_choice : bool
         Whether boards side by side share it.
     """
@@ -64,7 +64,7 @@ class Field:
 class Layout:
     """The fields of a record, and the numbers of the fixed ones.
 
-    Several tails are vectors of one common length; it stands in the last of the fixed numbers.
+    Several tails are vectors of one common length; it is in the last of the fixed numbers.
     """
 
     fields: tuple[Field, ...]
@@ -72,12 +72,12 @@ class Layout:
 
     @cached_property
     def tails(self) -> int:
-        """How many fields stand behind the fixed ones."""
+        """Number of fields after the fixed fields."""
         return sum(field.tail for field in self.fields)
 
     @cached_property
     def scalars(self) -> dict[int, str]:
-        """The names of single numbers by place, those of nested records with a dot."""
+        """The names of single numbers by place, names of nested records with a dot."""
         found = {}
         for field in self.fields:
             if field.kind == SCALAR:
@@ -93,7 +93,7 @@ class Layout:
 
     @cached_property
     def behind(self) -> int:
-        """How many numbers stand behind the fixed ones for each of the length of the tails."""
+        """Numbers after the fixed numbers for each unit of the length of the tails."""
         return sum(field.inner.size if field.inner else 1 for field in self.fields if field.tail)
 
     def numbers(self, length: int) -> int:
@@ -119,7 +119,7 @@ def several(count: int) -> Any:
 
 
 def tail() -> Any:
-    """Declare a vector or records of a length that is known when the record is made; all other fields stand before."""
+    """Declare a vector or records of a length that is known when the record is made; all other fields come before."""
     return _Many(0)
 
 
@@ -136,7 +136,7 @@ class Record:
         self.array: Any = array
 
     def __init_subclass__(cls) -> None:
-        """Lay the fields out: those of the bases first, then its own."""
+        """Lay the fields out: fields of the bases first, then its own."""
         declared = {name: many for base in cls.__bases__ for name, many in getattr(base, "_declared", {}).items()}
         hints = get_type_hints(cls, include_extras=True)
         for name in get_annotations(cls):
@@ -153,7 +153,7 @@ class Record:
 
     @classmethod
     def zeros(cls, length: int = 0) -> Self:
-        """Return a record of zeros; ``length`` is that of its tails."""
+        """Return a record of zeros; ``length`` is the length of its tails."""
         record = cls(np.zeros(cls.layout.numbers(length)))
         if cls.layout.tails > 1:
             record.array[cls.layout.size - 1] = length
@@ -170,11 +170,11 @@ class Record:
 
     @cached_property
     def address(self) -> int:
-        """Where its numbers stand in memory."""
+        """Address of its numbers in memory."""
         return int(self.array.ctypes.data)
 
     def blanks(self) -> list[str]:
-        """Return the names of the numbers that nobody has packed."""
+        """Return the names of the numbers that are not packed."""
         bits = self.array.view(np.uint64)[self.layout.scalar_places].tolist()
         if BLANK_BITS not in bits:
             return []
@@ -202,7 +202,7 @@ class Records(Generic[R]):
 
 
 def record_of(hint: Any) -> type[Record] | None:
-    """Return the record that an annotation names, or of which it names several."""
+    """Return the record class in an annotation, also of several records."""
     inner = get_args(hint)[0] if get_origin(hint) is Records else hint
     return inner if isinstance(inner, type) and issubclass(inner, Record) else None
 

@@ -90,7 +90,7 @@ class DriveLoop(Block):
         partner: Phasor
 
     class Ports(DrivePorts, PartnerPorts):
-        """Ports of the drive slot, a partner, and what the loops do."""
+        """Ports of the drive slot, a partner, and the outputs of the loops."""
 
         force: float = tap("uN", "amplitude of the force")
         phase_error: float = tap("rad", "phase of x against the carrier")

@@ -18,8 +18,8 @@ from core.units import hz_of_rad_ms
 class DriveTracking(Block):
     r"""Holds x to :math:`x_m=A\sin\omega t`, the same sine for both devices of a pair.
 
-    The force is that of ``core.control.tracking``. Two devices that are to be compared, or kept in step, need drive
-    axes that are held: a force along y of the one pulls its x off the frequency of the other.
+    The force is computed by ``core.control.tracking``. Two devices in a comparison, or in synchronism, need drive axes
+    that are held: a force along y of one device pulls its x off the frequency of the other.
     """
 
     title = "Drive tracking"

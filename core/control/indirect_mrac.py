@@ -163,7 +163,7 @@ class IndirectMrac(Block):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Parameters of the nominal device, the covariance, everything else at rest."""
+        """Parameters of the nominal device, the covariance, everything else zero."""
         a1, a2, gain = coefficients(context)[0]
         s = cls.State.zeros()
         s.theta[:] = gain, a1, a2

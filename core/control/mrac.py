@@ -170,7 +170,7 @@ class Mrac(Block):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Gains that match the nominal device, everything else at rest."""
+        """Gains that match the nominal device, everything else zero."""
         p, s = cls.pack(params, context), cls.State.zeros()
         s.theta[:CONSTANT] = matching(*coefficients(context)[0], p.model, params.filter_pole)
         s.alpha = 1.0 / s.theta[0]

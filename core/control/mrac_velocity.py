@@ -182,7 +182,7 @@ class MracVelocity(Block):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Gains that match the nominal device, everything else at rest."""
+        """Gains that match the nominal device, everything else zero."""
         p, s = cls.pack(params, context), cls.State.zeros()
         if params.start == "nominal":
             plant, first_order = coefficients(context)[0], context.device.mass == 0.0

@@ -2,15 +2,14 @@ r"""The bound on the error of a constant rate, from the estimates of an adaptive
 
 .. math:: B=2\Delta_\Omega+2\,|\tilde\Omega|+s\,|\hat\Omega|+2\,(\Omega_D+\Omega_n)
 
-- :math:`\Delta_\Omega`: what the rate swung by in the last whole beats, 50 ms at least.
-- :math:`\tilde\Omega`: what is still to be learned. The changes of
-  :math:`\hat k_{xy},\hat n,\hat d_{xy},\hat\Omega` over these beats, over their gains, are the means of the products
-  :math:`\dot e^Tq_r,\;\dot e^T\dot q_r`, and so the part of each velocity error that has the frequency of the other
-  axis, as phasor :math:`E`. The force that would take it away is :math:`E_i\,(\gamma-j(k_i-\omega^2)/\omega)`, with the
-  :math:`k_i` of the axis, or of the model put in its place. A force along y and x that goes with :math:`\pm2\omega A`
-  of the other axis is a rate.
-- :math:`s,\Omega_D`: what holding the force leaves. Beyond what the law makes up for, a held force acts as
-  :math:`Z+\epsilon ZPZ` on the device :math:`Z(j\omega)=K-\omega^2+j\omega(D+2\Omega S)`, with
+- :math:`\Delta_\Omega`: the swing of the rate in the last whole beats, 50 ms at least.
+- :math:`\tilde\Omega`: the part that is not learned yet. The changes of :math:`\hat k_{xy},\hat n,\hat
+  d_{xy},\hat\Omega` over these beats, over their gains, are the means of the products :math:`\dot e^Tq_r,\;\dot e^T\dot
+  q_r`, and so the part of each velocity error that has the frequency of the other axis, as phasor :math:`E`. The force
+  that would remove it is :math:`E_i\,(\gamma-j(k_i-\omega^2)/\omega)`, with the :math:`k_i` of the axis, or of the
+  model put in its place. A force along y and x proportional to :math:`\pm2\omega A` of the other axis is a rate.
+- :math:`s,\Omega_D`: the remaining errors of holding the force. Beyond the compensation of the law, a held force acts
+  as :math:`Z+\epsilon ZPZ` on the device :math:`Z(j\omega)=K-\omega^2+j\omega(D+2\Omega S)`, with
   :math:`\epsilon=h^4/720,\;P=K+3\omega^2-3j\omega(D+2\Omega S)`. Of that a share of the rate is at most
   :math:`s=\epsilon(k_{xx}+k_{yy}+\omega_x^2+\omega_y^2)^2`, and the damping reads as
   :math:`\Omega_D=\tfrac54\epsilon\,|\omega_y^2-\omega_x^2|\,|KD+DK|_{xy}`.
@@ -64,7 +63,7 @@ def unlearned(p: PackedLaw, s: Estimates) -> float:
     if p.basis.cancelled != 0.0:
         kxx, kyy = square_x, square_y
     speed_x, speed_y = a.amplitude_x * a.omega_x, a.amplitude_y * a.omega_y
-    # the velocity error of x at the frequency of y, and that of y at the frequency of x
+    # the velocity error of x at the frequency of y, and the velocity error of y at the frequency of x
     along = 2.0 * (p.gains.velocity * (damping - rate) - (kxx - square_y) * (stiffness - skew)) / (speed_y * speed_y)
     across = 2.0 * (p.gains.velocity * (damping + rate) - (kyy - square_x) * (stiffness + skew)) / (speed_x * speed_x)
     return 0.25 * abs(across - along)

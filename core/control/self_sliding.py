@@ -165,7 +165,7 @@ class SelfSliding(Block):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Gains at the start, everything else at rest."""
+        """Gains at the start, everything else zero."""
         plant, model = coefficients(context)
         s = cls.State.zeros()
         s.alpha = plant[2] / model[2]

@@ -15,7 +15,7 @@ from core.units import DEG_PER_RAD
 
 
 class SenseAxisSync(Block):
-    r"""Makes y follow that of the partner, :math:`e=y-y_m\to0`; or rest, :math:`y_m=0`, which is drift reduction.
+    r"""Makes y follow the y of the partner, :math:`e=y-y_m\to0`; or zero, :math:`y_m=0`, which is drift reduction.
 
     .. math:: F_y=-c_d\dot e-\hat\theta_1x-\hat\theta_2\dot x/\omega,\quad
         \dot{\hat\theta}_1=g\,\dot e\,x,\quad\dot{\hat\theta}_2=g\,\dot e\,\dot x/\omega
@@ -25,17 +25,16 @@ class SenseAxisSync(Block):
     :math:`g=4m\sigma\lambda\,(1+\Delta^2/\sigma^2)/A^2` with :math:`c_d=2m\sigma` and the split :math:`\Delta` of the
     modes, so that the error dies away with the rate :math:`\lambda`.
 
-    A partner with errors of its own hands them on: what is read then is its zero-rate output. With y at rest the rate
-    is in the force, :math:`\hat\Omega=u_c/2m_c\omega A`, and what is left of the zero rate is the cross damping.
+    A partner with errors of its own hands them on: the reading is then its zero-rate output. With y at zero the rate is
+    in the force, :math:`\hat\Omega=u_c/2m_c\omega A`, and the rest of the zero rate is the cross damping.
 
-    At rest, with ``drive_tracking`` in the drive slot, this is the adaptive law of Leland (2006, recalled and checked
-    for consistency only): x follows a sine of a given frequency, y is driven to rest, and what multiplies x and its
-    velocity is adapted by the velocity error. Over a period the products average to
+    At zero, with ``drive_tracking`` in the drive slot, this is the adaptive law of Leland (2006, recalled and checked
+    for consistency only): x follows a sine of a given frequency, y is driven to zero, and the factors of x and its
+    velocity are adapted by the velocity error. Over a period the products average to
     :math:`\dot{\hat\theta}_1=-\tfrac12g\omega Y_c,\;\dot{\hat\theta}_2=\tfrac12g\omega Y_s`. That is the integral of
     ``force_to_rebalance``, :math:`\dot u_s+j\dot u_c=-g_Fm_ye^{j\psi}(Y_s+jY_c)`, with :math:`u_s=-\hat\theta_1,
-    u_c=-\hat\theta_2,\psi=90^\circ` and :math:`g_F=g\omega/2m_y`, on an axis with the damping
-    :math:`d_{yy}+c_d`. One frequency does not tell the rate from the cross damping: what is read is
-    :math:`\Omega+d_{xy}/2m_c`.
+    u_c=-\hat\theta_2,\psi=90^\circ` and :math:`g_F=g\omega/2m_y`, on an axis with the damping :math:`d_{yy}+c_d`. One
+    frequency does not separate the rate from the cross damping: the reading is :math:`\Omega+d_{xy}/2m_c`.
     """
 
     title = "Sense-axis synchronisation"
@@ -101,7 +100,7 @@ class SenseAxisSync(Block):
         correct_phase: bool = parameter(False, "turn y back by the phase of the nominal sense axis")
 
     class Packed(Record):
-        """Read-out, what is followed, damping, gain per sample, amplitude, low-pass of the force, half a sample."""
+        """Read-out, target of y, damping, gain per sample, amplitude, low-pass of the force, half a sample."""
 
         read_out: ReadOut
         rest: float

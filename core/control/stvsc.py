@@ -144,7 +144,7 @@ class Stvsc(Block):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Estimates of the nominal device, everything else at rest."""
+        """Estimates of the nominal device, everything else zero."""
         a1, a2, gain = coefficients(context)[0]
         s = cls.State.zeros()
         s.theta[:] = gain, a2, a1

@@ -20,7 +20,7 @@ from core.units import rate_deg_s
 
 
 class MeasuredPorts(BlockPorts):
-    """What is measured of both axes, and whether the controller drives."""
+    """The measurements of both axes, and whether the controller drives."""
 
     x_measured: float = reads("sensor.x.displacement", "um", "measured displacement along x")
     y_measured: float = reads("sensor.y.displacement", "um", "measured displacement along y")
@@ -74,7 +74,7 @@ class Sense(Record):
 
 
 def two_axis(context: Context) -> TwoAxis:
-    """Return the nominal device, which has two axes wherever such a controller may stand."""
+    """Return the nominal device, which has two axes wherever such a controller is allowed."""
     return cast(TwoAxis, context.device)
 
 

@@ -55,7 +55,7 @@ class Basis(Record):
 
 
 class Claim(Record):
-    """Begin of these beats; the estimates then; least and most rate; whether a bound is claimed, of which rate."""
+    """Begin of these beats; the estimates then; least and most rate; whether a bound is claimed, and its rate."""
 
     begun_ms: float
     kxy: float

@@ -122,7 +122,7 @@ class WholeAngle(Block):
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
-        """Pack what is tuned away, and the gains."""
+        """Pack the compensation, and the gains."""
         device = two_axis(context)
         p = cls.Packed.blank()
         mean = math.sqrt(device.mass * device.mass_y)

@@ -50,7 +50,7 @@ class Shape:
     Parameters
     ----------
     points : ndarray, shape (nodes, 2)
-        Positions of the nodes at rest, um.
+        Undeformed positions of the nodes, um.
     elements : list of (int, int)
         The nodes at both ends of each beam, or part of a beam or truss.
     response : ndarray, shape (nodes, 3, 3)
@@ -163,7 +163,7 @@ def along_x(stiffness: FloatArray) -> float:
 
 
 def stiffness_ratio(geometry: Geometry, damage: Damage) -> float:
-    """Return the stiffness along x over that of the whole suspension."""
+    """Return the stiffness along x over the stiffness of the whole suspension."""
     return along_x(stiffness(geometry, damage)) / along_x(stiffness(geometry))
 
 

@@ -145,5 +145,5 @@ class Geometry(BlockParams):
 
 
 def drawn(context: Context) -> Geometry:
-    """Return the drawing of the device on the bench; that of LCR-350 if it has none."""
+    """Return the drawing of the device on the bench; the drawing of LCR-350 if it has none."""
     return context.drawing if isinstance(context.drawing, Geometry) else Geometry()

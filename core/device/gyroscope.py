@@ -1,4 +1,4 @@
-r"""A vibrating gyroscope: masses, and stiffness and damping along two axes that are not quite those of the layout."""
+r"""A vibrating gyroscope: masses, stiffness and damping along two axes that differ slightly from the layout's."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class GyroscopeTable(BlockParams):
 
     @property
     def drive_axis(self) -> dict[str, float]:
-        """Mass, damping and stiffness of x with y at rest, in SI units."""
+        """Mass, damping and stiffness of x with y at zero, in SI units."""
         return {
             "mass_kg": self.mass_x_kg,
             "damping_ns_m": turned(self.damping_x_ns_m, self.damping_xy_ns_m, self.damping_y_ns_m, self.gamma_deg)[0],
@@ -97,13 +97,13 @@ class GyroscopeTable(BlockParams):
     ) -> dict[str, float]:
         r"""Return the figures of a gyroscope that swings with its drive amplitude A.
 
-        Scale, tilt and zero rate are those with y free, driven at the mode nearest to x. Quadrature as a rate and the
-        thermal floor are those with y held at rest, where x rings at :math:`\omega_x=\sqrt{k_{xx}/m_x}`:
+        Scale, tilt and zero rate are the values with y free, driven at the mode nearest to x. Quadrature as a rate and
+        the thermal floor are the values with y held at zero, where x rings at :math:`\omega_x=\sqrt{k_{xx}/m_x}`:
 
         .. math:: \Omega_q=\frac{k_{xy}}{2m_c\omega_x},\quad
             \Omega_n=\frac{\sqrt2\sqrt{4k_BTd_{yy}}}{2m_c\omega_xA},\quad N=\frac{\Omega_n}{\sqrt2}
 
-        The floor is the root of a one-sided density, the angle random walk N that of a two-sided one.
+        The floor is the root of a one-sided density, the angle random walk N the root of a two-sided density.
 
         Parameters
         ----------

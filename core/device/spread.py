@@ -28,7 +28,7 @@ PRINTED: dict[str, tuple[str, ...]] = {
     "damping": ("lithography", "etching", "surface roughness"),
     "force": ("etching", "surface roughness", "stiction"),
 }
-"""Table 2.1 as printed (it stands in chapter 1): the steps that each parameter depends on."""
+"""Table 2.1 as printed (in chapter 1): the steps that each parameter depends on."""
 MISSING: dict[str, dict[str, str]] = {
     "mass": {
         "lithography": "line widths set the area of the shuttle",

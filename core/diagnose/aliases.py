@@ -2,8 +2,8 @@ r"""Aliases: which hypotheses, and which other changes, have the same response a
 
 .. math:: D=kf_k-mf_m\omega^2+j\beta f_\beta\omega,\qquad Y=\frac{f_gF}{D}V
 
-One tone in steady state tells D and nothing else, two numbers, so mass and stiffness can stand for one another:
-:math:`\Delta k/k=-(\omega/\omega_0)^2\,\Delta m/m`. A second tone parts them.
+One tone in steady state determines D only, two numbers, so mass and stiffness can replace one another: :math:`\Delta
+k/k=-(\omega/\omega_0)^2\,\Delta m/m`. A second tone separates them.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Response(BaseModel):
 
 
 class Pair(BaseModel):
-    """How far two hypotheses lie apart, as rms over the tones; coincident when noise could hide it."""
+    """Distance between two hypotheses, as rms over the tones; coincident when noise could hide it."""
 
     first: str
     second: str

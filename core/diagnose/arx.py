@@ -234,7 +234,7 @@ class WeighedBank(ArxBank):
         log_floor: float
 
     class State(ArxBank.State):
-        """Logarithms of the probabilities, and those of this sample before they are normalised."""
+        """Logarithms of the probabilities, and the logarithms of this sample before they are normalised."""
 
         log: Vector = vector(LANE)
         likelihood: Vector = vector(LANE)

@@ -37,10 +37,10 @@ class AxesBank(Bank):
     noise of the force, the verdict is right in 50 to 99 % of the 200 ms after a fault of ``gyro-a`` and a step
     to 300 deg/s 100 ms later; as a state, in 98 % and more.
 
-    All residuals are weighed by the covariance of the nominal device, so that no model wins by what it assumes of the
-    noise. More noise is assumed than there is, so that a filter soon follows a fault: along x, whose swing lasts long,
-    more than along y. What is assumed wrongly favours some model by thousandths of a nat per sample, which decides
-    where nothing else does, so a rival gains on the winner only by what it tells beyond ``least_evidence_nat``.
+    All residuals are weighed by the covariance of the nominal device, so that no model wins by its assumption about the
+    noise. The assumed noise is larger than the true noise, so that a filter soon follows a fault: along x, whose swing
+    lasts long, more than along y. Wrong assumptions favour some model by thousandths of a nat per sample, which decides
+    where nothing else does, so a rival gains on the winner only by evidence beyond ``least_evidence_nat``.
     """
 
     title = "Kalman bank of two axes"
@@ -127,7 +127,7 @@ class AxesBank(Bank):
         models: Records[AxesModel] = tail()
 
     class State(Record):
-        """Logarithms of probabilities, those of a sample, forces of a tick, mean square of x; the filters."""
+        """Logarithms of probabilities, logarithms of a sample, forces of a tick, mean square of x; the filters."""
 
         weight: Vector = vector(LANE)
         likelihood: Vector = vector(LANE)
@@ -136,7 +136,7 @@ class AxesBank(Bank):
         filters: Records[AxesFilter] = tail()
 
     class Ports(BlockPorts):
-        """Displacements and forces in; probabilities and what they come from."""
+        """Displacements and forces in; probabilities and their causes out."""
 
         x_measured: float = reads("sensor.x.displacement", "um", "measured displacement along x")
         y_measured: float = reads("sensor.y.displacement", "um", "measured displacement along y")
@@ -167,7 +167,7 @@ class AxesBank(Bank):
 
     @classmethod
     def prior(cls, params: Any, before: list[float]) -> list[float]:
-        r"""Return the probabilities with that of the winner times :math:`e^\epsilon`, the least evidence."""
+        r"""Return the probabilities, the winner's multiplied by :math:`e^\epsilon`, the least evidence."""
         raised = list(before)
         raised[before.index(max(before))] *= exp(params.least_evidence_nat)
         return [share / sum(raised) for share in raised]
@@ -197,7 +197,7 @@ class AxesBank(Bank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """All filters at rest, all hypotheses alike."""
+        """All filters at zero, all hypotheses alike."""
         s = cls.State.zeros(len(params.hypotheses))
         s.weight[:] = -log(len(params.hypotheses))
         for f in s.filters:

@@ -1,4 +1,4 @@
-r"""Kalman filter of a device with two axes that is turned at a rate nobody knows.
+r"""Kalman filter of a device with two axes that rotates at an unknown rate.
 
 The motion depends on the rate, :math:`x^-=(\Phi+\Omega N)x+\Gamma u`, so the rate is one more state. It is estimated
 beside the motion: the motion has the steady gain of a known rate, and the sensitivity of its error to an error of the
@@ -64,7 +64,7 @@ def correct(m: AxesModel, f: AxesFilter, x: float, y: float) -> float:
 
     .. math:: V\leftarrow V-KS,\quad x=x^-+Kr+V\Delta\Omega,\quad M\leftarrow M-M^2S^T\psi^{-1}S
 
-    The gain of the motion is :math:`K+VMS^T\psi^{-1}`, that of the rate :math:`MS^T\psi^{-1}`.
+    The gain of the motion is :math:`K+VMS^T\psi^{-1}`, the gain of the rate :math:`MS^T\psi^{-1}`.
     """
     first = x - f.motion[0]
     second = y - f.motion[1]

@@ -104,5 +104,5 @@ def hypotheses_of(params: BlockParams) -> list[Hypothesis]:
 
 
 def assumed_noise(context: Context) -> float:
-    """Return the sensor noise a bank assumes: that of the sensor, at least a thousandth of a micrometre."""
+    """Return the sensor noise that a bank assumes: the noise of the sensor, at least a thousandth of a micrometre."""
     return max(context.sensor_noise_um, 1e-3)

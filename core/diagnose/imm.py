@@ -130,7 +130,7 @@ class Imm(KalmanBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """All filters at rest, all hypotheses alike."""
+        """All filters at zero, all hypotheses alike."""
         s = cls.at_rest(cls.State.zeros(), params, context)
         s.weight[:] = 1.0 / len(params.hypotheses)
         return s

@@ -28,7 +28,7 @@ class Judge(Block):
         count: Choice
 
     class Ports(ObservedPorts):
-        """What was measured and applied; the probability of every hypothesis."""
+        """The measured displacement and the applied voltage; the probability of every hypothesis."""
 
         probability: Vector = output("1", "probability of the hypothesis", each="hypotheses")
         residual: Vector = tap("um", "what the hypothesis does not say", each="hypotheses")

@@ -61,7 +61,7 @@ class LockIn(KalmanBank):
         log_floor: float
 
     class State(window.State):
-        """Filters and window; logarithms of probabilities, and those of this sample."""
+        """Filters and window; logarithms of probabilities, and the logarithms of this sample."""
 
         log: Vector = vector(LANE)
         likelihood: Vector = vector(LANE)
@@ -96,7 +96,7 @@ class LockIn(KalmanBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """All filters at rest, all hypotheses alike, the window empty."""
+        """All filters at zero, all hypotheses alike, the window empty."""
         s = cls.at_rest(cls.State.zeros(window.room(params)), params, context)
         s.log[:] = -log(len(params.hypotheses))
         return s

@@ -80,7 +80,7 @@ class LockInGlr(KalmanBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """All filters at rest, the window empty."""
+        """All filters at zero, the window empty."""
         return cls.at_rest(cls.State.zeros(params.window), params, context)
 
     @staticmethod

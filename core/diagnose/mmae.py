@@ -98,7 +98,7 @@ class Mmae(KalmanBank):
         log_floor: float
 
     class State(KalmanBank.State):
-        """The filters; logarithms of probabilities (linear: probabilities); those of a sample; separations."""
+        """The filters; logarithms of probabilities (linear: probabilities); probabilities of a sample; separations."""
 
         weight: Vector = vector(LANE)
         likelihood: Vector = vector(LANE)
@@ -117,12 +117,12 @@ class Mmae(KalmanBank):
 
     @classmethod
     def takes_steady_gains(cls, params: Any) -> bool:
-        """Say whether the gains are those in the limit."""
+        """Return whether the gains are the steady gains."""
         return bool(params.form == "steady")
 
     @classmethod
     def leaves_sensor_noise_out(cls, params: Any) -> bool:
-        """Say whether the residual covariance is that of the text, without R."""
+        """Return whether the residual covariance is the formula of the text, without R."""
         return bool(params.residual_covariance == "printed")
 
     @classmethod
@@ -135,7 +135,7 @@ class Mmae(KalmanBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """All filters at rest, all hypotheses alike."""
+        """All filters at zero, all hypotheses alike."""
         s = cls.at_rest(cls.State.zeros(), params, context)
         n = len(params.hypotheses)
         s.weight[:] = 1.0 / n if params.arithmetic == "linear" else -log(n)

@@ -97,7 +97,7 @@ class ReferenceBanks(WeighedBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Every bank at its hypothesis, every record at rest."""
+        """Every bank at its hypothesis, every record zero."""
         s = cls.State.zeros()
         cls.fill_alike(s, params)
         put_at_hypotheses(s.banks, params, context)

@@ -22,7 +22,7 @@ class Regions(Block):
 
     .. math:: J=\frac{\mathrm{rms}(y-y_0)}{\mathrm{rms}(y_0)}\ \text{over a period of the drive}
 
-    The healthy motion is that of the nominal device under the voltage applied. The text gives the regions and no
+    The healthy motion is the motion of the nominal device under the applied voltage. The text gives the regions and no
     figures; the limits are this bench's own. Beyond the largest safe displacement there is danger at once.
     """
 
@@ -56,7 +56,7 @@ class Regions(Block):
         return lacking(device)
 
     class Packed(Record):
-        """The healthy device over a tick and at rest, ticks between two samples, samples of a window, and limits."""
+        """The healthy device over a tick, its static gain, ticks between two samples, samples of a window, limits."""
 
         tick: Tick
         static_gain: float

@@ -83,8 +83,8 @@ class SelfTuning(ArxBank):
     Without that filter the method works at 10 to 20 kHz.
 
     The forgetting factor is fixed, or follows the innovations. ``direct`` solves :math:`1+h^T\eta h/\lambda=R` for it
-    if R, taken over a few samples, is beyond a gate; ``stepped`` is 5.4 corrected; ``printed`` is 5.4 as it stands,
-    a ramp that ignores the data. ``R`` of the printed recursion ends at 1e300, where it would be infinite.
+    if R, taken over a few samples, is beyond a gate; ``stepped`` is 5.4 corrected; ``printed`` is 5.4 unchanged, a ramp
+    that ignores the data. ``R`` of the printed recursion ends at 1e300, where it would be infinite.
     """
 
     sample_by_sample = False

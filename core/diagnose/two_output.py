@@ -80,7 +80,7 @@ class TwoOutput(KalmanBank):
         velocity_noise: float
 
     class State(KalmanBank.State):
-        """The filters; logarithms of probabilities, and those of this sample."""
+        """The filters; logarithms of probabilities, and the logarithms of this sample."""
 
         log: Vector = vector(LANE)
         likelihood: Vector = vector(LANE)
@@ -114,7 +114,7 @@ class TwoOutput(KalmanBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """All filters at rest, all hypotheses alike."""
+        """All filters at zero, all hypotheses alike."""
         s = cls.at_rest(cls.State.zeros(), params, context)
         s.log[:] = -log(len(params.hypotheses))
         return s

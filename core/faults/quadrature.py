@@ -17,8 +17,8 @@ class Quadrature(Fault):
 
     .. math:: k_{xy}\to k_{xy}+2m_c\omega_x\Omega_q,\quad\omega_x=\sqrt{k_{xx}/m_x}
 
-    A read-out with a wrong phase takes part of it for a rate. The rate it is given as is that of the nominal device,
-    with y held at rest.
+    A read-out with a wrong phase takes part of it for a rate. Its size as a rate is the value of the nominal device,
+    with y held at zero.
     """
 
     title = "Quadrature"

@@ -127,13 +127,13 @@ class FilteredEstimator(Filtered):
 
     @classmethod
     def fill_start(cls, s: State, params: Any, context: Context) -> None:
-        """Write the estimate at the start; the filters are at rest."""
+        """Write the estimate at the start; the filters are at zero."""
         if params.start == "nominal":
             s.theta[:] = coefficients(context.device)
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Start with filters at rest, and the estimate at the start."""
+        """Start with filters at zero, and the estimate at the start."""
         s = cls.State.zeros()
         cls.fill_start(s, params, context)
         return s

@@ -14,9 +14,9 @@ from core.record import Record
 class AxisGuard(Block):
     """Trips on a value that is not finite, on travel beyond the stops, on a force at its limit most of the time.
 
-    Forces alternate, and so leave the limit twice in every period even when a loop has run away: what counts is the
+    Forces alternate, and so leave the limit twice in every period even when a loop has run away: the measure is the
     time at the limit less a quarter of the time below it. A force that is at its limit a fifth of the time is endured.
-    Each axis passes on what the one before it has found; that of the last stops the board.
+    Each axis passes its result to the next; the last axis stops the board.
     """
 
     title = "Guard of an axis"

@@ -26,11 +26,12 @@ def _sum(unit: str, meaning: str) -> Any:
 
 
 class Effects(Block):
-    """The channels through which faults reach plant and measurement, set back to neutral before those of each tick.
+    """The channels of faults into plant and measurement, set back to neutral before the faults of each tick.
 
-    Stiffness, elasticity, damping, friction and squeeze film start from what the environment makes of the device; for a
-    new one at 300 K and 1 atm only the last is not neutral, by its rarefaction. Stiffness is the whole of that along x,
-    elasticity the part of it that is the material: every other stiffness of the suspension goes with it.
+    Stiffness, elasticity, damping, friction and squeeze film start from the values that the environment gives the
+    device; for a new device at 300 K and 1 atm only the last is not neutral, by its rarefaction. Stiffness is the whole
+    stiffness along x, elasticity its material part: every other stiffness of the suspension is proportional to the
+    elasticity.
     """
 
     title = "Effect channels"

@@ -1,4 +1,4 @@
-"""Works out what a unit declares and packs: numbers, texts, records, in a bounded number of operations.
+"""Works out the declarations and packed numbers of a unit: numbers, texts, records, in a bounded number of operations.
 
 It walks the syntax tree. Every kind of node, every attribute and every function is one of a list; nothing leads from a
 value to anything else.
@@ -64,7 +64,7 @@ class Evaluator:
         return self.value(node, {})
 
     def call(self, function: ast.FunctionDef, arguments: Sequence[Any], block: type[Block]) -> Any:
-        """Run a method of the unit and return what it returns."""
+        """Run a method of the unit and return its result."""
         self._left = MOST_OPERATIONS
         local = {argument.arg: value for argument, value in zip(function.args.args, arguments, strict=True)}
         _, result = self._run(function.body, {**local, "super": lambda: Above(block)})

@@ -64,7 +64,7 @@ class Steps(Loops):
             refuse(node, f"takes more than {MOST_OPERATIONS} operations a sample")
 
     def function(self, node: ast.FunctionDef, kinds: Sequence[Kind], name: str) -> Kind:
-        """Check a function with arguments of these kinds, write it anew under a name, return what it returns."""
+        """Check a function with arguments of these kinds, write it anew under a name, return its kind."""
         arguments = node.args
         if arguments.vararg or arguments.kwarg or arguments.kwonlyargs or arguments.posonlyargs or arguments.defaults:
             refuse(node, "takes arguments by their place, without defaults")

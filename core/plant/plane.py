@@ -19,9 +19,9 @@ from core.units import UN_PER_N, thermal_force_un
 
 
 class PlaneParams(ContactParams):
-    """Mechanics across the drive; what is not given follows from the drawing of the device.
+    """Mechanics across the drive; missing values follow from the drawing of the device.
 
-    A device without a drawing is given that of LCR-350 with its own comb.
+    A device without a drawing gets the drawing of LCR-350 with its own comb.
     """
 
     stator_tip_um: float | None = parameter(

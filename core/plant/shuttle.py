@@ -63,7 +63,7 @@ class Shuttle(Block):
         thermal_key: float
 
     class Ports(BlockPorts):
-        """Inputs of every plant, followed by those of one kind of plant; then the motion and state it writes."""
+        """Inputs of every plant, then the inputs of one kind of plant; then the motion and state it writes."""
 
         voltage: float = reads("drive.voltage", "V", "applied voltage")
         middle: float = reads("drive.middle", "V", "applied voltage half a sample later")
@@ -165,7 +165,7 @@ def joined(first: float, second: float) -> float:
 
 @kernel
 def dry_friction(limit: float, velocity: float, net: float) -> float:
-    """Coulomb friction: against the motion; at rest against the net force, as far as it can."""
+    """Coulomb friction: against the motion; without motion against the net force, as far as it can."""
     if velocity != 0.0:
         return -limit if velocity > 0.0 else limit
     if abs(net) <= limit:

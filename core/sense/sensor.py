@@ -21,7 +21,7 @@ P = TypeVar("P", bound=BlockParams)
 
 
 class SensorParams(BlockParams):
-    """What every sensor that may rest has."""
+    """The parameter of every sensor that may be idle."""
 
     always: bool = parameter(False, "run even while the sensor in use does not need it; it puts out 0 while it rests")
 

@@ -26,9 +26,11 @@ OVERLAP = 8.0
 PURITY = 0.04
 """Error of a variance that is always granted: with ever so many averages, no rate is these three noises alone."""
 MARGIN = 2
-"""Octaves left out beyond those that the three noises do not explain: what a lag leaves falls by half with each."""
+"""Octaves left out beyond the octaves that the three noises do not explain: the rest of a lag falls by half with
+each."""
 SHARED = 2.0
-"""Variance of a term over that of independent octaves: all octaves look at one record (measured for a random walk)."""
+"""Variance of a term over the variance of independent octaves: all octaves share one record (measured for a random
+walk)."""
 STANDS_OUT = 3.0
 """Standard errors by which a term must exceed 0."""
 PASSES = 30
@@ -81,10 +83,10 @@ def averaging_times(averages: FloatArray) -> FloatArray:
 def fit(taus_s: Octaves, deviations: Octaves, averages: Octaves) -> RateNoise:
     r"""Fit the three noises to an Allan deviation by octaves.
 
-    A variance over K averaging times has about K - 1 degrees of freedom; squares are weighed by what the fit itself
-    says of their scatter, pass by pass. Octaves with less than 9 averaging times are left out. So are the shortest ones
-    as long as the three noises do not explain them, and two more: there the loop that estimates the rate filters it.
-    White noise through a lag of 50 ms is told within 2 %.
+    A variance over K averaging times has about K - 1 degrees of freedom; squares are weighed by their scatter according
+    to the fit, pass by pass. Octaves with less than 9 averaging times are left out. The shortest octaves are also left
+    out as long as the three noises do not explain them, and two more: there the loop that estimates the rate filters
+    the noise. White noise through a lag of 50 ms is estimated within 2 %.
 
     Parameters
     ----------
@@ -155,7 +157,7 @@ def _least_squares(taus: FloatArray, variances: FloatArray, times: FloatArray) -
 
 
 def _figure(which: int, terms: FloatArray, covariance: FloatArray, needs: str) -> Figure:
-    """Return one figure; one that does not stand out has an upper limit, and needs another record."""
+    """Return one figure; a figure below the noise has an upper limit, and needs another record."""
     term, deviation, scale = float(terms[which]), math.sqrt(covariance[which, which]), SCALES[which]
     if term > STANDS_OUT * deviation:
         value = math.sqrt(term)
