@@ -1,4 +1,4 @@
-"""The list of claims is complete: what it names is there, and every scenario of the text is named."""
+"""The list of claims is complete: everything it names exists, and every scenario of the text is named."""
 
 from __future__ import annotations
 

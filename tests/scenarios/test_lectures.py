@@ -49,7 +49,7 @@ def test_all_that_the_notes_claim_holds_on_a_real_run(name: str) -> None:
 
 
 def test_no_vote_is_answered_by_its_own_words() -> None:
-    """Neither the question nor what is shown and said before it names the right answer or its number."""
+    """Neither the question nor the picture and the words before it name the right answer or its number."""
     votes = [(cue, cue.vote) for name in lecture_ids() for cue in lecture(name).head.cues if cue.vote]
     assert votes
     for cue, vote in votes:

@@ -104,7 +104,7 @@ test("the captures of a trigger outlive the history: previous, next, newest, by 
   const at = (index: number) =>
     `capture ${index + 1} of 50 at ${(captures[index].trigger_tick * dt).toFixed(3)}\u00a0ms`;
   const picture = () => pictureOf(page, SCOPE_CANVAS);
-  // the page may not have been told of the newest yet
+  // the page may not have the newest yet
   await expect(async () => {
     await scope.getByRole("group", { name: /^Plot\./ }).press("l");
     await older.click();

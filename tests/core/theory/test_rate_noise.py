@@ -103,7 +103,7 @@ def test_what_is_no_noise_is_not_taken_for_noise():
 
 
 def told(seed: int, seconds: int, **values: float) -> RateNoise:
-    """Return what a read-out concludes from a rate with noise of its own, which is flat from 1 s on at 100 Hz."""
+    """Return the conclusion of a read-out from a rate with noise of its own, which is flat from 1 s on at 100 Hz."""
     row = Row(("rate", "noise", values), ("readout", "allan", {"interval_ms": 1000.0}), dt_ms=10.0, seed=seed)
     for _ in range(10):
         row.play(seconds * 10)

@@ -74,7 +74,7 @@ def expected_settled(found: Result, doings: list[tuple[int, str]]) -> list[tuple
 
 
 def doings(found: Result) -> list[tuple[int, str]]:
-    """List what the scenario does before its end or a trip: (tick, kind)."""
+    """List the events of the scenario before its end or a trip: (tick, kind)."""
     kinds = {"fault": "fault", "heal": "heal", "switch": "switch"}
     events = [(event["at_sample"], next(kinds[key] for key in event if key in kinds)) for event in done(found)]
     return [event for event in events if event[0] < found.samples]
@@ -256,7 +256,7 @@ def test_the_seven_steps_in_order() -> None:
         *("heal", "fault", "verdict", "heal", "verdict"),
     ]
     delays = [int(said.numbers["delay_samples"]) for said in found.narration if said.kind == "verdict"]
-    assert delays == found.board.scores()["kalman"].delays[1:]  # the first is that of the start, healthy
+    assert delays == found.board.scores()["kalman"].delays[1:]  # the first belongs to the healthy start
 
 
 def test_a_gyroscope_misses_by_what_noise_does_not_explain() -> None:

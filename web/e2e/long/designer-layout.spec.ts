@@ -4,7 +4,7 @@ import { nameOf, SCREENS } from "../screens";
 
 const PANELS = ["What can be turned", "Drawing", "Figures", "Frequency response", "Sensitivity"];
 
-/** What is missing, sticks out of its panel or of the page, or lies over another panel. */
+/** Parts that are missing, stick out of their panel or of the page, or cover another panel. */
 const faultsOf = (page: Page): Promise<string[]> =>
   page.locator("main").evaluate((main, wanted) => {
     const panels = Array.from(main.querySelectorAll("section, header")).map((panel) => {

@@ -2,7 +2,7 @@ import { expect, test } from "@playwright/test";
 import { layoutFaults } from "../layout-faults";
 import { SCREENS, showOn } from "../screens";
 
-/** A page with one thing wrong, and what is to be said of it. */
+/** A page with one fault, and its description. */
 const WRONG: [string, RegExp][] = [
   [`<div style="width: 500px; height: 10px"></div>`, /page is \d+ px wider/],
   [

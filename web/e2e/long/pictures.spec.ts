@@ -4,7 +4,7 @@ import { expect, front, HYPOTHESES, inWords, openPanel, pictureOf, test } from "
 
 test.use({ colorScheme: "dark" });
 
-/** Keep what a panel shows, as a person does. */
+/** Save the content of a panel, as a user does. */
 async function keep(page: Page, within: Locator, kind: "PNG" | "SVG"): Promise<Buffer> {
   await within
     .getByRole("button", { name: /^Export/ })
@@ -18,7 +18,7 @@ async function keep(page: Page, within: Locator, kind: "PNG" | "SVG"): Promise<B
   return readFileSync(await download.path());
 }
 
-/** Read a drawing with a browser that has no page around it: what it says, and what is wrong with it. */
+/** Read a drawing with a browser that has no page around it: its text, and its faults. */
 async function examine(page: Page, svg: string) {
   const sheet = await page.context().newPage();
   await sheet.setContent(svg);
