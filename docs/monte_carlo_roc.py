@@ -36,7 +36,7 @@ seeds = "1:{RUNS}"
 Path("monte-carlo-roc.toml").write_text(CAMPAIGN)
 subprocess.run(["combbench", "sweep", "monte-carlo-roc.toml", "--out", FOLDER, "--resume"], check=True)
 
-# %% Area under the curve for each noise, and what Monte Carlo leaves open
+# %% Area under the curve for each noise, and the uncertainty of Monte Carlo
 points = json.loads((FOLDER / "points.json").read_text())
 print("noise, um   area     samples right, mean ± standard error of the mean")
 areas = []

@@ -83,7 +83,7 @@ class SlidingObserver(Block):
         if s.started != 0.0:
             e = s.measured - s.displacement
             way = 1.0 if e > 0.0 else -1.0 if e < 0.0 else 0.0
-            # velocity and force at the middle of the sample: what Euler's step loses there is of higher order
+            # velocity and force at the middle of the sample: the error of Euler's step there is of higher order
             nominal = (
                 p.of_voltage * x.applied
                 + p.of_velocity * s.velocity
