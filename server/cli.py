@@ -153,7 +153,7 @@ def run(
                     if law is None:
                         summary = beside(result)
                         keep(result, summary, [result.seed], stem)
-                    else:  # no report and no script: they would tell of the scenario's own controller
+                    else:  # no report and no script: they would describe the scenario's own controller
                         summary = result.summary()
                         write_json(stem.with_suffix(".json"), summary)
             if narrate:
@@ -169,7 +169,7 @@ def run(
 
 
 def _find(scenario: Scenario, threshold: str | None, over: str | None, as_json: bool) -> None:
-    """Find where a claim holds, say it and end: 0 somewhere in the range, 1 nowhere."""
+    """Find where a claim holds, print it and end: 0 somewhere in the range, 1 nowhere."""
     from server.finding import find, threshold_text
 
     if threshold is None or over is None:

@@ -172,7 +172,7 @@ def _given(error: Any) -> str:
 
 
 REFUSED = (InputError, ApiError, DBAPIError)
-"""What refuses something for one of several people; nothing has changed for that person then."""
+"""Errors of one of several people; nothing has changed for that person then."""
 
 
 def why(error: Exception) -> str:

@@ -12,7 +12,7 @@ EVERY_S = 5.0
 
 
 class Idling:
-    """Notes when each bench was last watched or asked for.
+    """Notes when each bench was last watched or requested.
 
     Parameters
     ----------

@@ -233,7 +233,7 @@ class Service:
             await self._shut(session)
 
     def _leaving(self, session: Session, comes_back: bool = False) -> list[Change]:
-        """Return what changes as a bench closes."""
+        """Return the changes as a bench closes."""
         changes = self.blinds.closing(session)
         if not comes_back:
             watchers = self.people.watchers(session.id)
@@ -296,7 +296,7 @@ class Service:
             self.audit.add(name, "driving", text, class_id, bench_id, bench.status.tick)
 
     def _go_without_driver(self, bench_id: str, why: str) -> None:
-        """Let a bench do what its scenario says when its driver is gone."""
+        """Make a bench act as its scenario defines for a lost driver."""
         bench = self.benches.find(bench_id)
         if bench is not None:
             self.engine.submit(go_without_driver, bench, why)

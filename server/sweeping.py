@@ -44,7 +44,7 @@ PARTS = "runs"
 MOST_LISTED = 20_000
 """Points whose tallies are written as JSON, each up to 10 kB; the tables have more."""
 FEW_LISTED, PIECES = 750, 8
-"""Points that are listed at once; more are listed in so many pieces, none smaller, by the processes."""
+"""Points that are listed at once; more are listed in pieces, none smaller, by the processes."""
 
 
 @dataclass(frozen=True)

@@ -49,7 +49,7 @@ class NewBench(StrictBody):
     )
 
     def wanted(self) -> dict[str, Any]:
-        """Return what `Benches.create` takes."""
+        """Return the arguments of `Benches.create`."""
         return {
             "source": self.scenario,
             "values": self.set,
@@ -140,7 +140,7 @@ async def create_bench(body: NewBench, service: ServiceDep, person: PersonDep, r
         blind = (await service.student_benches.get(person)).hiding.blind  # it may be on its way back
         if blind is not None and blind.question.game is None:  # a game may be left
             raise ApiError(409, "blind", "a fault is hidden on your bench", hint=HINT)
-        service.driving.check(service.people.bench_of(person), person)  # the one before is gone with it
+        service.driving.check(service.people.bench_of(person), person)  # the bench before is closed with it
         session = await service.student_benches.replace(person, body.wanted())
     else:
         session = await service.benches.create(**body.wanted())
@@ -166,7 +166,7 @@ async def get_bench(session: SessionDep, service: ServiceDep, person: PersonDep)
 
 @router.patch("/{bench_id}", dependencies=[RateLimited])
 async def name_bench(body: BenchName, session: SessionDep, service: ServiceDep, person: PersonDep) -> Bench:
-    """Call a bench something, as a branch by what differs in it."""
+    """Name a bench, for example a branch by its difference."""
     session.name = body.name
     return service.views.of(session, person)
 

@@ -36,7 +36,7 @@ def get_catalog(request: Request, family: str | None = None) -> Response:
 
 @cache
 def _written(family: str | None) -> bytes:
-    """Return the catalogue as text; making it takes 0.1 s, and every page that opens asks for it."""
+    """Return the catalogue as text; making it takes 0.1 s, and every page that opens requests it."""
     return Catalogue(version=VERSION, blocks=catalog(family)).model_dump_json().encode()
 
 

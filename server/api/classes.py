@@ -137,7 +137,7 @@ async def join_class(class_id: str, body: Join, request: Request, response: Resp
 
 @router.get("/{class_id}/members", response_model=Members)
 async def list_members(class_id: str, service: ServiceDep) -> Response:
-    """Show every student: name, bench, state, verdict beside truth, a small trace."""
+    """Show every student: name, bench, state, verdict and truth, a small trace."""
     await service.classes.row(class_id)
     found = Members(members=[_tile(service, person) for person in service.people.students(class_id)])
     # written at once: checking sixty tiles again takes the loop ten times as long

@@ -31,7 +31,7 @@ SocketServiceDep = Annotated[Service, Depends(get_socket_service)]
 
 
 def get_identity(request: Request) -> Identity:
-    """Return what knows the access token, and secrets that are made from it."""
+    """Return the holder of the access token, and of secrets that are made from it."""
     return cast(Identity, request.app.state.identity)
 
 

@@ -155,7 +155,7 @@ async def flops(
 
 
 async def _on_copy(session: Session, service: Service, work: Callable[..., T], *settings: Any) -> T:
-    """Run one experiment at a time on a copy of a bench, beside the event loop and the engine."""
+    """Run one experiment at a time on a copy of a bench, in parallel with the event loop and the engine."""
     async with service.experiment_turn:
         with kept():
             copy = await service.engine.call(_copied, session)

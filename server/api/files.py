@@ -34,7 +34,7 @@ def file_name(name: str, kind: str) -> str:
 
 
 async def table_response(service: Service, table: pa.Table, name: str, kind: Format) -> StreamingResponse:
-    """Send a table in the format asked for."""
+    """Send a table in the requested format."""
     return await written_response(service, lambda file: write(table, file, kind), name, kind)
 
 

@@ -95,7 +95,7 @@ async def begin_game(game_id: GameId, body: Begin, service: ServiceDep, person: 
     """Begin the bench of a game, in place of the bench before; it hides the values of the game."""
     _must_play(person)
     if person.role == "student":
-        service.driving.check(service.people.bench_of(person), person)  # the one before is gone with it
+        service.driving.check(service.people.bench_of(person), person)  # the bench before is closed with it
     begun = await service.games.begin(person, game_id, body.seed, body.hand_in)
     await service.checkpoints.write()  # the bench of a student hides them after a crash too
     return begun

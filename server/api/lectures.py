@@ -64,7 +64,7 @@ class OnBench(Body):
 
 
 class Staged(BaseModel):
-    """The bench in the state of a cue; a fresh one where the one given has other signals."""
+    """The bench in the state of a cue; a fresh bench where the given bench has other signals."""
 
     bench: Bench
     tick: int

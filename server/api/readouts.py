@@ -1,4 +1,4 @@
-"""Read-outs of a live bench: the Allan deviation of the rate so far, and the noises that it tells."""
+"""Read-outs of a live bench: the Allan deviation of the rate so far, and the estimates of its noises."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ router = APIRouter(prefix="/benches/{bench_id}/readouts", tags=["readouts"], rou
 
 
 class Octave(BaseModel):
-    """The Allan deviation over one averaging time, from so many pairs of means."""
+    """The Allan deviation over one averaging time, from a number of pairs of means."""
 
     tau_s: float
     deviation_deg_h: float

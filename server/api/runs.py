@@ -94,7 +94,7 @@ async def start_run(body: NewRun, service: ServiceDep, response: Response) -> Ru
 
 
 def _seeds(asked: str | list[int], most: int) -> list[int]:
-    """Return the seeds that are asked for."""
+    """Return the requested seeds."""
     if isinstance(asked, str):
         seeds = parse_seeds(asked, "seeds")
     else:

@@ -1,4 +1,4 @@
-"""The library of scenarios, and a check for one's own."""
+"""The library of scenarios, and a check for a user's own."""
 
 from __future__ import annotations
 

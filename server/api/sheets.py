@@ -127,7 +127,7 @@ async def begin_sheet(sheet_id: Id, person: PersonDep, service: ServiceDep) -> S
 
 @router.delete("/sheets/{sheet_id}/progress", status_code=204, dependencies=[RateLimited])
 async def start_over(sheet_id: Id, person: PersonDep, service: ServiceDep) -> None:
-    """Forget one's own answers at a sheet."""
+    """Forget the caller's answers at a sheet."""
     await service.sheets.start_over(person, sheet_id)
 
 
@@ -146,7 +146,7 @@ async def hide_in_step(sheet_id: Id, step_id: Id, person: PersonDep, service: Se
     """Hide the fault of the step that is open, on a new bench of the sheet; the answer to it closes the step."""
     _must_work(person)
     if person.role == "student":
-        service.driving.check(service.people.bench_of(person), person)  # the one before is gone with it
+        service.driving.check(service.people.bench_of(person), person)  # the bench before is closed with it
     await service.sheets.hide(person, sheet_id, step_id)
     await service.checkpoints.write()  # the bench of a student hides it after a crash too
     return await service.sheets.view(person, sheet_id)

@@ -74,7 +74,7 @@ class Line(Body):
 
 
 class ExcitationSource(Body):
-    """An input, and the second-order plant whose parameters it should tell apart, in one unit of time."""
+    """An input, and the second-order plant whose parameters it should separate, in one unit of time."""
 
     tones: list[Line] = Field(min_length=1, max_length=100)
     gain: float = Field(1.0, ge=-1e6, le=1e6)

@@ -94,7 +94,7 @@ class UnitCheck(BaseModel):
 
 @router.get("")
 def list_units(service: ServiceDep) -> UnitList:
-    """List the units to begin with, and say whether this person may bring any."""
+    """List the units to begin with, and whether this person may bring any."""
     own = [_entry(one, "folder" if service.units.is_kept(one.name) else "command line") for one in service.units.all()]
     return UnitList(units=[*own, *(_entry(one, origin) for one, origin in _offered())], refusal=refusal())
 

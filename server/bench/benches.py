@@ -154,7 +154,7 @@ class Benches:
         Parameters
         ----------
         experiment : Experiment
-            What to repeat.
+            The experiment to repeat.
         opened : Opened
             The origin of the bench.
         bench_id : str, optional

@@ -81,7 +81,7 @@ class HiddenQuestion(BaseModel):
 
 
 class Blind(BaseModel):
-    """A hidden fault: the question, and what answers it."""
+    """A hidden fault: the question, and its possible answers."""
 
     question: HiddenQuestion
     truth: str
@@ -126,7 +126,7 @@ class Blind(BaseModel):
 
 
 def refusal(what: str = "") -> ApiError:
-    """Refuse what would tell."""
+    """Refuse a request that would reveal the fault."""
     return ApiError(403, "blind", f"{REFUSAL}; {what}" if what else REFUSAL, hint=HINT)
 
 

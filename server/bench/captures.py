@@ -220,7 +220,7 @@ class Captures:
         return capture.stop <= head and self._bench.has_in_past(capture.crossing.branch, capture.stop)
 
     def _copy(self, one: CaptureSet, room: int) -> int:
-        """Copy at most so many samples; return how many more may be copied."""
+        """Copy at most a number of samples; return how many more may be copied."""
         history = self._bench.history
         while room > 0 and (one.coming is not None or one.waiting):
             coming = one.coming = one.coming or self._begin(one, history)

@@ -36,7 +36,7 @@ class ChangingBench(LiveBench, Protocol):
 
 
 Way = list[Command | Pending | Moment]
-"""What leads from one side of a change to the other: commands, some that wait no more, or a moment."""
+"""The way from one side of a change to the other: commands, commands that wait no more, or a moment."""
 
 
 @dataclass(frozen=True)

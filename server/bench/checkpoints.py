@@ -1,7 +1,7 @@
 """Checkpoints of live benches on disk: after a crash each continues at its tick, bit for bit, with its log.
 
-A bench has two files. One holds the board and is replaced as a whole, the other grows by the events. A crash loses what
-came after the last write: less than a second.
+A bench has two files. One holds the board and is replaced as a whole, the other grows by the events. A crash loses the
+part after the last write: less than a second.
 """
 
 from __future__ import annotations

@@ -74,7 +74,7 @@ def parse_earlier(document: dict[str, Any]) -> Earlier:
 
 
 def as_written(error: InputError, model: type[Any]) -> InputError:
-    """Return the error with the field as the person wrote it, for a command of this sort."""
+    """Return the error with the field as the user wrote it, for a command of this sort."""
     head, dot, rest = error.field.partition(".")
     if issubclass(model, Earlier):
         head = model.names.get(head, head)

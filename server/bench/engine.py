@@ -3,7 +3,7 @@
 The event loop serves clients; the engine thread advances boards. A busy loop or a slow client delays frames but no
 board. A command, a snapshot and a new bench are jobs: the engine runs them between two slices, and the loop awaits
 their results. The compiled ticks run without the interpreter's lock, so benches do not wait for each other. One thread
-at a time advances a bench. Where these threads hang, the watchdog lets others take their place.
+at a time advances a bench. Where these threads hang, the watchdog gives their place to others.
 """
 
 from __future__ import annotations

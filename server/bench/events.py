@@ -55,7 +55,7 @@ class EventLog(Log):
         old: Any = None,
         new: Any = None,
     ) -> Event:
-        """Append an event, tell of it and return it with its number."""
+        """Append an event, report it and return it with its number."""
         event = self.keep(tick=tick, actor=actor, kind=kind, text=text, command=command, old=old, new=new)
         self._on_event(event)
         return event

@@ -101,8 +101,8 @@ class Forks:
     ) -> T:
         """Compute a moment of the past while it is wanted, and give it to ``then`` (in a job of the engine).
 
-        The bench that was asked for it tells how far it is. All that follows the computing is one job: pages get a
-        picture after a job, and after several they would wait for the next one.
+        The bench of the request shows the progress. All steps after the computing are one job: pages get a picture
+        after a job, and after several they would wait for the next one.
         """
         travel = asked.travel = Travel(tick=past.origin.tick, share=0.0)
 
@@ -167,7 +167,7 @@ class Forks:
 
 
 def forked(session: Session, snapshot_id: str | None, maker: Maker) -> Session:
-    """Return a bench that is what another is now, or was when a snapshot was taken (a job)."""
+    """Return a bench with the present state of another, or with the state of a snapshot (a job)."""
     moment = session.snapshots.get(snapshot_id).moment if snapshot_id else session.moment()
     board = Board.restore(moment.checkpoint)
     twin = maker.around(moment.scenario, board, session.pacer.scale)

@@ -1,4 +1,4 @@
-"""Hiding: a bench hides a fault, and people have a view of the bench that does not tell it."""
+"""Hiding: a bench hides a fault, and users have a view of the bench that does not reveal it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from server.errors import ApiError
 from server.people.person import Person
 
 STOPPED = "the board has stopped itself"
-"""The only words about a trip: its reason and its signal would tell the fault."""
+"""The only words about a trip: its reason and its signal would reveal the fault."""
 
 RUNNING = ("opened", "start", "pause", "step", "step_period", "reset_trip", "finished", "blind")
 CHANGES, TRIED = ("time_scale", Set.kind, Switch.kind), (Inject.kind, Heal.kind)
@@ -49,7 +49,7 @@ class HidingBench(ShownBench, CapturedBench, Protocol):
     captures: Captures
 
     def done_otherwise(self) -> None:
-        """Note for the past that the board has become another in a way that no command says."""
+        """Note for the past that the board has changed without a command."""
 
 
 class Hiding:
@@ -85,7 +85,7 @@ class Hiding:
             self.hear(event)
 
     def clear(self) -> None:
-        """Heal the device, drop waiting commands and end recordings: all could tell the fault (a job of the engine)."""
+        """Heal the device, drop waiting commands and end recordings: all could reveal the fault (an engine job)."""
         bench = self._bench
         bench.running.fast_forward.end()
         bench.running.fast_forward.leads = False
@@ -165,7 +165,7 @@ class BlindView:
 
     @property
     def scenario_id(self) -> str:
-        """Of its scenario, for the names of files."""
+        """Id of its scenario, for the names of files."""
         return self._bench.scenario.id
 
     @property

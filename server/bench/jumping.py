@@ -120,7 +120,7 @@ class Jumping(Timeline):
             self.watch.jumped(self.board.tick)
 
     def done_otherwise(self) -> None:
-        """Note for the past that the board has become another in a way that no command says."""
+        """Note for the past that the board has changed without a command."""
         super().done_otherwise()
         self._remember()
 

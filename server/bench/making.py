@@ -53,7 +53,7 @@ def check(source: str | dict[str, Any], values: dict[str, Any], units: Document)
     values : dict
         Written over it.
     units : dict
-        Units of this server, which it has beside its own.
+        Units of this server, in addition to the document's own.
     """
     prepare(source, values, None, partial(beside, units), compiled=False)
 

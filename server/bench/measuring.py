@@ -16,13 +16,13 @@ from server.bench.narration import Narration
 from server.bench.portrait import ShownBench
 
 MOST_TICKS = 2_000_000
-"""Longest run that is measured beside its bench."""
+"""Longest run that is measured next to its bench."""
 AT_ONCE = 200_000
 """Ticks that are computed for one answer."""
 
 
 class MeasuredBench(ShownBench, Protocol):
-    """What measuring needs of a bench."""
+    """The part of a bench that measuring needs."""
 
     narration: Narration
 
@@ -70,7 +70,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Figures:
-    """Figures of the first ticks of a run; ``reason`` says why there are none."""
+    """Figures of the first ticks of a run; ``reason`` explains missing figures."""
 
     tick: int = 0
     metrics: dict[str, float] | None = None

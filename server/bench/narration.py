@@ -86,7 +86,7 @@ class Narration:
             self.say(said)
 
     def tell(self) -> None:
-        """Say at once what waits for no row, as that the board was stopped."""
+        """Write sentences at once that wait for no row, for example that the board was stopped."""
         if said := self._narrator.tell():
             self.say(said)
 
@@ -133,7 +133,7 @@ class Narration:
         Parameters
         ----------
         known : Mark
-            How far the caller is; after a jump it knows nothing.
+            The progress of the caller; after a jump it has nothing.
         """
         with self._lock:
             have = known.last if known.jumps == self.mark.jumps else 0

@@ -42,7 +42,7 @@ class Finger:
         self._waited_ns: dict[str, int] = {}
 
     def feel(self, threads: Sequence[threading.Thread], passed_s: float) -> Pulse:
-        """Return what threads have done in the time that has passed since the last call."""
+        """Return the activity of threads in the time since the last call."""
         before, states = self._ran, {}
         self._ran = {}
         for thread in threads:
@@ -79,7 +79,7 @@ def _state(folder: Path) -> str:
 
 
 def _others_work(numbers: Sequence[int]) -> bool:
-    """Whether one of these threads is inside a package that lets others work."""
+    """Whether one of these threads is inside a package that releases the interpreter's lock."""
     frames = sys._current_frames()
     for number in numbers:
         frame = frames.get(number)

@@ -94,7 +94,7 @@ class Recorder:
         return not self.reason
 
     def begin(self, past: Past, ticks: int | None) -> None:
-        """Take a span of the past; end the recording so many ticks behind it."""
+        """Take a span of the past; end the recording a number of ticks after it."""
         length = past.end - past.first
         if ticks is not None and length + ticks <= self._left:
             self._left, self._full = length + ticks, COMPLETE

@@ -1,4 +1,4 @@
-"""The resonance of a device, as a sweep shows it: what tells a fault that was hidden."""
+"""The resonance of a device, as a sweep shows it: the measurement that shows a fault that was hidden."""
 
 from __future__ import annotations
 

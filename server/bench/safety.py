@@ -108,7 +108,7 @@ class Safety:
         task.add_done_callback(self._tasks.discard)
 
     async def _keep(self, sessions: Sequence[Session], why: str) -> None:
-        """Record the last seconds of some benches; where a fault is hidden, a file would tell it."""
+        """Record the last seconds of some benches, except where a fault is hidden, because a file would reveal it."""
         kept = [one for one in sessions if one.hiding.view is None and one.history.end_tick > one.history.first_tick]
         for session in kept[:MOST_KEPT]:
             try:

@@ -69,7 +69,7 @@ class Session(Jumping):
     recorded_scale: float | None = None
     """Device seconds per wall second of the recording."""
     sought: object = None
-    """The moment of the past that was asked for last."""
+    """The moment of the past that was requested last."""
     travel: Travel | None = None
     """The moment of its past that is being computed, if one is."""
     opened: Opened | None = None
@@ -213,7 +213,7 @@ class Session(Jumping):
         return rows.count
 
     def _happened(self, event: Event) -> None:
-        """Count an event, tell of it, and write it into the recordings under way."""
+        """Count an event, report it, and write it into the active recordings."""
         if not self.hiding.hear(event):
             self._metrics.events.labels(event.kind).inc()
         self.narration.hear(event)
@@ -228,7 +228,7 @@ class Session(Jumping):
 
     @property
     def scenario_id(self) -> str:
-        """Of its scenario, for the names of files."""
+        """Id of its scenario, for the names of files."""
         return self.scenario.id
 
     @property

@@ -85,7 +85,7 @@ class Origin(BaseModel):
 
 
 class Travel(BaseModel):
-    """A moment of the past that is computed again now, because it was asked for."""
+    """A requested moment of the past that is computed again now."""
 
     tick: int
     share: float = Field(description="Of the ticks that it takes, those that are done")

@@ -21,7 +21,7 @@ class TickSource(Protocol):
     """A live bench needs this of its board or of its tape."""
 
     log: Log
-    """Where it notes what happens."""
+    """Log of its events."""
 
     @property
     def tick(self) -> int:

@@ -139,7 +139,7 @@ class Timeline:
             self.track.note(deed)
 
     def done_otherwise(self) -> None:
-        """Note for the past that the board has become another in a way that no command says."""
+        """Note for the past that the board has changed without a command."""
         if self.track is not None and isinstance(self.board, Board):
             self.track.mark(self.board, is_fixed=True)
 

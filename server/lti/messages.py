@@ -123,7 +123,7 @@ class _Message(MessageLaunch[_Parameters, Tool, _Memory, _Memory]):
         return self._request.get_param(key)
 
     def key_id(self) -> str:
-        """Return the id of the key that signed; the algorithm is ours to say, not the message's."""
+        """Return the id of the key that signed; this server sets the algorithm, not the message."""
         self.validate_jwt_format()
         header, body = self._jwt.get("header"), self._jwt.get("body")
         if not isinstance(header, dict) or not isinstance(body, dict):

@@ -17,7 +17,7 @@ STORED = "combbench.lti."
 
 
 def _page(title: str, body: str, status: int = 200, nonce: str = "", referrer: str = "same-origin") -> HTMLResponse:
-    """Build a page; without a referrer a browser would say that its forms come from nowhere."""
+    """Build a page; without a referrer a browser would give its forms no origin."""
     script = f"script-src 'nonce-{nonce}'; " if nonce else ""
     forms = "https: http:" if nonce else "'self'"
     policy = (

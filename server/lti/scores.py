@@ -62,7 +62,7 @@ class Scores:
     tool : Tool
         Signs for this server.
     audit : Audit
-        Where the teacher reads what did not work.
+        The log for the teacher about failed deliveries.
     brief_of : callable
         Returns the progress of a student.
     quiet_s, first_wait_s : float
@@ -86,7 +86,7 @@ class Scores:
         self._pool = ThreadPoolExecutor(THREADS, thread_name_prefix="combbench-scores")
 
     def aim(self, person: Person, launch: Launch, work: Work | None) -> None:
-        """Send the score of a sheet where a launch says from now on, and what there is of it at once."""
+        """Send the score of a sheet to the address of a launch from now on, and the present score at once."""
         if not launch.line_item or not launch.sheet:
             return
         key = (person.id, launch.sheet)

@@ -1,4 +1,4 @@
-"""The log of actions of users, with bench and time; it stays when the bench goes, and goes with the class."""
+"""The log of actions of users, with bench and time; it outlives the bench, and is deleted with the class."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class Audit:
                 log.exception("what people did could not be written; it is tried again")
 
     async def write(self) -> None:
-        """Write what came since the last time."""
+        """Write the entries since the last time."""
         rows = [self._waiting.popleft() for _ in range(len(self._waiting))]
         if not rows:
             return

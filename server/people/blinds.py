@@ -242,7 +242,7 @@ class Blinds:
 
 
 def _deleted(ids: list[str]) -> Callable[[DatabaseSession], object]:
-    """Return what deletes the rows of some answers."""
+    """Return the deletion of the rows of some answers."""
     return lambda session: session.execute(delete(BlindAnswerRow).where(BlindAnswerRow.id.in_(ids)))
 
 

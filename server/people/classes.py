@@ -75,9 +75,9 @@ class Classes:
     blinds : Blinds
         Their hidden faults and answers.
     votes : Votes
-        Their votes, which go with them.
+        Their votes, which are deleted with them.
     games : GameTable
-        Their attempts at games, which go with them too.
+        Their attempts at games, which are deleted with them too.
     most_students : int
         Students of all classes.
     shard : str
@@ -113,7 +113,7 @@ class Classes:
         actor: str = "teacher",
         also: Callable[[str], Sequence[Change]] = lambda _: (),
     ) -> Class:
-        """Open a class; students can join at once. What ``also`` returns for its id is kept with it.
+        """Open a class; students can join at once. The change that ``also`` returns for its id is stored with it.
 
         Raises
         ------
@@ -212,7 +212,7 @@ class Classes:
         return await self._changed(class_id, prolong)
 
     async def begin_all(self, class_id: str, wanted: dict[str, Any]) -> list[str]:
-        """Begin a scenario on the bench of every student, and for all who join later; return what went wrong, by name.
+        """Begin a scenario on the bench of every student, and for all who join later; return the errors, by name.
 
         Raises
         ------
@@ -249,7 +249,7 @@ class Classes:
         self._audit.add("teacher", "removed", f"sent {person.name} away", person.class_id)
 
     def _removal(self, person: Person) -> list[Change]:
-        """Forget a student; the session ends first, or the page would say that its bench is gone."""
+        """Forget a student; the session ends first, or the page would report that its bench is gone."""
         votes, games = self._votes.forgetting(person_id=person.id), self._games.forgetting(person_id=person.id)
         return [self._people.removal(person), votes, games]
 

@@ -9,8 +9,8 @@ from collections.abc import Container
 from server.store.links import LETTERS
 
 CLASS_LETTERS, CODE_LETTERS = 4, 8
-"""The first letters say which class it is; the others are the secret, some 7e11 of them. At a thousand tries a second
-all of them take twenty years, and a code lasts for hours."""
+"""The first letters identify the class; the others are the secret, some 7e11 of them. At a thousand tries a second all
+of them take twenty years, and a code lasts for hours."""
 
 
 def new_class_id(shard: str, taken: Container[str]) -> str:

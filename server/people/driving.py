@@ -1,7 +1,7 @@
 """Who drives each bench: by a lease, as soon as two who may drive it have it open.
 
 A lease belongs to a person, not to a page. It lasts as long as a page of the person answers the server, or a command of
-the person comes; after that the bench is free, and does what its scenario says of a bench without a driver.
+the person comes; after that the bench is free, and acts as its scenario defines for a bench without a driver.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Driving:
     Parameters
     ----------
     people : People
-        Knows who may drive what.
+        Knows the permitted drivers of each bench.
     pages : Pages
         The pages that people have open.
     note : callable

@@ -67,7 +67,7 @@ class Games:
     engine : Engine
         Whose thread changes a bench.
     processes : Processes
-        What judges.
+        Processes that judge.
     workers : int
         How many hand-ins are judged at once; 0 for none.
     turn : callable

@@ -46,7 +46,7 @@ class Joining:
         self._tries = Buckets(WRONG_PER_S, WRONG_AT_ONCE, clock=clock)
 
     def note_wrong(self, address: str) -> None:
-        """Note that what came from an address was wrong; refuse one from which too much of that comes."""
+        """Note that a code from an address was wrong; refuse an address with too many wrong codes."""
         if not self._tries.take(address):
             headers = {"Retry-After": "10"}
             raise ApiError(429, "rate_limited", "too many tries from here", hint="wait a minute", headers=headers)
@@ -59,7 +59,7 @@ class Joining:
         Raises
         ------
         ApiError
-            As `Classes.join`, for the code of another class, and for an address from which too many were wrong.
+            As `Classes.join`, for the code of another class, and for an address with too many wrong codes.
         """
         if class_id and split(code)[0] != class_id:
             raise ApiError(422, "invalid", "begins with the id of another class", "code")

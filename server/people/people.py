@@ -34,7 +34,7 @@ class People:
     database : Database
         Where they are kept.
     shard : str
-        With which the secrets of sessions begin, as links to watch are made of them.
+        Prefix of the secrets of sessions, because links to watch are made of them.
     """
 
     def __init__(self, database: Database, shard: str = "") -> None:
@@ -77,7 +77,8 @@ class People:
     ) -> tuple[Person, str]:
         """Add a person; return the person and the secret of the session, which is new unless given, and kept nowhere.
 
-        What ``also`` returns for the id of the person is kept with it. A session that the secret opened before ends.
+        The change that ``also`` returns for the id of the person is stored with it. A session that the secret opened
+        before ends.
         """
         secret = secret or self._new_secret()
         before = self._by_hash.get(hash_of(secret))

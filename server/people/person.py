@@ -22,7 +22,7 @@ class Person:
     name : str
         As the person gave it, or the kind of visitor.
     role : Role
-        What decides over most doors.
+        The role, which decides over most doors.
     class_id : str
         The class of a student.
     until : datetime, optional

@@ -26,7 +26,7 @@ class GivenView(BaseModel):
 
 
 class ConditionView(BaseModel):
-    """A condition of a step: the quantity, the range that the step asks for, and whether it holds.
+    """A condition of a step: the quantity, the required range, and whether it holds.
 
     A measured value is not shown: the student reads it from the instruments, and later steps grade it.
     """

@@ -24,7 +24,7 @@ from server.bench.tick_source import TickSource
 from server.bench.watch import KeptWatch
 
 COLUMNS = 160
-"""Of a small trace: minima and maxima of so many columns."""
+"""Columns of a small trace, each with minimum and maximum."""
 MOST_TICKS = 20_000
 """Most ticks of a small trace, the last ones of a long step: the server has them for each student, on disk too."""
 

@@ -52,7 +52,7 @@ class Works:
         return self._all.get((person_id, sheet_id))
 
     def all(self, person_id: str = "", class_id: str = "") -> list[Work]:
-        """List who works at what, latest first: of one person, or of a class."""
+        """List the works of students, latest first: of one person, or of a class."""
         found = [work for work in self._all.values() if person_id in ("", work.person_id)]
         return sorted((w for w in found if class_id in ("", w.class_id)), key=lambda w: w.begun, reverse=True)
 

@@ -52,7 +52,7 @@ class Sheets:
     shelf : Shelf
         The sheets there are.
     classes : Classes
-        Draws what varies with the student, and knows the benches of students.
+        Draws the varying numbers of a student, and knows the benches of students.
     people : People
         The students there are.
     benches : Benches
@@ -129,7 +129,7 @@ class Sheets:
         await self.shelf.database.keep(gone)
 
     def works(self, person_id: str = "", class_id: str = "") -> list[Work]:
-        """List who works at what, latest first: of one person, or of a class."""
+        """List the works of students, latest first: of one person, or of a class."""
         return self._works.all(person_id, class_id)
 
     def current(self, person: Person) -> tuple[Work, Sheet] | None:
@@ -174,8 +174,8 @@ class Sheets:
     async def hide(self, person: Person, sheet_id: str, step_id: str) -> None:
         """Hide the fault of the step that is open, on a new bench of the sheet; its answer closes the step.
 
-        All of it is drawn for the student and the step, anew after each answer: the student has had no hand on the
-        bench, and knows nothing of the fault.
+        All of it is drawn for the student and the step, anew after each answer: the student has not touched the bench,
+        and does not know the fault.
 
         Raises
         ------

@@ -117,8 +117,8 @@ class StudentBenches:
     ) -> Session:
         """Replace the bench of a student, with a hidden fault if ``hide`` chooses one.
 
-        The old bench closes, and then the pages of the student go to the new one. What ``also`` returns for the new
-        bench has changed before that, so that the pages find all they ask for.
+        The old bench closes, and then the pages of the student go to the new one. The change that ``also`` returns for
+        the new bench is made before that, so that the pages find all their data.
 
         Raises
         ------

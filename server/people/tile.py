@@ -17,7 +17,7 @@ from server.people.sheet_work import SheetBrief
 
 COLUMNS = 48
 SPAN_MS = 4.0
-"""Content of the small trace: the last so much of device time, minima and maxima of so many columns."""
+"""Content of the small trace: this span of device time, minima and maxima of each column."""
 SHOWN = ("plant.displacement", "plant.x")
 
 

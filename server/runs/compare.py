@@ -1,4 +1,4 @@
-"""Finished runs beside each other: their figures with differences from the first, and traces that all of them have."""
+"""A comparison of finished runs: their figures with differences from the first, and traces that all of them have."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class RunTraces(BaseModel):
 
 
 def compare_runs(runs: Sequence[Run], paths: Sequence[Path]) -> RunComparison:
-    """Compare the figures of runs, and say which signals all of them have.
+    """Compare the figures of runs, and list the signals that all of them have.
 
     Raises
     ------

@@ -60,7 +60,7 @@ class RunFilter(BaseModel):
     scenario: str = Field("", max_length=200, description="Only those of this scenario")
 
     def of(self, kind: Kind) -> Select[Any]:
-        """Return the rows that are asked for, newest first."""
+        """Return the requested rows, newest first."""
         row = RequestRow
         query = select(row).where(row.kind == kind).order_by(row.created.desc()).limit(MOST)
         for word in self.text.split():
@@ -109,7 +109,7 @@ class Requests:
     async def settle(self, row: RequestRow, has_room: bool) -> RequestRow | None:
         """Return the same request if it waits, is under way or done, named anew; otherwise put it there if it may.
 
-        A run is not the same if its trace lacks signals that are asked for now.
+        A run is not the same if its trace lacks requested signals.
 
         Raises
         ------
@@ -136,7 +136,7 @@ class Requests:
 
         try:
             return await self._database.run(work)
-        except IntegrityError:  # another process was asked for the same at the same moment
+        except IntegrityError:  # another process got the same request at the same moment
             return await self._database.run(work)
 
     async def all(self, kind: Kind, wanted: RunFilter) -> list[RequestRow]:

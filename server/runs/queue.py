@@ -4,7 +4,7 @@ A row has the request and its end, the table of results the finished work. Work 
 continues at the next start with the missing runs, and fails if that happens often.
 
 Everything under way is a campaign, and shares the worker processes batch by batch. Campaigns take their turn one after
-the other, single runs beside them, as many as there are processes: a run waits for the batches that a campaign has
+the other, with single runs in parallel, as many as there are processes: a run waits for the batches that a campaign has
 handed over, and for no more of it.
 """
 
@@ -66,7 +66,7 @@ class Requested(ABC, Generic[Shown]):
         """Return a request as a campaign."""
 
     async def ended(self, row: RequestRow, done: int) -> None:
-        """Complete the files of an ended request, so many of its runs done."""
+        """Complete the files of an ended request with a number of finished runs."""
 
     @abstractmethod
     def shown(self, row: RequestRow) -> Shown:
@@ -239,7 +239,7 @@ class Queue:
                 await kind.ended(row, campaign.done)
 
     def _first_result(self, row_id: str) -> Callable[[int, int], None]:
-        """Return what notes, in the thread of a campaign, that it gets on: then further starts are no sign of harm."""
+        """Return a callback for the first result, in the thread of a campaign: further starts are then harmless."""
         at_start: list[int] = []
 
         def told(done: int, _total: int) -> None:

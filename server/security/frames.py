@@ -46,7 +46,7 @@ class Frames:
     tickets: Once[Ticket] = field(default_factory=lambda: Once[Ticket](TICKET_S))
 
     def holder(self, ticket: str, path: str) -> Person | None:
-        """Return whom a ticket lets pass, once."""
+        """Return the holder of a ticket, once."""
         found = self.tickets.take(ticket)
         return found.person if found is not None and found.path == path else None
 

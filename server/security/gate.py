@@ -31,7 +31,7 @@ from server.security.visitor import ELSEWHERE, STYLE, visitor_page
 
 CLOSE_ORIGIN, CLOSE_AUTH, CLOSE_ROLE, CLOSE_FULL = 4003, 4401, 4403, 1013
 REQUESTS_PER_S, REQUESTS_AT_ONCE = 40.0, 400
-"""Requests of one student or link to watch; a page asks for some fifty when it opens, a link may be a whole room's."""
+"""Requests of one student or link to watch; a page sends some fifty when it opens, a link may serve a whole room."""
 BYTES_OF_REQUEST = 20_000
 """So many bytes of a body count as one more request: reading them takes the server's loop as long."""
 LARGE = 1 << 20
@@ -182,7 +182,7 @@ class Gate:
     async def _pass(
         self, scope: Scope, receive: Receive, send: Send, person: Person | None, need: Need, bench_id: str
     ) -> None:
-        """Pass a request on, unless a student asks for too much at once; a socket lasts no longer than the right."""
+        """Pass a request on, unless a student sends too many at once; a socket lasts no longer than the right."""
         if person is None or person.is_teacher:
             await self._app(scope, receive, send)
         elif scope["type"] == "websocket":

@@ -69,13 +69,13 @@ def visitor_page(
     Parameters
     ----------
     query : iterable of (str, str)
-        The query of the address that was asked for.
+        The query of the requested address.
     may_use_token : bool
         Whether the token is accepted from the visitor's address; if not, the page does not ask for it.
     join : str
         Path of the page by which students join.
     refusal : str
-        Why the address opens nothing without the token, beside that.
+        A further reason why the address opens nothing without the token.
     """
     fields = list(query)
     has_sent_token = any(name == "token" and value for name, value in fields)

@@ -72,7 +72,7 @@ class Database:
         Parameters
         ----------
         shard : str
-            Letter of the process, which others with other letters use the database beside; empty: it is alone.
+            Letter of the process, when others with other letters use the same database; empty: it is alone.
 
         Raises
         ------
@@ -148,7 +148,7 @@ class Database:
             await asyncio.to_thread(remove)
 
     def run_later(self, work: Callable[[Session], object]) -> None:
-        """Run ``work`` on the database thread behind what waits there; what goes wrong is logged."""
+        """Run ``work`` on the database thread after the waiting work; errors are logged."""
         self._thread.submit(self._try, work)
 
     def _try(self, work: Callable[[Session], object]) -> None:

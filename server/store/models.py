@@ -1,4 +1,4 @@
-"""Tables: headless runs and campaigns, their results, recordings, links. Bulk data is in files; a row says which."""
+"""Tables: headless runs and campaigns, their results, recordings, links. Bulk data is in files; a row has the name."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class RequestRow(Base):
 
 
 def of_process(shard: str) -> ColumnElement[bool]:
-    """Return the condition that a process carries a request out; one without a letter is alone and has all."""
+    """Return the condition that a process carries a request out; a process without a letter is alone and has all."""
     return RequestRow.shard == shard if shard else true()
 
 

@@ -23,7 +23,7 @@ class ClassRow(Base):
     until : datetime
         When the class ends and its students are forgotten.
     scenario : dict
-        What their benches begin with, as ``POST /benches`` takes it.
+        The start of their benches, as ``POST /benches`` takes it.
     secret : str
         From it the server draws device, noise and fault of each student; it stays on the server.
     shown : str
@@ -92,7 +92,7 @@ class AuditRow(Base):
 
 
 class BlindAnswerRow(Base):
-    """A fault hidden from a person, and the answer; it goes with the class."""
+    """A fault hidden from a person, and the answer; it is deleted with the class."""
 
     __tablename__ = "blind_answers"
 
@@ -104,7 +104,7 @@ class BlindAnswerRow(Base):
 
 
 class GameAttemptRow(Base):
-    """An answer at a game, or the note that its hidden values were shown; it goes with the student or the class.
+    """An answer at a game, or the note that its hidden values were shown; it is deleted with the student or the class.
 
     Attributes
     ----------
@@ -140,7 +140,7 @@ class SheetRow(Base):
 
 
 class SheetProgressRow(Base):
-    """The progress of a person with a sheet; the progress of a student goes with the class."""
+    """The progress of a person with a sheet; the progress of a student is deleted with the class."""
 
     __tablename__ = "sheet_progress"
 
@@ -174,7 +174,7 @@ class VoteRow(Base):
 
 
 class BallotRow(Base):
-    """The answer of a student; it goes with the student, the vote or the class."""
+    """The answer of a student; it is deleted with the student, the vote or the class."""
 
     __tablename__ = "ballots"
 

@@ -128,7 +128,7 @@ def first_tick(path: Path) -> int:
 
 
 def events_of(path: Path) -> list[dict[str, Any]]:
-    """Return the events beside a recording; a line that was cut off is left out."""
+    """Return the events in the file next to a recording; a line that was cut off is left out."""
     try:
         lines = path.with_suffix(EVENTS).read_text("utf-8", errors="replace").splitlines(keepends=True)
     except OSError:
@@ -137,7 +137,7 @@ def events_of(path: Path) -> list[dict[str, Any]]:
 
 
 def convert(path: Path) -> int:
-    """Rewrite the stream beside ``path`` as Parquet; return the number of ticks."""
+    """Rewrite the stream file of ``path`` as Parquet; return the number of ticks."""
     source, part = path.with_suffix(PART), path.with_name(path.name + ".part")
     ticks = 0
     with source.open("rb") as file:

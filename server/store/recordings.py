@@ -79,7 +79,7 @@ class About:
 
 
 def _damaged(recording_id: str) -> Update:
-    """Return what says of a recording that nothing of it can be read."""
+    """Return the change that marks a recording as unreadable."""
     table = RecordingRow
     return update(table).where(table.id == recording_id).values(state="failed", ticks=0, reason=f"its file {DAMAGED}")
 
@@ -156,7 +156,7 @@ class Recordings:
         return close
 
     def _close(self, recording_id: str, values: dict[str, Any]) -> None:
-        """Close a row; the events move into it from the file beside the trace."""
+        """Close a row; the events move into it from the file of the events."""
         path = self.path(recording_id)
         if events := events_of(path):  # without the file they are in the row already, or there were none
             values = {"events": events, **values}

@@ -31,7 +31,7 @@ class Behind:
 
     @property
     def state(self) -> tuple[int, int]:
-        """What its picture depends on: the history, and where that ends."""
+        """Dependencies of its picture: the history, and its end."""
         seen = self._look()
         return (id(seen.history), seen.history.end_tick) if seen is not None else (0, 0)
 

@@ -174,7 +174,7 @@ class Client:
         return due
 
     def _events(self) -> list[bytes]:
-        """Return some of the events behind the cursor; if the log has forgotten some, say how many."""
+        """Return some of the events after the cursor; if the log has forgotten some, give their number."""
         messages, self._cursor = self._news.events(self._cursor)
         self._wants_events = bool(messages)
         return messages

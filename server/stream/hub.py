@@ -36,7 +36,7 @@ class Hub:
     metrics : Metrics
         Where streams are counted.
     lateness : callable
-        Returns the fields of a status that say how late the service is.
+        Returns the fields of a status for the lag of the service.
     clock : callable
         Seconds, by which a stream counts as stalled; pictures keep to the time of the event loop.
     """

@@ -135,7 +135,7 @@ class Layout:
             boxes.append(Box((middle, 0, self.z), (self.plate_um - NOTCH_UM, g.plate_width_um, t)))
             arm = side * (self.plate_um + g.arm_width_um / 2)
             boxes.append(Box((arm, 0, self.z), (g.arm_width_um, g.arm_length_um, t)))
-            # Strips beside the grating, and lugs out to the outer beams.
+            # Strips next to the grating, and lugs out to the outer beams.
             boxes.append(Box((0, side * (WAIST_UM + 6) / 2, self.z), (2 * NOTCH_UM, WAIST_UM - 6, t)))
         boxes += [Box((x, 0, self.z), (2, 12, t)) for x in np.arange(-30.0, 31.0, 4.0)]
         return merge(boxes)

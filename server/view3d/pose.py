@@ -149,7 +149,7 @@ class Observer:
         if head <= history.first_tick:
             return Pose()
         period = session.drive_period_ticks
-        # A bench that runs as fast as possible is strobed like one in real time.
+        # A bench that runs as fast as possible is strobed like a bench in real time.
         rate = (session.status.achieved_scale if session.is_running else 0.0) / (session.dt_ms * 1e-3)
         at = moment(head, period, rate if looked is None else 0.0, time.monotonic())
         tick = max(at.tick, history.first_tick)

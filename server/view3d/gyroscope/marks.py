@@ -1,4 +1,4 @@
-"""The mark of each fault of a gyroscope on the part it acts on; one without a mark is a label at the part it names."""
+"""The mark of each fault of a gyroscope on its part; a fault without a mark is a label at its part."""
 
 from __future__ import annotations
 

@@ -127,7 +127,7 @@ class GyroscopeObserver:
 
 
 def _follows(spec: Spec) -> bool:
-    """Say whether what drives makes a device follow its partner."""
+    """Return whether a driving controller makes a device follow its partner."""
     driving = (spec.controllers[name].params for name in spec.driving.values())
     return any(isinstance(params, SenseAxisSync.Params) and params.follow == "partner" for params in driving)
 

@@ -78,7 +78,7 @@ def rigid(mesh: Mesh, follow: FloatArray) -> Flexure:
 
 
 def join(parts: list[Flexure]) -> Flexure:
-    """Join what bends into one surface."""
+    """Join bending parts into one surface."""
     first = np.cumsum([0, *(len(part.rest) for part in parts[:-1])])
     return Flexure(
         np.vstack([part.rest for part in parts]),
