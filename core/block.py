@@ -93,7 +93,7 @@ class Oscillator:
 
     @property
     def natural_frequency(self) -> float:
-        """Undamped natural frequency, rad/ms; what counts as 1 in time of a transfer function."""
+        """Undamped natural frequency, rad/ms; the unit 1 in the time of a transfer function."""
         if self.time_unit_ms > 0.0:
             return 1.0 / self.time_unit_ms
         return float(math.sqrt(self.stiffness / self.mass))
@@ -148,7 +148,7 @@ class Context:
     tone_hz : float
         Frequency of the reference, 0 if it has none.
     sensors : mapping of str to BlockParams
-        Parameters of every sensor: what calibrating it would tell.
+        Parameters of every sensor, as a calibration would give them.
     """
 
     dt_ms: float
@@ -241,7 +241,7 @@ class Block:
 
     @classmethod
     def fits(cls, axes: tuple[str, ...]) -> bool:
-        """Say whether the block goes with a plant that moves along these axes."""
+        """Return whether the block fits a plant that moves along these axes."""
         if cls.per_axis:
             return bool(axes)
         if cls.axes is None:
@@ -275,7 +275,7 @@ class Block:
         Raises
         ------
         TypeError
-            When neither ``pack`` nor a parameter says one of them.
+            When neither ``pack`` nor a parameter sets one of them.
         """
         record = cls.pack(params, context)
         for name in record.blanks():

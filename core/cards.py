@@ -59,7 +59,7 @@ class StageCard(BaseModel):
 
 
 class BlockCard(BaseModel):
-    """All that the catalogue says of a block."""
+    """The catalogue entry of a block."""
 
     family: str
     name: str

@@ -38,7 +38,7 @@ UNITS = (
 
 
 MOST_LISTED = 40
-"""Names that an error lists; of more it says how many there are."""
+"""Names that an error lists; of more it gives the number."""
 ALTERNATIVE = re.compile(r"(?:list|dict|literal)\[.*\]")
 """Part of a pydantic location that names one of the types a value may have."""
 

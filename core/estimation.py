@@ -192,7 +192,7 @@ def estimate(
 
 @kernel
 def project_onto(theta: Vector, covariance: Vector, n: int, which: int, low: float, high: float) -> None:
-    r"""Bring one parameter back into its bounds, and move the others with it as their covariance says.
+    r"""Bring one parameter back into its bounds, and move the others with it by their covariance.
 
     .. math:: \theta\leftarrow\theta+\frac{Pe_i}{P_{ii}}(\text{bound}-\theta_i)
 

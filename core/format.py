@@ -63,7 +63,7 @@ def unit_scale(unit: str, magnitude: float, digits: int = 4) -> UnitScale:
 
 
 def plain_scale(unit: str, values: Sequence[float]) -> tuple[float, str]:
-    """Return a factor and the unit in which figures beside each other read without a power of ten.
+    """Return a factor and the unit in which figures next to each other read without a power of ten.
 
     It is their own unit where it does, else the same with a prefix.
     """
@@ -112,7 +112,7 @@ def format_in(value: float, unit: str, decimals: int) -> str:
 
 
 def format_percent(share: float, decimals: int = 1) -> str:
-    """Write a share as a percentage; one close to 0 or 100 % keeps the digits that tell it from them."""
+    """Write a share as a percentage; a share close to 0 or 100 % keeps its distinctive digits."""
     return _part(share * 100.0, 100.0, "%", decimals)
 
 
@@ -174,7 +174,7 @@ def tick_labels(ticks: Sequence[float]) -> list[str]:
 
 
 def labels_on(scale: UnitScale, ticks: Sequence[float]) -> list[str]:
-    """Label the ticks of an axis whose title says the unit of its scale."""
+    """Label the ticks of an axis whose title has the unit of its scale."""
     shown = [round_to(tick * scale.factor, 12) for tick in ticks]
     decimals = max((_decimals_of(tick, 9) for tick in shown), default=0)
     return [format_number(tick, decimals) + (scale.exponent if tick else "") for tick in shown]
@@ -257,7 +257,7 @@ def _decimals_for(shown: float, digits: int) -> int:
 
 
 def _decimals_of(value: float, most: int) -> int:
-    """Return the fewest decimals that show a value as so many do."""
+    """Return the fewest decimals that show a value as exactly as ``most`` decimals."""
     return len(_fixed(value, most).partition(".")[2].rstrip("0"))
 
 
@@ -276,7 +276,7 @@ def _rounding(digits: int) -> Context:
 
 @cache
 def _last(decimals: int) -> Decimal:
-    """Return one in the last of so many decimals."""
+    """Return 1 in the last place of a number of decimals."""
     return Decimal(1).scaleb(-decimals)
 
 

@@ -64,7 +64,7 @@ def riccati(phi: FloatArray, seen: FloatArray, noise: FloatArray, measured: Floa
     Parameters
     ----------
     phi, noise : ndarray, shape (n, n)
-        Transition between two measurements, and the covariance Q of what noise adds.
+        Transition between two measurements, and the covariance Q that noise adds.
     seen : ndarray, shape (m, n)
         H.
     measured : ndarray, shape (m, m)
@@ -105,7 +105,7 @@ def _product(a: FloatArray, b: FloatArray) -> FloatArray:
 
 @kernel
 def _eliminate(a: FloatArray, x: FloatArray) -> bool:
-    """Solve in place; say whether the matrix was regular."""
+    """Solve in place; return whether the matrix was regular."""
     n, m = x.shape
     for k in range(n):
         pivot = k
@@ -181,7 +181,7 @@ def _transposed(a: FloatArray) -> FloatArray:
 
 @kernel
 def _riccati(a: FloatArray, g: FloatArray, p: FloatArray) -> bool:
-    """Double in place until nothing is added; say whether there was an end."""
+    """Double in place until the change is negligible; return whether there was an end."""
     n = a.shape[0]
     for _ in range(MOST_DOUBLINGS):
         matrix = _product(g, p)

@@ -32,7 +32,7 @@ def read_toml(text: str, field: str, what: str = "TOML") -> dict[str, Any]:
     Raises
     ------
     InputError
-        Naming the line of malformed TOML, with the code ``malformed``; or saying how deep it may be nested.
+        Naming the line of malformed TOML, with the code ``malformed``; or the limit of nesting.
     """
     if not _LONG_KEY.search(text):
         try:

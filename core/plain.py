@@ -28,7 +28,7 @@ def rebound(value: Any, swap: Swap, builtins: dict[str, Any] | None = None) -> A
     value
         A function, compiled or not, or anything a function may name.
     swap : callable
-        Gets every value that is named, and returns the one to use in its place, or the value itself.
+        Gets every named value, and returns its replacement, or the value itself.
     builtins : dict, optional
         Names that hide the names of Python itself.
     """

@@ -36,8 +36,7 @@ class Port:
     unit, meaning : str
         Shown to people.
     source : str
-        For inputs: the signal it is wired to unless the wiring says otherwise. A signal that ends in ``?`` may be
-        missing and reads 0 then.
+        For inputs: the signal it is wired to by default. A signal that ends in ``?`` may be missing and reads 0 then.
     labels : tuple of str
         For vectors: one name per component.
     each : str

@@ -1,7 +1,7 @@
 """Named numbers in a flat array of float64: the ``p`` and the ``s`` of a step.
 
-The class says which numbers there are; an instance is a view of an array. Compiled steps see the same names at the same
-places (``core.views``).
+The class declares the numbers; an instance is a view of an array. Compiled steps see the same names at the same places
+(``core.views``).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ Vector = NDArray[np.float64]
 """Several numbers under one name, ``s.x1[i]``."""
 
 Choice = Annotated[float, "choice"]
-"""A number that says how a step runs, such as a count, an interval or a form.
+"""A number that controls how a step runs, such as a count, an interval or a form.
 
 Boards side by side share it, so that a branch on it is a branch for all of them and a loop has one length.
 """
@@ -109,12 +109,12 @@ class _Many:
 
 
 def vector(count: int) -> Any:
-    """Declare a vector of so many numbers."""
+    """Declare a vector of ``count`` numbers."""
     return _Many(count)
 
 
 def several(count: int) -> Any:
-    """Declare so many records of one kind."""
+    """Declare ``count`` records of one kind."""
     return _Many(count)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Equation:
-    """An equation shown beside the block, with the erratum if the printed one is wrong."""
+    """An equation shown with the block, with the erratum if the printed equation is wrong."""
 
     label: str
     latex: str

@@ -216,7 +216,7 @@ def _take(kind: Any, record: Any, c: Any) -> Any:
 
 
 def record_at(layout: Layout) -> Any:
-    """Return what makes a view of a record from a pointer, for compiled code."""
+    """Return the constructor of a view of a record from a pointer, for compiled code."""
     kind = RecordType(layout)
 
     def view(typing: Any, base: Any) -> Any:
@@ -229,7 +229,7 @@ def record_at(layout: Layout) -> Any:
 
 
 def ports_at(ports: tuple[tuple[str, bool | Layout], ...]) -> Any:
-    """Return what makes a view of ports from the signals and their places, for compiled code.
+    """Return the constructor of a view of ports from the signals and their places, for compiled code.
 
     Of every port its name, and whether it is a vector or its record class.
     """

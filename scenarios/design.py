@@ -111,8 +111,8 @@ def bode_band(spec: Spec, frequency_hz: FloatArray, seed: int) -> Band:
 def process(spec: Spec, draws: int, seed: int) -> Spread:
     """Draw devices from the process: mass, damping, stiffness and force per volt in their environment.
 
-    A value that the device states beside its drawing varies by the same share as the value from the drawing. Stators
-    that pull alike leave no force to vary.
+    A value that the device states in addition to its drawing varies by the same share as the value from the drawing.
+    Stators that pull alike leave no force to vary.
 
     Raises
     ------

@@ -36,7 +36,7 @@ NICE = 10
 LINE_EVERY = 10
 """Kernels from one line of progress to the next, where there is no terminal to write over the last one."""
 LOOP = ("", "loop")
-"""The task that compiles the kernels every bench needs beside its blocks."""
+"""The task that compiles the kernels every bench needs besides its blocks."""
 
 Task = tuple[str, str]
 

@@ -55,7 +55,7 @@ def knobs(scenario: Scenario, entry: Expectation) -> list[Knob]:
 
 
 def _parts(scenario: Scenario, metric: str) -> Iterator[str]:
-    """Yield the paths of what works in the parts that a metric is about."""
+    """Yield the paths of the active blocks in the parts of a metric."""
     family, _, rest = metric.removeprefix("twins.").partition(".")
     groups = {"diagnosis": "diagnosers", "identify": "identifiers"}
     head = f"{groups[family]}.{rest.partition('.')[0]}" if family in groups else "controller"

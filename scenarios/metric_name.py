@@ -19,7 +19,7 @@ NAMES: dict[str, Any] = json.loads((Path(__file__).parent / "metric_names.json")
 
 
 class MetricScale(NamedTuple):
-    """How figures of one metric are shown beside each other: its words, the unit, the factor to it."""
+    """Display of figures of one metric next to each other: words, unit, factor to the unit."""
 
     name: str
     unit: str

@@ -176,7 +176,7 @@ def run(
     taps : bool
         Keep the inner signals as well.
     figures_only : bool
-        Keep only the outputs that figures are made of.
+        Keep only the outputs that figures need.
     everything : bool
         Run and keep the blocks in shadow as well, as a live bench does; no figure and no digest depends on it.
     compiled : bool
@@ -193,12 +193,12 @@ def run(
         `core.board.outside.Observation`, they answer with the probability of each hypothesis, or with mass, stiffness
         and damping over nominal.
     narrate : bool
-        Let the narrator say what happens.
+        Run the narrator.
 
     Raises
     ------
     OSError
-        When samples have no room in the folder of temporary files, or for what ``trace`` raises.
+        When samples have no room in the folder of temporary files, or an error of ``trace``.
     """
     if law or diagnosers or identifiers:
         board: Board = build_hosted(

@@ -36,7 +36,7 @@ def temporary_folder() -> str:
 
 
 class Samples:
-    """Columns that grow together, in a context in which they are added and asked for.
+    """Columns that grow together, in a context in which they are added and read.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class Samples:
         self._pending, self._count = at + len(rows), self._count + len(rows)
 
     def _write(self) -> None:
-        """Write what waits to its place behind the rest of each column."""
+        """Write the waiting samples to their place after the rest of each column."""
         assert self._file is not None
         for number, column in enumerate(self._array[:, : self._pending]):
             self._file.seek(8 * (number * self._shape[1] + self._count - self._pending))

@@ -180,7 +180,7 @@ class Scenario:
 
     @property
     def warnings(self) -> list[str]:
-        """What of its claims is not read, or cannot be judged."""
+        """Warnings about claims that are not read, or cannot be judged."""
         rows = self.head.expect
         said = [UNREAD] if self.head.verdict is not None or any(entry.verdict is not None for entry in rows) else []
         return said + [

@@ -59,7 +59,7 @@ def evidence_signals(board: Board) -> list[str]:
 
 
 def figure_signals(board: Board) -> list[str]:
-    """Return the signals that the figures of a board are made of."""
+    """Return the signals that the figures of a board need."""
     moved = rate.traced(board) if board.spec.axes else TRACED_FIGURES
     names = [*moved, *(f"{name}.{port}" for name in board.spec.diagnosers for port in TRACED_VERDICTS)]
     names += [f"{name}.error_pct" for name in board.spec.identifiers]

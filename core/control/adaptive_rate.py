@@ -1,4 +1,4 @@
-"""Adaptive control with an estimate of the rate: both axes follow sines, and what that takes tells all parameters."""
+"""Adaptive control with an estimate of the rate: both axes follow sines; their forces show all parameters."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from core.control.two_axis_estimates import EstimatePorts, Estimates, PackedLaw
 from core.units import hz_of_rad_ms
 
 USUAL_SHARE = 0.2213
-"""Frequency of the motion asked for along x over the frequency of the axis, unless given: well below the resonances."""
+"""Frequency of the desired motion along x over the frequency of the axis, unless given: well below the resonances."""
 USUAL_RATIO = 1.2247
 """Frequency along y over the frequency along x, unless given: the ratio of the axes of set A. Equal axes would hardly
 beat."""
@@ -88,7 +88,7 @@ class AdaptiveRate(Block):
     )
 
     class Params(BlockParams):
-        """The motion asked for and the gains; times in ms."""
+        """The desired motion and the gains; times in ms."""
 
         amplitude_x_um: float | None = parameter(
             None, "amplitude along x; 1 um, or what 400 uN bend the spring by, unless given", "um", gt=0, le=100
@@ -123,7 +123,7 @@ class AdaptiveRate(Block):
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
-        """Pack the motion asked for and the gains."""
+        """Pack the desired motion and the gains."""
         p = cls.Packed.blank()
         device = two_axis(context)
         natural = device.natural_frequency
@@ -146,7 +146,7 @@ class AdaptiveRate(Block):
 
     @staticmethod
     def step(p: Packed, s: State, x: AdaptiveRate.Ports) -> None:
-        """Follow the motion asked for, and adapt while it drives: another motion says nothing of it."""
+        """Follow the desired motion, and adapt while it drives: another motion carries no information about it."""
         q1, q2, v1, v2 = asked(p.asked, x.time_ms)
         x.error_x = x.x_measured - q1
         x.error_y = x.y_measured - q2 / p.stretch

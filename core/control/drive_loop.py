@@ -13,7 +13,7 @@ from core.ports import tap
 from core.record import Record
 
 LEAST = 1e-3
-"""Share of the amplitude asked for below which there is no phase to lock to."""
+"""Share of the desired amplitude below which there is no phase to lock to."""
 
 
 class DriveLoop(Block):

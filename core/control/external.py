@@ -23,12 +23,12 @@ class External(Block):
         """Its law is outside."""
 
     class State(Record):
-        """The voltage that was asked for, V."""
+        """The requested voltage, V."""
 
         asked: float
 
     class Ports(ReferencePorts, EngagedPorts):
-        """All that a controller may read, and the voltage it asks for."""
+        """All inputs of a controller, and the voltage it requests."""
 
         applied: float = reads("drive.voltage", "V", "voltage applied over the sample that ends now")
 

@@ -16,7 +16,7 @@ from core.units import hz_of_rad_ms
 class ForcedDrive(Block):
     r"""A sine force, :math:`F_x=F\sin(2\pi ft+\varphi)`; held by a converter, or analogue.
 
-    The carrier is what x would do at its resonance: its velocity is in step with the force.
+    The carrier is the motion of x at its resonance: its velocity is in step with the force.
     """
 
     title = "Forced drive"

@@ -116,8 +116,8 @@ class SelfSliding(Block):
     class State(Record):
         """Gains and alpha, the last regressor and the filtered one, the last voltage of this law, the velocity source.
 
-        With an augmented error the filtered voltage is the one applied; without it, the law's own voltage less the
-        applied one.
+        With an augmented error the filtered voltage is the applied voltage; without it, the law's own voltage less the
+        applied voltage.
         """
 
         theta: Vector = vector(4)
@@ -195,8 +195,7 @@ class SelfSliding(Block):
             surface = flush_tiny(e + s.alpha * eta)
             s.alpha -= p.h * p.alpha_gain * surface * eta / size
         else:
-            # The error is the one under this law's own voltage; while the law drives, there is no difference to take
-            # out.
+            # The error belongs to this law's own voltage; while the law drives, there is no difference to take out.
             advance_motion(p.copy, s.filtered_voltage, s.voltage - u)
             add_moves(p.copy, s.filtered_voltage, -middle, -end)
             missing = p.orientation * p.ratio

@@ -20,7 +20,7 @@ class SenseAxisSync(Block):
     .. math:: F_y=-c_d\dot e-\hat\theta_1x-\hat\theta_2\dot x/\omega,\quad
         \dot{\hat\theta}_1=g\,\dot e\,x,\quad\dot{\hat\theta}_2=g\,\dot e\,\dot x/\omega
 
-    What differs between the two goes with x and its velocity, so both forces are learned. With
+    The differences between the two are proportional to x and its velocity, so both forces are learned. With
     :math:`V=\tfrac12m\dot e^2+\tfrac12ke^2+\tfrac1{2g}|\tilde\theta|^2`, :math:`\dot V=-(d+c_d)\dot e^2`. The gain is
     :math:`g=4m\sigma\lambda\,(1+\Delta^2/\sigma^2)/A^2` with :math:`c_d=2m\sigma` and the split :math:`\Delta` of the
     modes, so that the error dies away with the rate :math:`\lambda`.
@@ -88,7 +88,7 @@ class SenseAxisSync(Block):
     )
 
     class Params(BlockParams):
-        """What y follows, and how fast."""
+        """The target of y, and the speed of the adaptation."""
 
         follow: Literal["partner", "rest"] = parameter("partner", "y of the partner, or no swing at all")
         rate_per_ms: float = parameter(0.25, "rate with which the forces are learned", "1/ms", gt=0, le=10)

@@ -44,7 +44,7 @@ def fill_law(
     velocity_gain: float,
     stiffness_gain: float,
 ) -> None:
-    """Pack the motion asked for, with amplitudes in um and frequencies in Hz, gains in a unit of time, and forces."""
+    """Pack the desired motion, with amplitudes in um and frequencies in Hz, gains in a unit of time, and forces."""
     device = two_axis(context)
     p.mass_x, p.mass_y, p.mean_mass = device.mass, device.mass_y, math.sqrt(device.mass * device.mass_y)
     p.stretch, p.angular_gain = p.mean_mass / device.mass, device.coriolis_mass / p.mean_mass
@@ -70,7 +70,7 @@ def larger(half: float) -> float:
 
 @inlined
 def asked(p: Asked, t: float) -> tuple[float, float, float, float]:
-    """Return displacements asked for at a time in ms, and velocities per unit of time."""
+    """Return desired displacements at a time in ms, and velocities per unit of time."""
     x = p.cycles_x * t
     y = p.cycles_y * t
     return (
@@ -83,7 +83,7 @@ def asked(p: Asked, t: float) -> tuple[float, float, float, float]:
 
 @inlined
 def held(p: Asked, t: float) -> tuple[float, float, float, float]:
-    """Return the motion asked for as a held force needs it: half a sample later, and larger."""
+    """Return the desired motion as a held force needs it: half a sample later, and larger."""
     q1, q2, v1, v2 = asked(p, t + p.ahead_ms)
     return p.larger_x * q1, p.larger_y * q2, p.larger_x * v1, p.larger_y * v2
 
@@ -92,7 +92,7 @@ def held(p: Asked, t: float) -> tuple[float, float, float, float]:
 def velocity_errors(
     p: PackedLaw, s: Estimates, x: EstimatePorts, q1: float, q2: float, v1: float, v2: float
 ) -> tuple[float, float]:
-    """Return the errors of both velocities against those asked for, without the ripple of the held force."""
+    """Return the errors of both velocities against the desired velocities, without the ripple of the held force."""
     a = p.asked
     square_x, square_y = a.omega_x * a.omega_x, a.omega_y * a.omega_y
     along, across = push(s, v1, v2, -square_x * q1, -square_y * q2)

@@ -28,11 +28,11 @@ class WholeAngle(Block):
         \hat\Omega=-\dot\psi/\kappa_m
 
     Nominal stiffness and damping are tuned away, so that both axes are alike. Energy control holds the amplitude, and
-    the force along :math:`Sq` keeps the orbit a line, of area 0. What stiffness is left, as after a fault, opens the
-    orbit; the mode tuning learns it, :math:`\dot{\hat b}=-\rho P(x^2-y^2),\;\dot{\hat a}=2\rho Pxy` with
+    the force along :math:`Sq` keeps the orbit a line, of area 0. A remaining stiffness difference, as after a fault,
+    opens the orbit; the mode tuning learns it, :math:`\dot{\hat b}=-\rho P(x^2-y^2),\;\dot{\hat a}=2\rho Pxy` with
     :math:`\hat R=\begin{bmatrix}a&b\\b&-a\end{bmatrix}`. Unequal damping that is left makes the line drift. All forces
-    are taken half a sample later, by which a held one is late, and made up for what holding takes off them. With two
-    masses the line is straight, and turns evenly, in :math:`q=(x,y\sqrt{m_y/m_x})`; the angular gain is
+    are computed for half a sample later, because a held force is late by this time, and raised by the loss of holding.
+    With two masses the line is straight, and turns evenly, in :math:`q=(x,y\sqrt{m_y/m_x})`; the angular gain is
     :math:`\kappa_m=m_c/\sqrt{m_xm_y}`, 1 for one mass.
     """
 
@@ -75,7 +75,7 @@ class WholeAngle(Block):
         bandwidth_hz: float = parameter(20.0, "bandwidth of the low-pass behind the rate", "Hz", gt=0, le=1e5)
 
     class Packed(Record):
-        """Device per mass, target, gains, half a sample, masses, what y is stretched by, low-pass, angular gain."""
+        """Device per mass, target, gains, half a sample, masses, stretch of y, low-pass, angular gain."""
 
         kxx: float
         kxy: float

@@ -47,7 +47,7 @@ class DrawnGyroscope(BlockParams):
     Gas: 1.3.7 along each axis, scaled to the pressure of the package like the gas of a resonator, structural loss
     included. The package is sealed: pressure and temperature around it do not change the damping.
 
-    A drawing says nothing of how far it is missed: the angles are parameters, and so is the pressure.
+    A drawing does not contain the fabrication errors: the angles are parameters, and so is the pressure.
     """
 
     sense_beam_length_um: LengthUm = parameter(340.0, "length of the beams that bend along y", "um", live=False)

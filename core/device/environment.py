@@ -1,8 +1,8 @@
 r"""Effects of air, temperature, humidity and age on a resonator.
 
-Numbers marked *recalled* are standard literature values quoted from memory, not from the dissertation, which gives
-no law for them: it says that "operating conditions" change damping (3.1.3.1), that humidity increases stiction
-(1.4.4, 1.5) and that four weeks took 42.8 % of the displacement (3.1.3.2).
+Numbers marked *recalled* are standard literature values quoted from memory, not from the dissertation, which gives no
+law for them: it states that "operating conditions" change damping (3.1.3.1), that humidity increases stiction (1.4.4,
+1.5) and that four weeks took 42.8 % of the displacement (3.1.3.2).
 """
 
 from __future__ import annotations
@@ -159,7 +159,7 @@ def adhesion_j_m2(humidity_pct: float) -> float:
 
     .. math:: W=W_d\,(W_w/W_d)^{s},\quad s=\frac1{1+e^{-(H-60)/8}}
 
-    The ends are recalled, the shape between them is assumed; the text says only that humidity increases stiction.
+    The ends are recalled, the shape between them is assumed; the text states only that humidity increases stiction.
     """
     wet = 1.0 / (1.0 + exp(-(humidity_pct - CONDENSES_PCT) / CONDENSES_OVER_PCT))
     return DRY_J_M2 * exp(wet * log(WET_J_M2 / DRY_J_M2))
@@ -169,7 +169,7 @@ def friction_scale(humidity_pct: float) -> float:
     r"""Friction of touching surfaces over that at 40 %, :math:`F_s(H)/F_s(40)=W(H)/W(40)`.
 
     Adhesion presses the surfaces together, so friction is proportional to its energy. This is an assumption: the text
-    says only that humidity increases stiction (1.4.4, 1.5).
+    states only that humidity increases stiction (1.4.4, 1.5).
     """
     return adhesion_j_m2(humidity_pct) / adhesion_j_m2(ROOM_PCT)
 

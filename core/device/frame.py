@@ -31,7 +31,7 @@ class Damage:
     ----------
     adhesion : tuple, optional
         Beam, and share of its length from its root (0) to the truss (1), at which a point sticks to the ground; the
-        beam is the one at +x on the side at +y.
+        beam is the +x beam on the +y side.
     lost_ends : tuple of int
         Truss segments that are gone on the side at +y: 2 is the end at +x, 1 the middle; (0, 1, 2) is the whole truss.
     side_scale : float

@@ -20,7 +20,7 @@ from core.units import EPSILON_0
 
 
 class Geometry(BlockParams):
-    """A drawing: lengths in um, widths as drawn with the etch bias per edge beside them.
+    """A drawing: lengths in um, widths as drawn, with the etch bias per edge as a field of its own.
 
     The formulas hold for arrays too: ``core.device.spread`` puts whole wafers through them.
     """

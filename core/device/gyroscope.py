@@ -30,7 +30,7 @@ class GyroscopeTable(BlockParams):
     .. math:: K=R(\alpha)\begin{bmatrix}k_x&k_{xy}\\k_{xy}&k_y\end{bmatrix}R(\alpha)^T,\quad
         D=R(\gamma)\begin{bmatrix}d_x&d_{xy}\\d_{xy}&d_y\end{bmatrix}R(\gamma)^T
 
-    Principal values go with an angle and no cross term, entries with a cross term and no angle.
+    Principal values need an angle and no cross term, entries a cross term and no angle.
     """
 
     mass_x_kg: MassKg = parameter(..., "mass that moves along x, the driven axis", "kg", live=False)

@@ -32,10 +32,10 @@ class AxesBank(Bank):
     .. math:: x^-=(\Phi+\Omega N)x+\Gamma u,\quad r=z-Hx^-,\quad\psi=\psi_0+SMS^T,\quad
         \ell_k\leftarrow\ell_k-\tfrac12r^T\psi^{-1}r-\tfrac12\ln\det\psi
 
-    Turning pushes y in step with the velocity of x, a spring between the axes in step with its displacement, so the
-    filters tell one from the other within a period. Each hypothesis has a rate of its own. With the rate taken for
-    noise of the force, the verdict is right in 50 to 99 % of the 200 ms after a fault of ``gyro-a`` and a step
-    to 300 deg/s 100 ms later; as a state, in 98 % and more.
+    Rotation pushes y in step with the velocity of x, a spring between the axes in step with its displacement, so the
+    filters separate them within a period. Each hypothesis has a rate of its own. With the rate taken for noise of the
+    force, the verdict is right in 50 to 99 % of the 200 ms after a fault of ``gyro-a`` and a step to 300 deg/s 100 ms
+    later; as a state, in 98 % and more.
 
     All residuals are weighed by the covariance of the nominal device, so that no model wins by its assumption about the
     noise. The assumed noise is larger than the true noise, so that a filter soon follows a fault: along x, whose swing
@@ -231,7 +231,7 @@ class AxesBank(Bank):
             if seen:
                 density = correct(p.models[i], f, x.x_measured, x.y_measured)
                 if evidence:
-                    # a rival that tells hardly more than the winner tells nothing
+                    # a rival with hardly more evidence than the winner gets none
                     likelihood += density + (p.least_evidence if i == winner else 0.0)
             s.likelihood[i] = likelihood
             best = max(best, likelihood)

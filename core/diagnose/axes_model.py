@@ -1,4 +1,4 @@
-r"""A device with two axes as a filter takes it: over a tick under its forces, what turning adds, its steady gain."""
+r"""A device with two axes in a filter: over a tick under its forces, the effect of rotation, its steady gain."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def force_noise(device: TwoAxis, assumed_un: tuple[float, float], context: Conte
 
 
 def steady(tick: Tick, forces: FloatArray, noise_um: float, omega: float, ticks: int) -> tuple[FloatArray, FloatArray]:
-    r"""Return gain and residual covariance in the limit, for displacements measured every so many ticks.
+    r"""Return gain and residual covariance in the limit, for displacements measured every ``ticks`` ticks.
 
     The Riccati equation is solved with displacements over the noise of a measurement and velocities over that times
     :math:`\omega`, where all its numbers are of similar size.

@@ -36,7 +36,7 @@ class Bank(Block):
     """Taps of the residual, one for each displacement measured."""
 
     covariances: ClassVar[tuple[str, ...]] = ()
-    """Taps of its covariance, upper triangle row by row; none where a single residual and its nis tell it."""
+    """Taps of its covariance, upper triangle row by row; none where a single residual and its nis determine it."""
 
     gains: ClassVar[tuple[tuple[str, ...], ...]] = ()
     """Taps of the Kalman gain, a row for each state, a column for each residual; none without filters."""

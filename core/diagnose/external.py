@@ -15,7 +15,7 @@ from core.record import Record, Vector, vector
 class External(Judge):
     r"""The probabilities come from outside, :math:`P_i=f(y_i,u_{i-1},\dots)`: from a function.
 
-    It is asked once the sample has been measured, as every other diagnoser. `core.board.hosted` calls it; any other
+    It is called once the sample has been measured, as every other diagnoser. `core.board.hosted` calls it; any other
     board has no program to call.
     """
 

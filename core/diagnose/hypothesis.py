@@ -13,7 +13,7 @@ from core.diagnose.lanes import LANE
 
 
 class NamedModel(BlockParams):
-    """One model of a bank: what of the nominal device it takes for changed, and a name for that."""
+    """One model of a bank: the parameters of the nominal device that it takes for changed, and its name."""
 
     name: str = Field(
         min_length=1,

@@ -18,7 +18,7 @@ from core.record import Vector, vector
 
 
 class LockIn(KalmanBank):
-    r"""Residual correlation: only what of a residual is at the frequency of the drive is evidence.
+    r"""Residual correlation: only the part of a residual at the frequency of the drive is evidence.
 
     .. math:: T_k=b_k^TG^{-1}b_k,\quad b_k=\sum_W\frac{r_k}{\sqrt{\psi_k}}z,\quad G=\sum_W zz^T,\quad
         z=\binom{\cos\omega t}{\sin\omega t},\qquad\ell_k\leftarrow\ell_k-\frac{T_k}{2W}

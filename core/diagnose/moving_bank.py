@@ -94,7 +94,7 @@ class MovingBank(KalmanBank):
         end2: Vector = tail()
 
     class State(KalmanBank.State):
-        """All filters; the one in the centre; logarithms of probabilities of the three that run, and of this sample."""
+        """All filters; the centre filter; logarithms of probabilities of the three that run, and of this sample."""
 
         centre: float
         log: Vector = vector(LANE)

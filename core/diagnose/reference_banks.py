@@ -38,7 +38,7 @@ class Bank(Estimator):
 
 
 class ReferenceBanks(WeighedBank):
-    r"""Each bank identifies a sub-system of its own, which runs beside the device, and is tried on the device.
+    r"""Each bank identifies its own sub-system, which runs in parallel with the device, and is tried on the device.
 
     .. math:: \hat\theta_k\ \text{from}\ (u,z_k),\qquad r_k=z-h^T\hat\theta_k
 

@@ -97,7 +97,7 @@ class Regions(Block):
 
     @staticmethod
     def step(p: Packed, s: State, x: Ports) -> None:
-        """Advance the healthy device over a tick, compare over a period, tell the region."""
+        """Advance the healthy device over a tick, compare over a period, decide the region."""
         y = x.measured
         if s.started != 0.0:
             u, middle, end = moves(x)

@@ -149,8 +149,8 @@ def excite(
 ) -> None:
     """Gather the Gram matrix, and at the end of each window judge it less twice the share that sensor noise adds.
 
-    Noise moves the regressor in every direction without telling anything about the device. If its mean were taken out
-    only once, half of the windows would still show some of it. ``noise`` is the lower triangle of the mean noise.
+    Noise moves the regressor in every direction without information about the device. If its mean were taken out only
+    once, half of the windows would still show some of it. ``noise`` is the lower triangle of the mean noise.
     """
     add_outer_product(gram.products, regressor, n)
     gram.samples += 1.0

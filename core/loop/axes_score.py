@@ -22,7 +22,7 @@ class AxesFactors(Factors):
 
 
 class AxesScore(Block):
-    """Scores a bank whose hypotheses also say the stiffness of the second axis, and that between the axes.
+    """Scores a bank whose hypotheses also have the stiffness of the second axis, and the stiffness between the axes.
 
     The rules are the rules of any score. A stiffness between the axes is right within a thousandth, and where a
     hypothesis has none, within the stiffness that reads as 1 deg/s.

@@ -114,4 +114,4 @@ class Effects(Block):
         x.damping_scale = x.damping
         x.squeeze_scale = x.rarefied
         x.friction = x.rubbing
-        x.other = x.rubbing  # no hypothesis says friction
+        x.other = x.rubbing  # no hypothesis describes friction

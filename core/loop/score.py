@@ -151,13 +151,13 @@ class Score(Block):
 
 
 def take_turns(p: Turns, n: int, context: Context) -> None:
-    """Pack the common fields of a score of so many hypotheses."""
+    """Pack the common fields of a score with this number of hypotheses."""
     samples = 2.0 * SPAN - 1.0
     p.count, p.every, p.limit = n, context.every, chi_square(samples, CHANCE) / samples
 
 
 def nothing_counted(n: int) -> Score.State:
-    """Return the state of a score of so many hypotheses that has counted nothing."""
+    """Return the state of an empty score with this number of hypotheses."""
     s = Score.State.zeros(n**2)
     s.truth = -2.0
     s.average[:] = 1.0
@@ -277,7 +277,7 @@ def read(s: Score.State, names: list[str], winner: int, unexplained: bool) -> Sc
         last_false_switches=[FalseSwitch(tick=int(tick), samples=int(samples)) for tick, samples in exits],
         delays=[None if value < 0 else int(value) for value in delays],
         since_tick=int(s.since),
-        nis=float(s.nis_sum / s.nis_count) if s.nis_sum else None,  # 0 from first to last where the bank says none
+        nis=float(s.nis_sum / s.nis_count) if s.nis_sum else None,  # 0 from first to last where the bank has none
         least_nis=min(s.average[:n].tolist()),
         unexplained=unexplained,
         confusion=s.confusion.reshape(n, n).astype(int).tolist(),

@@ -31,7 +31,7 @@ class Declaration:
     Attributes
     ----------
     names : dict
-        What names mean: of the library, constants, functions (as trees) and classes.
+        Meanings of names: of the library, constants, functions (as trees) and classes.
     node : ast.ClassDef
         The class of the unit.
     base : type of Block

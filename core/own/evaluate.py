@@ -41,7 +41,7 @@ MOST_OPERATIONS = 100_000
 MOST_ITEMS = 10_000
 DEEPEST_CALLS = 10
 COST_OF_CALL = 30
-"""Operations of a call of a library function; the items it is given and makes count beside."""
+"""Operations of a call of a library function; its arguments and results count in addition."""
 COST_OF_BASE = 1_000
 """Operations that the ``pack`` or ``state`` of a base counts as."""
 
@@ -52,7 +52,7 @@ class Evaluator:
     Parameters
     ----------
     names : dict
-        What names mean outside functions.
+        Meanings of names outside functions.
     """
 
     def __init__(self, names: dict[str, Any]) -> None:
@@ -71,7 +71,7 @@ class Evaluator:
         return result
 
     def _run(self, body: Sequence[ast.stmt], local: dict[str, Any]) -> tuple[bool, Any]:
-        """Run statements; say whether they returned, and what."""
+        """Run statements; return whether they returned, and their value."""
         for node in body:
             self._count(node)
             if isinstance(node, ast.Return):

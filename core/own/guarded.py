@@ -1,4 +1,4 @@
-"""What numbers from data could break: an index beyond a vector, the whole part of a number too large to have one."""
+"""Errors through numbers from data: an index beyond a vector, the whole part of a number too large to have one."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ class Truth:
 
 @dataclass(frozen=True)
 class Whole:
-    """A whole number that is a constant, or counts a loop; an index may be made of it.
+    """A whole number that is a constant, or counts a loop; it may be used in an index.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Permitted imports of a user unit: names of the library, each by name.
 
-A unit never imports a module. A line ``from core.elementary import exp`` says which of the names below it means.
-Kernels among them take numbers, or records whose class they name; none reads an index from its data.
+A unit never imports a module. A line ``from core.elementary import exp`` names one of the names below. Kernels among
+them take numbers, or records whose class they name; none reads an index from its data.
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ class Steps(Loops):
     Parameters
     ----------
     names : dict
-        What names mean outside functions.
+        Meanings of names outside functions.
     counted : type of Record, optional
         The record into which the framework writes the number of hypotheses.
     """

@@ -89,7 +89,7 @@ class Unit:
 
     @property
     def hash(self) -> str:
-        """What its text is known by."""
+        """Identifier of its text."""
         return hashlib.sha256(self.source.encode()).hexdigest()
 
 
@@ -232,7 +232,7 @@ def _packed(cls: type[Block], params: BlockParams, context: Context) -> FloatArr
     except (TypeError, ValueError, ArithmeticError) as error:
         raise error if isinstance(error, InputError) else InputError(str(error)) from None
     if issubclass(cls, Judge):
-        cls.Packed(numbers).count = cast(BankParams, params).count  # loops go so far: it is not the unit's to say
+        cls.Packed(numbers).count = cast(BankParams, params).count  # the number of loops, which the unit must not set
     if np.isnan(numbers).any():
         raise InputError("pack leaves a number that is none")
     return numbers

@@ -123,7 +123,7 @@ def comb(
     square, limit, stator, half, y, theta : float
         As in ``sums``; ``stator`` is the distance of its tip.
     side : float
-        +1 for the comb at +x, -1 for the one at -x.
+        +1 for the comb at +x, -1 for the comb at -x.
     """
     middle = side * (stator + half)
     whole, slope, first, r = sums(square, limit, middle, half, y, theta)

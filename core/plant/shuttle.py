@@ -16,7 +16,7 @@ from core.units import UN_PER_N, thermal_force_un
 ELASTICITY = reads("effects.elasticity_scale", "1", "stiffness of all beams alike over nominal")
 """Input of a plant with more elasticity than that along x."""
 RIGHT, LEFT = 1, 2
-"""Bits of ``short``: the comb at +x, whose stator carries the first voltage, and the one at -x."""
+"""Bits of ``short``: the comb at +x, whose stator carries the first voltage, and the comb at -x."""
 
 
 class PackedMotion(Record):

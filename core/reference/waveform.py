@@ -41,7 +41,8 @@ class ReferenceParams(BlockParams):
 class Waveform(Block):
     """A reference; a subclass gives ``shape(p, t_ms)`` of unit amplitude.
 
-    The plant of a bench with axes may have one for a generator beside its rate; a controller makes a force of it.
+    The plant of a bench with axes may have a waveform as a generator in addition to its rate; a controller turns it
+    into a force.
     """
 
     axes = None

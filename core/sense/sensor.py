@@ -39,7 +39,7 @@ def slips(error: float, pitch: float) -> float:
 
 
 class Sensor(Block):
-    """A sensor, with the noise that its filters should assume and the displacements it cannot tell apart."""
+    """A sensor, with the noise that its filters should assume and the distance of displacements that look alike."""
 
     @classmethod
     def runs_always(cls, params: Any) -> bool:

@@ -107,7 +107,7 @@ def put_at_rest(s: Filter, params: TrackerParams, context: Context) -> None:
 
 @kernel
 def between_updates(p: Tracked, drive: Gathered, x: AppliedPorts) -> bool:
-    """Gather the voltage of a tick; say whether a sensor that runs every N of them does not run at this one."""
+    """Gather the voltage of a tick; return whether a sensor that runs every N of them skips this one."""
     gather(p.tick, drive, x.applied, x.middle, x.end)
     return bool(p.every != 1.0 and x.tick % p.every != 0.0)
 

@@ -162,7 +162,7 @@ def _least_real(real: FloatArray, square: FloatArray) -> tuple[float, float]:
     candidates = []
     for turn in _turns(turning):
         beside = float(np.polyval(bottom, turn)) <= TINY * float(np.sum(np.abs(bottom)))
-        x = turn * (1.0 + 1e-6) + 1e-9 if beside else turn  # beside a pole on the axis
+        x = turn * (1.0 + 1e-6) + 1e-9 if beside else turn  # next to a pole on the axis
         candidates.append((math.sqrt(x), float(np.polyval(top, x) / np.polyval(bottom, x))))
     far = 0.0
     if len(top) >= len(bottom):

@@ -24,7 +24,8 @@ LEAST_OCTAVES = 4
 OVERLAP = 8.0
 """Most means that begin within one averaging time."""
 PURITY = 0.04
-"""Error of a variance that is always granted: with ever so many averages, no rate is these three noises alone."""
+"""Error of a variance that is always allowed: even with infinitely many averages, no rate is exactly these three
+noises."""
 MARGIN = 2
 """Octaves left out beyond the octaves that the three noises do not explain: the rest of a lag falls by half with
 each."""
@@ -44,7 +45,7 @@ class Figure:
     Parameters
     ----------
     value : float, optional
-        None where the record does not tell.
+        None where the record does not show it.
     error : float
         Standard error of the value, in its unit; without a value, the most it may be.
     reason : str
@@ -91,7 +92,7 @@ def fit(taus_s: Octaves, deviations: Octaves, averages: Octaves) -> RateNoise:
     Parameters
     ----------
     taus_s : sequence of float, shape (octaves,)
-        Averaging times, s, each twice the one before.
+        Averaging times, s, each twice the time before.
     deviations : sequence of float, shape (octaves,)
         Allan deviations, deg/s.
     averages : sequence of float, shape (octaves,)
@@ -100,7 +101,7 @@ def fit(taus_s: Octaves, deviations: Octaves, averages: Octaves) -> RateNoise:
     Returns
     -------
     RateNoise
-        Each figure, or the reason why the record does not tell it.
+        Each figure, or the reason why the record does not show it.
     """
     taus, variances = np.array(taus_s, dtype=float), np.square(np.array(deviations, dtype=float))
     times = averaging_times(np.array(averages, dtype=float))

@@ -1,4 +1,4 @@
-"""Answer of a diagnoser in a case: evidence that grows with a fault, and a probability of each class if it says one."""
+"""Answer of a diagnoser in a case: evidence that grows with a fault, and the probability of each class if any."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _is_bank(block: type[Block]) -> bool:
 
 
 def _moved(block: type[Block]) -> str:
-    """Return the output that tells how far something is from where it should be."""
+    """Return the output that measures the distance from the normal state."""
     return next((port.name for port in block.outputs if port.name in NEUTRAL), "")
 
 
@@ -59,7 +59,7 @@ class Answer:
     classes : ndarray, shape (classes, samples), optional
         Probability of each class.
     digest : str
-        SHA-256 over the bits of the outputs that both were made of.
+        SHA-256 over the bits of the outputs behind both.
     """
 
     evidence: FloatArray

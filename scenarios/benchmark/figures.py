@@ -185,7 +185,7 @@ def alarms(evidence: FloatArray, threshold: float, start: int, onset: int) -> Al
     Parameters
     ----------
     evidence : ndarray
-        What grows when something is wrong.
+        The evidence, which grows with a fault.
     threshold : float
         The alarm is on above it.
     start, onset : int

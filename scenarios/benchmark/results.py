@@ -1,4 +1,4 @@
-"""Results of the benchmark: a row for each diagnoser and track, with what recomputes it; a submission is the same."""
+"""Results of the benchmark, also of a submission: a row for each diagnoser and track, with data to recompute it."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ class Results(Table):
     own : dict
         The text of each unit that is not of the library, so that the results can be recomputed from their file.
     costs : dict
-        Of each diagnoser, measured beside the Kalman bank ``mmae`` in the same run.
+        Of each diagnoser, measured together with the Kalman bank ``mmae`` in the same run.
     """
 
     benchmark: str
@@ -150,7 +150,7 @@ def _place(row: Row) -> tuple[float, float, str]:
 
 
 def _unlike(row: Row, beside: Row | None) -> list[str]:
-    """Return what of a row differs; what single cases gave only where both say it."""
+    """Return the differences of a row; differences of single cases only where both have them."""
     if beside is None:
         return ["is missing"]
     found = [name for name in Row.model_fields if name != "cases" and getattr(row, name) != getattr(beside, name)]

@@ -128,7 +128,7 @@ def _together(
 
 
 def running_warnings(board: Board) -> dict[str, str]:
-    """Return the taps that warn of the blocks that run, and what of."""
+    """Return the taps with warnings of the running blocks, and their texts."""
     wiring = board.wiring
     out = {wiring.instances[row].prefix for row in wiring.left_out}
     return {name: text for name, text in warnings(wiring).items() if name.rpartition(".")[0] not in out}

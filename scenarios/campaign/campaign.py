@@ -57,7 +57,7 @@ class Table(Protocol):
 
 
 class Trace(Protocol):
-    """What keeps the trace of the first run of a campaign; it is called in a worker process, so it can be pickled."""
+    """Keeps the trace of the first run of a campaign; it is called in a worker process, so it can be pickled."""
 
     def __call__(self, document: dict[str, Any], seed: int, others: Others) -> tuple[Outcome, Any]:
         """Carry the run out; return its outcome, and the additional result."""

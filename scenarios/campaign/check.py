@@ -58,7 +58,7 @@ def _step(axis: Axis, number: int) -> Step:
 
 
 def _telling(axis: Axis) -> list[Step]:
-    """Return the steps of a variant or a grid that tell whether it was mistyped."""
+    """Return the steps of a variant or a grid that show whether it was mistyped."""
     steps = [axis[number] for number in range(len(axis))]
     least: dict[str, tuple[Any, int]] = {}
     greatest: dict[str, tuple[Any, int]] = {}

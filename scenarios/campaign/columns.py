@@ -30,7 +30,7 @@ ABOUT = b"combbench"
 """The content of a column, stored with its name: an axis, a figure, or the result of a diagnoser."""
 
 Row = tuple[int, str, Outcome]
-"""The number of a run, its key, and what came out."""
+"""The number of a run, its key, and its outcome."""
 
 
 def columns(sweep: Sweep, rows: Iterable[Row]) -> pa.Table:
@@ -89,7 +89,7 @@ def about(field: pa.Field) -> str:
 
 
 def named(schema: pa.Schema, what: str) -> list[str]:
-    """Return the columns that hold axes, figures, or what diagnosers said."""
+    """Return the columns of axes, of figures, or of the results of diagnosers."""
     return [field.name for field in schema if about(field) == what]
 
 

@@ -147,6 +147,6 @@ def collect_seldom() -> None:
 
 
 def _follow(wait: Callable[[], None]) -> None:
-    """End this process after its parent has ended: a parent that was killed cannot tell its children."""
+    """End this process after its parent has ended, because a killed parent cannot stop its children."""
     wait()
     os._exit(1)

@@ -1,4 +1,4 @@
-"""What all worker processes have in common: loaded once, in the process that they are forked from.
+"""Common data of all worker processes: loaded once, in their parent process.
 
 Code takes more than a second to load, and compiled kernels half of one. This process has no work of its own.
 """

@@ -156,7 +156,7 @@ def evidence(fault: FloatArray, none: FloatArray, truth: FloatArray, healthy: in
     for i in range(len(ratio)):
         if not ratio[i] > 0.0:
             ratio[i] = 1.0
-    # the bits of a number are nearly proportional to its logarithm: the bin they tell is the right one or next to it
+    # the bits of a number are nearly proportional to its logarithm: the bin from them is the right one or next to it
     bits, ends = ratio.view(np.int64), odds.view(np.int64)
     share = (count - 1) / (ends[-1] - ends[0])
     for i in range(len(ratio)):

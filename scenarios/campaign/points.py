@@ -1,4 +1,4 @@
-"""Points of a campaign: every combination of its axes, each made when it is asked for."""
+"""Points of a campaign: every combination of its axes, each made when it is read."""
 
 from __future__ import annotations
 
@@ -88,14 +88,14 @@ class Points(Sequence[Point]):
     Parameters
     ----------
     axes : sequence of Axis
-        What varies.
+        Varied fields.
     base : dict
         The scenario that the points differ from.
 
     Attributes
     ----------
     varied : sequence of Axis
-        What varies.
+        Varied fields.
     """
 
     def __init__(self, axes: Sequence[Axis], base: dict[str, Any]) -> None:
@@ -132,7 +132,7 @@ class Points(Sequence[Point]):
         return Point(labels, values, self._base)
 
     def column(self, path: str, numbers: IntArray) -> FloatArray:
-        """Return what some points write to a field that takes numbers; nan where they do not."""
+        """Return the values that some points write to a numeric field; nan where they write none."""
         for axis in reversed(self.varied):
             numbers, steps = np.divmod(numbers, len(axis))
             if isinstance(axis, Rows):
@@ -174,6 +174,6 @@ class Contents(Sequence[str]):
             point = self._points[at]
             try:
                 self._known[at] = content_hash(point.document)
-            except InputError:  # no scenario comes of its values: its runs say why
+            except InputError:  # its values give no valid scenario: its runs carry the error
                 self._known[at] = content_hash({"scenario": point.base, "set": point.values})
         return self._known[at]

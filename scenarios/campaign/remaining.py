@@ -85,7 +85,7 @@ class Remaining:
         self._next = 0
 
     def _following(self, count: int) -> list[int]:
-        """Return the next runs that wait, so many at most."""
+        """Return the next waiting runs, at most ``count``."""
         while self.waiting:
             self._next += int(np.argmax(self._state[self._next :] == WAITING))
             self._compare(self._next + count)

@@ -1,4 +1,4 @@
-"""Shared memory between a worker and the process that gave it work: the worker counts ticks, the other says stop."""
+"""Shared memory of a worker and its master process: the worker counts ticks, the master can stop it."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def receive(signs: Signs) -> None:
 
 
 def watched(place: int, function: Callable[..., T], *arguments: object) -> T:
-    """Call a function that tells where it is; in a worker."""
+    """Call a function that reports its progress; in a worker."""
     global _received
     assert _received is not None
     _received = _received[0], place

@@ -13,7 +13,7 @@ from core.block import FloatArray, IntArray
 from scenarios.campaign.outcome import EVIDENCE
 
 Sums = dict[str, Any]
-"""What `Tallies` have of a point, as JSON can carry it."""
+"""The sums of `Tallies` for a point, as JSON can carry them."""
 
 
 @dataclass(slots=True)

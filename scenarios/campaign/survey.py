@@ -27,7 +27,7 @@ BINS = 60
 CELLS = (72, 44)
 """Cells across and up."""
 COUNTED = {"runs": None, "ok": "ok", "tripped": "trip"}
-"""What points can be sorted by beside axes and figures, and the column it is counted in."""
+"""Sort keys of points besides axes and figures, and the column of their count."""
 
 
 class Extent(BaseModel):

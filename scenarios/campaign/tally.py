@@ -20,7 +20,7 @@ from scenarios.campaign.sums import DiagnosisSums, Moments, Spread, Sums
 from scenarios.campaign.sweep import Sweep
 
 FALLING = np.append(EVIDENCE[::-1], EVIDENCE[0])
-"""The threshold beside each point of a curve, as it falls; the last bin has no end."""
+"""The threshold of each point of a curve, as it falls; the last bin has no end."""
 
 
 @dataclass(slots=True)
@@ -148,7 +148,7 @@ class Tallies:
 
 
 def _counted(texts: Counter[str]) -> list[str]:
-    """Return what most runs said."""
+    """Return the most common texts."""
     return [f"{text} ({count} runs)" for text, count in texts.most_common(3)]
 
 

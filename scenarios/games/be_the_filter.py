@@ -80,7 +80,7 @@ class Sixth(NamedTuple):
     credit : float
         The part of its probability that counts for the unknown fault.
     nearest : int
-        Place of the one of the five for which the rest counts.
+        Place of the state among the five for which the rest counts.
     """
 
     credit: float

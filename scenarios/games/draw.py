@@ -97,7 +97,7 @@ def distances(bench: Scenario, one: Hypothesis, others: Sequence[Hypothesis]) ->
     one : Hypothesis
         The device.
     others : sequence of Hypothesis
-        From which the distance is asked.
+        The device from which the distance is measured.
     """
     nominal = bench.spec.device.oscillator()
     return [alias_map([one, other], nominal, TONES).pairs[0].distance_um for other in others]

@@ -70,7 +70,7 @@ class Edge:
         return self.missed_in(severity) < MISSED
 
     def _is_missed(self, board: Board, severity: float) -> bool:
-        """Whether the bank still says healthy in most of the last samples; a board that stops has noticed."""
+        """Whether the verdict of the bank is healthy in most of the last samples; a board that stops has noticed."""
         board.apply(Inject(fault=self._fault, severity=severity))
         column, healthy = board.signals.index(f"{DIAGNOSER}.winner"), 0
         while board.tick < ONSET + AFTER:

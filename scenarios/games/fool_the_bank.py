@@ -125,7 +125,7 @@ class FoolTheBank(Game[Named]):
 
 
 def points(size: float, missed: int, edge: float | None) -> float:
-    """Return the points of a severity that is missed in so many runs, by the edge if there is one."""
+    """Return the points of a severity by the number of runs that missed it, and by the edge if there is one."""
     if missed < MISSED or edge is None:
         return 0.0
     return 100.0 * min(size / edge, edge / size)

@@ -23,7 +23,7 @@ GIVEN = (
     Hypothesis(name="b+30", damping=1.30),
 )
 UNKNOWN = len(GIVEN)
-"""Class of the fault that none of the five says; the sixth is for it."""
+"""Class of the fault outside the five; the sixth is for it."""
 SIXTH = "sixth"
 FAULTS = {"mass": "added_mass", "stiffness": "stiffness", "damping": "damping"}
 """The fault that makes a factor true."""
@@ -50,7 +50,7 @@ class Hidden:
     noise_um, drive_noise_v : float
         The true noise of sensor and drive.
     unknown : Hypothesis
-        The fault that none of the five says.
+        The fault outside the five.
     states : list of int
         The truth from each change on, the beginning first: places among the five, or `UNKNOWN`.
     """
@@ -66,7 +66,7 @@ class Hidden:
 
     @property
     def document(self) -> Document:
-        """The bench without its bank, as a scenario: the drawn device, its noise, and what happens to it."""
+        """The bench without its bank, as a scenario: the drawn device, its noise, and its events."""
         return {
             **self.bench.document,
             "plant": {**BENCH["plant"], "drive_noise_v": self.drive_noise_v},
@@ -75,7 +75,7 @@ class Hidden:
         }
 
     def _unknown(self) -> Hypothesis:
-        """Draw the unknown fault: far enough from all of the five that the drive can tell it from them."""
+        """Draw the unknown fault: far enough from all of the five that it is distinguishable under the drive."""
         healthy, turn = amplitude_um(self.bench), 0
         while True:
             kept = self.draws.whole(f"kept {turn}", len(FACTORS))

@@ -30,7 +30,7 @@ def loaded(column: FloatArray, at: IntArray | slice = ALL) -> FloatArray:
 
 
 def blocks(*columns: FloatArray, more: int = 0) -> Iterable[list[FloatArray]]:
-    """Return the blocks of columns of one length, each with so many samples more of the next."""
+    """Return the blocks of columns of one length, each extended by some samples of the next."""
     length = len(columns[0])
     if length <= BLOCK:  # as most columns are
         return ([loaded(column) for column in columns],)
@@ -52,7 +52,7 @@ def mean(column: FloatArray) -> float:
 
 
 def largest(of: Callable[..., Any], *columns: FloatArray) -> float:
-    """Return the largest number a function makes of columns; nan where it makes one."""
+    """Return the largest value of a function of columns; nan where one is nan."""
     return float(np.max([np.max(of(*block)) for block in blocks(*columns)]))
 
 

@@ -53,7 +53,7 @@ def _projection(frequency_hz: float, dt_ms: float, first_tick: int, samples: int
 
 
 def _tones(frequency_hz: float, dt_ms: float, first_tick: int, samples: int) -> FloatArray:
-    """Return the columns that a tone with an offset is made of."""
+    """Return the columns of a tone with an offset."""
     angle = 2.0 * math.pi * frequency_hz * (first_tick + np.arange(samples)) * dt_ms / 1e3
     return np.column_stack([np.sin(angle), np.cos(angle), np.ones(samples)])
 
@@ -184,7 +184,7 @@ def measure(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dic
         figures |= identify_metrics(board, name, trace.get(f"{name}.error_pct"), stretch)
     scores = board.scores()
     for name in board.spec.diagnosers:
-        if name in scores and scores[name].samples:  # a score without samples says nothing, not even 0
+        if name in scores and scores[name].samples:  # a score without samples has no figure, not even 0
             figures |= diagnosis_metrics(name, scores[name], step_lengths(trace[f"{name}.truth"]))
     if stretch.beside:
         figures |= delay_ratios(figures, list(scores), stretch.beside)

@@ -29,7 +29,7 @@ LONGEST = 1 << 18
 FINE = 0.01
 """Bandwidth over the rate of the samples up to which those between them are not missed."""
 READ = ("rate", "quadrature", "angle", "trusted", "bound")
-"""Outputs of a controller that figures are made of."""
+"""Outputs of a controller for its figures."""
 
 Levels = list[tuple[int, int]]
 
@@ -118,8 +118,8 @@ def _reading(board: Board, true: FloatArray, read: FloatArray, pieces: Levels, s
 def bandwidth_hz(read: FloatArray, change: float, dt_ms: float) -> float:
     r"""Return the frequency at which a step response passes :math:`1/\sqrt2`, Hz; nan if it never does.
 
-    The transfer function is the Fourier transform of the response's slope. Of a long record only every so many samples
-    are taken. Where they do not show its first half period well, its first quarter is taken instead.
+    The transfer function is the Fourier transform of the response's slope. Of a long record only every n-th sample is
+    taken. Where they do not show its first half period well, its first quarter is taken instead.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def _over(trace: dict[str, FloatArray], at: slice, one: str, other: str) -> comp
 
 
 def _hanning(first: int, end: int, samples: int) -> FloatArray:
-    """Return a part of numpy's window of so many samples, but for its ends, which are 0."""
+    """Return a part of numpy's window of this length, except its ends, which are 0."""
     at: FloatArray = np.cos(math.pi * (2.0 * np.arange(first, end) + (1 - samples)) / (samples + 1))
     return 0.5 + 0.5 * at
 
@@ -202,7 +202,7 @@ def _locus(trace: dict[str, FloatArray], at: slice) -> dict[str, float]:
 def _scale(
     board: Board, trace: dict[str, FloatArray], true: FloatArray, pieces: Levels, stretch: Stretch
 ) -> dict[str, float]:
-    r"""Return the swing of y that goes with the rate, where no force holds y.
+    r"""Return the swing of y per rate, where no force holds y.
 
     It is the change of y over x from the first level to the last, over the change of the rate. With one level, the
     coupling by the cross terms of the nominal device is subtracted instead.

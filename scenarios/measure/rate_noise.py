@@ -13,7 +13,7 @@ from core.units import DEG_RT_H_PER_DEG_RT_S
 
 
 def rate_noise_metrics(taus_s: Sequence[float], state: Allan.State) -> dict[str, float]:
-    """Return N, B and K as far as the record tells them, and N as a density.
+    """Return N, B and K as far as the record shows them, and N as a density.
 
     Parameters
     ----------

@@ -27,9 +27,9 @@ SPAN = 100
 class Doings:
     r"""Writes the sentences about actions on a bench.
 
-    A fault and its healing say by what factors the device is the nominal one from that tick on. A switch says the root
-    mean square of the measured error over the 100 ticks before, :math:`\sqrt{\tfrac1{100}\sum(y_m-y)^2}`. A trip says
-    the value that was too large, and the limit.
+    A sentence about a fault or its healing gives the factors of the device relative to the nominal device from that
+    tick on. A sentence about a switch gives the root mean square of the measured error over the 100 ticks before,
+    :math:`\sqrt{\tfrac1{100}\sum(y_m-y)^2}`. A sentence about a trip gives the value that was too large, and the limit.
 
     Parameters
     ----------

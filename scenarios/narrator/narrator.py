@@ -1,4 +1,4 @@
-"""The narrator: a fold over the rows and the log of a bench, which tells what happens in plain sentences."""
+"""The narrator: a fold over the rows and the log of a bench, which gives plain sentences about its events."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ def _keep(ring: Any, outputs: FloatArray, taps: FloatArray, columns: IntArray, f
 class Samples:
     """Gives signals by their names, rounded to single precision as recordings and the history keep them.
 
-    So a replay tells the same as the bench did.
+    So a replay has the same sentences as the bench.
 
     Parameters
     ----------

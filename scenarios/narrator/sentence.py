@@ -1,4 +1,4 @@
-"""A sentence of the narrator: data first, and the words made of it."""
+"""A sentence of the narrator: data first, and the words made from it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ KINDS: tuple[Kind, ...] = ("trip", "switch", "heal", "fault", "verdict", "false_
 
 
 class Sentence(BaseModel):
-    """Something that happened, in one sentence with the numbers it was made of."""
+    """An event in one sentence, with the numbers in it."""
 
     tick: int = Field(description="When it could be told")
     kind: Kind

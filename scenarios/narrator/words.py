@@ -9,7 +9,7 @@ from core.diagnose.hypothesis import ModelList, NamedModel
 from core.format import MINUS, format_short, format_si
 
 NOUNS = {"gain": "drive gain", "second_stiffness": "stiffness along y"}
-"""Factors whose name says too little."""
+"""Factors with an unclear name."""
 
 
 def moment(ms: float) -> str:

@@ -95,7 +95,7 @@ def closed_loop(scenario: Scenario, controller: Any) -> Any:
     scenario : Scenario
         The bench.
     controller : control.StateSpace or control.TransferFunction
-        From the error (um) to the voltage (V), sampled as the scenario is: `pid`, or one's own.
+        From the error (um) to the voltage (V), sampled as the scenario is: `pid`, or a user's own.
 
     Raises
     ------
@@ -154,7 +154,7 @@ class LinearLaw:
     scenario : Scenario
         The bench it is for.
     reads : tuple of str
-        What its inputs are, in their order.
+        Its inputs, in their order.
     method : str
         How a continuous system is sampled: ``tustin``, or ``zoh``, its inputs held.
 

@@ -75,7 +75,7 @@ class Scale:
         return (value - self.low) / (self.high - self.low)
 
     def ticks(self, count: float) -> list[tuple[float, str]]:
-        """Return about so many ticks, two at least, each with its label."""
+        """Return about this number of ticks, two at least, each with its label."""
         factor = self._unit.factor
         found = decade_ticks(self.low * factor, self.high * factor) if self._axis.is_log else []
         if len(found) > 1:

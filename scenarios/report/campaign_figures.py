@@ -1,4 +1,4 @@
-"""Figures of a campaign: which are shown, which varies most, over what range an axis shows one."""
+"""Figures of a campaign: the shown figures, the figure with the largest variation, the range of an axis for it."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ class Part(BaseModel):
 
 
 class Rank(BaseModel):
-    """How closely a figure goes with a number that was varied."""
+    """Correlation of a figure with a number that was varied."""
 
     name: str
     correlation: float = Field(description="Rank correlation by Spearman, -1 to 1")
@@ -81,7 +81,7 @@ def campaign_picture(
     sweep : Sweep
         The campaign.
     points : mapping
-        Results by the number of the point, with the figures that may come first, and with the one asked for.
+        Results by the number of the point, with the figures that may come first, and with the requested figure.
     measured : iterable of str
         All figures that a run has.
     figure, across : str
@@ -135,7 +135,7 @@ def _is_varied(choices: Sequence[object]) -> bool:
 
 
 def _ranking(values: Mapping[str, FloatArray], means: FloatArray) -> list[Rank]:
-    """Return how closely means go with each number; what does not vary goes with nothing."""
+    """Return the correlation of means with each number; a constant number has none."""
     found = []
     for name, at in values.items():
         is_flat = len(means) < 3 or np.ptp(at) == 0.0 or np.ptp(means) == 0.0

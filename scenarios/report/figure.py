@@ -1,4 +1,4 @@
-"""The figure of a run: what its scenario is about, in its own shape, as on a card of the gallery.
+"""The figure of a run: the subject of its scenario, in its own shape, as on a card of the gallery.
 
 A study shows its curves, or its figures with the expected values. A bench shows the subject of its expectations: the
 Allan deviation, the locus, two devices in step, the verdicts of diagnosers, the error of identifiers, the output of a
@@ -88,7 +88,7 @@ def _trace(result: Result, name: str, said: str = "", at: slice = slice(None), n
 
 
 def _last_periods(values: FloatArray, periods: int = PERIODS) -> slice:
-    """Return the last so many periods of a swing; all of it where it has fewer."""
+    """Return the last periods of a swing; all of it where it has fewer."""
     centre, rising = mean(values[-len(values) // 4 :]), deque[int](maxlen=periods + 1)
     for number, (block,) in enumerate(blocks(values, more=1)):
         rising.extend((number * BLOCK + np.flatnonzero((block[:-1] < centre) & (block[1:] >= centre))).tolist())
@@ -111,7 +111,7 @@ def _study(result: Result) -> Chart | None:
 
 
 def _expected(result: Result) -> Chart:
-    """Show each measured figure beside its expectation."""
+    """Show each measured figure with its expectation."""
     bars = list[Bar]()
     for entry in result.scenario.head.expect:
         value = result.metrics.get(entry.metric, math.nan)

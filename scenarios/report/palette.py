@@ -1,4 +1,4 @@
-"""Colours and dashes of lines, as on the page: Okabe and Ito's colours, which all people can tell apart."""
+"""Colours and dashes of lines, as on the page: Okabe and Ito's colours, which all people can distinguish."""
 
 from __future__ import annotations
 

@@ -95,7 +95,7 @@ def _expectation(entry: dict[str, Any]) -> list[str]:
 
 
 def _comparator(entry: dict[str, Any]) -> str:
-    """Name the PID of a row, and say whether it meets the claim."""
+    """Name the PID of a row, and whether it meets the claim."""
     name: str = entry.get("comparator", "")
     return f"{name} meets the claim too" if entry.get("pid_too") else name
 

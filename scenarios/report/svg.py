@@ -1,4 +1,4 @@
-"""The one painter of charts as SVG text: lines, lanes and bars over two axes, in colours all people can tell apart.
+"""The one painter of charts as SVG text: lines, lanes and bars over two axes, in colours all people can distinguish.
 
 A chart is described first and painted in the size of its place: large in a report, small on a card of the gallery.
 """
@@ -93,7 +93,7 @@ REPORT, CARD = Size(460, 300), Size(400, 180, has_title=False)
 
 
 def thin(of: Callable[..., FloatArray], *columns: FloatArray, most: int = 400) -> tuple[IntArray, list[float]]:
-    """Return the smallest and the largest value of each of so many columns of a picture, in order, and their samples.
+    """Return the smallest and the largest value of each column of a picture, in order, and their samples.
 
     Parameters
     ----------

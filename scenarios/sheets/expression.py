@@ -74,7 +74,7 @@ def inserted(text: str, facts: Mapping[str, float], field: str = "text", missing
     text : str
         The text.
     facts : mapping
-        What its formulas name.
+        Facts in its formulas.
     field : str
         Its place, for errors.
     missing : str, optional

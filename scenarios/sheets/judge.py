@@ -1,4 +1,4 @@
-"""Judges an answer: it earns all points of a step, a part of them or none, for a reason."""
+"""Judges an answer: it earns all points of a step, a part of them or none, with a reason."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def _near(value: float, right: float, relative: float, absolute: float) -> bool:
 
 
 def _is_prefix_away(value: float, right: float, relative: float) -> bool:
-    """Whether a number is right but for a prefix of its unit."""
+    """Whether a number is right except for a prefix of its unit."""
     if value == 0.0 or right == 0.0 or value * right < 0.0:
         return False
     power = 3 * round(math.log10(value / right) / 3.0)

@@ -57,7 +57,7 @@ class Progress(BaseModel):
         return self.steps.setdefault(step.id, StepProgress())
 
     def open_step(self, sheet: Sheet) -> AnyStep | None:
-        """Return the first step that is not done; the ones behind it are closed."""
+        """Return the first step that is not done; later steps are closed."""
         return next((step for step in sheet.steps if not self.of(step).done), None)
 
     def is_told(self, sheet: Sheet, step: AnyStep) -> bool:

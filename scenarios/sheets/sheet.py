@@ -14,7 +14,7 @@ Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,31}$")]
 Words = Annotated[str, Field(min_length=1, max_length=400)]
 Share = Annotated[float, Field(ge=0, le=1)]
 NUMBER_COSTS = 0.25
-"""Share of the points of a number that a wrong answer costs unless the sheet says otherwise."""
+"""Share of the points of a number that a wrong answer costs by default."""
 
 
 class Part(BaseModel):
@@ -83,7 +83,7 @@ class Step(Part):
 
 
 class Limits(Part):
-    """A quantity of the bench, and the value that the step asks for."""
+    """A quantity of the bench, and the value that the step requires."""
 
     label: Words
     name: Name | None = Field(None, description="Its value when the step is done is the fact <step>_<name>")
@@ -160,7 +160,7 @@ class Partly(Part):
 
 
 class Mistake(Part):
-    """A number that a known mistake leads to, the share it earns, and what went wrong."""
+    """A number that a known mistake leads to, the share it earns, and the name of the mistake."""
 
     value: Formula
     share: Share = 0.0

@@ -1,4 +1,4 @@
-"""Cost of diagnosers, each beside the Kalman bank in the same run."""
+"""Cost of diagnosers, each together with the Kalman bank in the same run."""
 
 from __future__ import annotations
 

@@ -26,11 +26,11 @@ def figure(
     name, unit : str
         The measured quantity, with its set-up.
     values : sequence of float
-        One for each repeat.
+        A value for each repeat.
     least, most : float, optional
         The target.
     stretch : float, optional
-        What would be better still.
+        A still better value.
     """
     value, best = median(values), most if least is None else least
     sign = "<=" if least is None else ">="

@@ -28,7 +28,7 @@ WHERE = {
 
 
 def native_and_walled() -> tuple[Callable[[], float], Callable[[], float]]:
-    """Return what measures a sample of a PID as a unit, ns: in machine code and behind the wall.
+    """Return the measurements of a sample of a PID as a unit, ns: in machine code and behind the wall.
 
     Raises
     ------

@@ -19,7 +19,7 @@ WARM = 500
 
 
 class Detectors(Study):
-    """Sets the threshold of every statistic by the false alarms of a healthy device, then lets the fault happen.
+    """Sets the threshold of every statistic by the false alarms of a healthy device, then injects the fault.
 
     ``detectors.<signal>.delay`` is the mean delay of the runs that detected the fault in time, ``.missed`` the share of
     the others, ``.threshold`` the threshold in the end. ``roc.<signal>.area`` is the area under the curve of

@@ -27,7 +27,7 @@ class MonteCarlo(Study):
     title = "Monte Carlo"
 
     class Params(BlockParams):
-        """How many runs of what length."""
+        """The number of runs and their length."""
 
         runs: int = parameter(40, "seeds, from that of the bench on", ge=1, le=10_000)
         samples: int = parameter(9000, "length of a run", ge=1, le=10_000_000)

@@ -33,7 +33,7 @@ class ProcessSpread(Study):
 
     ``spread.<parameter>.cv_pct`` is the coefficient of variation, ``spread.sensitivity.<number>.<parameter>_pct`` the
     change for one step of a number of the drawing. ``spread.dots_printed`` and ``spread.dots_missing`` count the
-    dependences of Table 2.1, and those the text's own equations demand beside them.
+    dependences of Table 2.1, and the additional ones that the text's own equations demand.
     """
 
     title = "Process spread"

@@ -31,7 +31,7 @@ class Sensing(Study):
     title = "Sensor over seeds"
 
     class Params(BlockParams):
-        """How many runs of what length."""
+        """The number of runs and their length."""
 
         runs: int = parameter(60, "seeds, from that of the bench on", ge=1, le=10_000)
         duration_ms: float = parameter(20.0, "length of a run", "ms", gt=0, le=10_000)

@@ -1,4 +1,4 @@
-"""Base of the studies: parameters, figures from the bench of a scenario, and a picture where one says more."""
+"""Base of the studies: parameters, figures from the bench of a scenario, and a picture where it helps."""
 
 from __future__ import annotations
 
