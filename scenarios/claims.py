@@ -24,7 +24,7 @@ class Mark(BaseModel):
     section: str
     words: str
     number: str = Field(description="The part of the words that is the number")
-    reading: str = Field(description="How what is drawn follows from the words, where it does not stand in them")
+    reading: str = Field(description="How the drawn number follows from the words, where it is not in them")
     kind: Kind
     signal: str
     unit: str
@@ -51,7 +51,7 @@ class Claim(BaseModel):
     note: str
     reason: str
     fitted: list[str]
-    measured: float | None = Field(description="Over what has run")
+    measured: float | None = Field(description="Over the run so far")
     as_expected: bool | None = Field(description="Null without a measured value")
     state: State = Field(description="Of the printed claim; of the expectation where nothing is printed")
     verdict: Verdict | None = Field(description="Null until the run has come to its end")

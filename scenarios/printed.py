@@ -26,7 +26,7 @@ class Printed(Table):
     words: Words = Field(min_length=1, max_length=300, description="as printed")
     number: Words = Field(min_length=1, max_length=40, description="the part of the words that is the number")
     signal: str = Field(min_length=1, max_length=200)
-    unit: str = Field(max_length=20, description="of the numbers here, which is that of the signal")
+    unit: str = Field(max_length=20, description="of the numbers here, the unit of the signal")
     low: float | None = None
     high: float | None = None
     values: list[float] = Field([], max_length=8)

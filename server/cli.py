@@ -99,7 +99,7 @@ def run(
         typer.Option(
             "--all",
             help="Also run the controllers that never drive, and write all signals to the trace, "
-            "those of sensors that are never in use as well. No figure and no digest depends on it.",
+            "also of sensors that are never in use. No figure and no digest depends on it.",
         ),
     ] = False,
     narrate: Annotated[bool, typer.Option("--narrate", help="Also say in plain sentences what happens.")] = False,
@@ -214,7 +214,7 @@ def sweep(
         str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler instead, such as tcp://host:8786.")
     ] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Where results go; sweeps/<id> if not given.")] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with what is in the folder.")] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue the campaign in the folder.")] = False,
     units: UnitOption = None,
 ) -> None:
     """Run a campaign: 0 every run was carried out, 1 some could not be, 2 invalid input."""
@@ -232,7 +232,7 @@ def sweep(
     folder = out or Path("sweeps") / campaign.head.id
     address = load_settings().database_url
     given = "".join(f" --unit {one}" for one in units or ())
-    again = f"; go on with: combbench sweep {file} --out {folder} --resume{given}"
+    again = f"; continue with: combbench sweep {file} --out {folder} --resume{given}"
     try:
         with ExitStack() as stack:
             bars: list[Any] = []  # no progress bar before the first run: a refusal is one line

@@ -25,7 +25,7 @@ BEARER = {
     "description": "The access token printed at the start; of a student, the session that joining a class gives",
 }
 PARAMETERS = {
-    "after": "Number of the last one that is known",
+    "after": "Number of the last known one",
     "bench_id": "Id of a bench",
     "benchmark_id": "Id of a benchmark",
     "class_id": "Id of a class",

@@ -15,9 +15,11 @@ from server.terminal import JsonOption, plainly, say, say_json
 @plainly
 def game(
     name: Annotated[str | None, typer.Argument(metavar="GAME", help="Which game; without one, all there are.")] = None,
-    seed: Annotated[int, typer.Option(help="The same one is the same game for everybody who is in no class.")] = 1,
-    assign: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="What is handed in.")] = None,
-    hidden: Annotated[bool, typer.Option("--hidden", help="Tell what the seed hides instead.")] = False,
+    seed: Annotated[int, typer.Option(help="The same seed is the same game for every user outside a class.")] = 1,
+    assign: Annotated[
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="The values of the answer.")
+    ] = None,
+    hidden: Annotated[bool, typer.Option("--hidden", help="Show the hidden values of the seed instead.")] = False,
     as_json: JsonOption = False,
 ) -> None:
     """Play a game headless: the points of an answer, the same bits as on the page; 2 invalid input."""

@@ -16,8 +16,8 @@ class Platform(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     issuer: str = Field(min_length=1, description="As the platform names itself, such as https://moodle.example.")
-    client_id: str = Field(min_length=1, description="What the platform calls this tool.")
-    auth_login_url: str = Field(description="Where browsers are sent to be told who they are.")
+    client_id: str = Field(min_length=1, description="Name of this tool on the platform.")
+    auth_login_url: str = Field(description="Address at which browsers learn their user.")
     auth_token_url: str = Field(description="Where this server asks for the right to send scores.")
     key_set_url: str = Field(description="Where the platform's public keys are.")
     deployment_ids: list[str] = Field(min_length=1, description="Places in the platform where the tool is installed.")

@@ -107,7 +107,7 @@ class Reopening:
             try:
                 await self._let_go(session)
             except Exception:
-                log.exception("bench %s could not be let go", session.id)
+                log.exception("bench %s could not be closed", session.id)
 
     async def _let_go(self, session: Session) -> None:
         """Store the experiment of a bench, and close it unless it is in use again meanwhile."""
@@ -119,8 +119,8 @@ class Reopening:
                 await self._links.keep(Content(experiment=experiment), title[:200], bench_id=session.id)
                 is_kept = True
             except ApiError as error:
-                log.warning("bench %s is let go for good: %s", session.id, error.body.message)
+                log.warning("bench %s is closed for good: %s", session.id, error.body.message)
         if not self._idling.due([session]):
             return await self._links.delete(session.id)
         await self._close_bench(session, comes_back=is_kept)
-        log.info("bench %s was let go: nobody had been there for a while", session.id)
+        log.info("bench %s was closed after a while without users", session.id)

@@ -106,7 +106,7 @@ def carry_out(
     place, named = folder / TABLE, folder / CAMPAIGN
     if any(path.exists() for path in (place, named, folder / REPORT)) and not resume:
         text = f"{folder} holds a campaign already"
-        raise InputError(text, "--out", "--resume goes on with it; or choose another folder")
+        raise InputError(text, "--out", "--resume continues it; or choose another folder")
     held = _toml(named, "--out").get("id") if named.exists() else sweep.head.id
     if held != sweep.head.id:
         raise InputError(f"{folder} holds the campaign {held}, not {sweep.head.id}", "--out", "choose another folder")

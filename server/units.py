@@ -14,7 +14,7 @@ from server.terminal import JsonOption, plainly, say, say_json
 
 UnitOption = Annotated[
     list[Path] | None,
-    typer.Option("--unit", metavar="FILE", help="A unit of your own; its name is that of the file. May be repeated."),
+    typer.Option("--unit", metavar="FILE", help="A unit of your own, named after its file. May be repeated."),
 ]
 
 

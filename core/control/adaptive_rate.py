@@ -97,7 +97,7 @@ class AdaptiveRate(Block):
             None, "amplitude along y; 1.2 of that along x unless given", "um", gt=0, le=100
         )
         frequency_x_hz: float | None = parameter(
-            None, "frequency along x; 0.2213 of that of the axis unless given", "Hz", gt=0, le=1e6
+            None, "frequency along x; 0.2213 of the axis frequency unless given", "Hz", gt=0, le=1e6
         )
         frequency_y_hz: float | None = parameter(
             None, "frequency along y; 1.2247 of that along x unless given", "Hz", gt=0, le=1e6

@@ -60,7 +60,7 @@ class DriveLoop(Block):
         """Amplitude and bandwidths."""
 
         amplitude_um: float | None = parameter(
-            None, "amplitude to hold; that of the device unless given", "um", gt=0, le=100
+            None, "amplitude to hold; the device's own unless given", "um", gt=0, le=100
         )
         phase_bandwidth_hz: float = parameter(100.0, "bandwidth of the phase-locked loop", "Hz", gt=0, le=1e5)
         amplitude_bandwidth_hz: float = parameter(50.0, "bandwidth of the amplitude loop", "Hz", gt=0, le=1e5)

@@ -46,10 +46,10 @@ class DriveTracking(Block):
         """The sine, and how fast x comes to it."""
 
         amplitude_um: float | None = parameter(
-            None, "amplitude to hold; that of the device unless given", "um", gt=0, le=100
+            None, "amplitude to hold; the device's own unless given", "um", gt=0, le=100
         )
         frequency_hz: float | None = parameter(
-            None, "frequency; that of the mode nearest to x unless given", "Hz", gt=0, le=1e6
+            None, "frequency; the mode nearest to x unless given", "Hz", gt=0, le=1e6
         )
         damping_per_ms: float = parameter(1.0, "rate with which an error dies away", "1/ms", gt=0, le=100)
 

@@ -54,7 +54,7 @@ class ForceToRebalance(Block):
         """The loop and its phase."""
 
         integral_gain_per_ms3: float | None = parameter(
-            None, "integral gain g; 0.436 of what the damping of y allows unless given", "1/ms^3", ge=0, le=1e6
+            None, "integral gain g; 0.436 of the limit by the damping of y unless given", "1/ms^3", ge=0, le=1e6
         )
         advance: bool = parameter(True, "advance the force by half a sample, by which a held one is late")
         phase_error_deg: float = parameter(0.0, "error of the phase of the force", "deg", ge=-180, le=180)
@@ -83,8 +83,8 @@ class ForceToRebalance(Block):
 
         y: float = output("uN", "force along y this controller asks for")
         quadrature: float = output("deg/s", "cross stiffness, read as a rate")
-        rest_in_step: float = tap("um", "what is left of y in step with x")
-        rest_with_velocity: float = tap("um", "what is left of y in step with the velocity of x")
+        rest_in_step: float = tap("um", "residual of y in step with x")
+        rest_with_velocity: float = tap("um", "residual of y in step with the velocity of x")
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:

@@ -46,7 +46,7 @@ class MimoAdaptive(Block):
             r"\tau=(\hat K-K_m)q+\hat D\dot q+2\hat\Omega S\dot q-\gamma(\dot q-\dot q_m)",
             "6.2",
             printed=r"\text{a multiple input multiple output expansion is more practical}",
-            why="the text gives no law; this is the one that its single-input controller becomes",
+            why="the text gives no law; this law extends its single-input controller",
         ),
         Equation(
             "adaptation",
@@ -83,7 +83,7 @@ class MimoAdaptive(Block):
         amplitude_x_um: float = parameter(1.0, "amplitude along x", "um", gt=0, le=100)
         amplitude_y_um: float = parameter(1.0, "amplitude along y", "um", gt=0, le=100)
         frequency_x_hz: float | None = parameter(
-            None, "frequency along x; that of the axis, or 0.2 rad a sample, unless given", "Hz", gt=0, le=1e6
+            None, "frequency along x; the axis frequency, or 0.2 rad a sample, unless given", "Hz", gt=0, le=1e6
         )
         frequency_y_hz: float | None = parameter(
             None, "frequency along y; 1.3 of that along x unless given", "Hz", gt=0, le=1e6

@@ -140,7 +140,7 @@ class Mrac(Block):
     class Ports(ControllerPorts, TruthPorts):
         """Ports of a controller, the truth, and the adaptation."""
 
-        drive_offset: float = reads("effects.drive_offset", "V", "voltage at the comb that nobody applied")
+        drive_offset: float = reads("effects.drive_offset", "V", "stray voltage at the comb")
         gain: Vector = tap("mixed", "adapted gains on r, w1, w2, y and a constant", labels=LABELS)
         gain_ideal: Vector = tap("mixed", "gains that would match the model exactly", labels=LABELS)
         alpha: float = tap("1", "adapted gain of the auxiliary error")

@@ -109,7 +109,7 @@ class MracVelocity(Block):
             None, "weight of w2 and y in Gamma; 1/kp^2 unless given, so that y counts in volts", "V^2/um^2", gt=0
         )
         start: Literal["nominal", "zero"] = parameter(
-            "nominal", "gains at the start: those that match the nominal device, or none", live=False
+            "nominal", "gains at the start: matched to the nominal device, or zero", live=False
         )
         leakage: float = parameter(0.0, "leakage of the gains, per 1/w0", ge=0, le=1)
         gain_bound: float = parameter(30.0, "bound of the gains (projection), 0 for none", ge=0)

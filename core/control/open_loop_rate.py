@@ -110,7 +110,7 @@ class OpenLoopRate(Block):
         ),
     )
     weaknesses = (
-        "With nobody turning it reads the zero rate of the nominal device as a rate, -43 deg/s on set A and 1710 on "
+        "Without rotation it reads the zero rate of the nominal device as a rate, -43 deg/s on set A and 1710 on "
         "set B, and nothing says by how much the rate is off.",
         "A drift of the sense frequency is a drift of the scale factor: 1 % of stiffness is 37 % of it at a split of "
         "53 Hz.",

@@ -92,7 +92,7 @@ class SelfSliding(Block):
         surface_slope: float = parameter(2.0, "c of the surface with velocity, over w0", gt=0, le=100)
         layer_um: float = parameter(0.0, "boundary layer of the sign, 0 for none", "um", ge=0, le=100)
         start: Literal["nominal", "zero"] = parameter(
-            "nominal", "gains at the start: those that match the nominal device, or none", live=False
+            "nominal", "gains at the start: matched to the nominal device, or zero", live=False
         )
         leakage: float = parameter(0.0, "leakage of the gains, per 1/w0", ge=0, le=1)
         gain_bound: float = parameter(0.0, "bound of the gains, 0 for none", ge=0)

@@ -61,7 +61,7 @@ class SenseAxisSync(Block):
             r"\Omega_0\to\Omega_{0,m}",
             "6.1.5",
             printed=r"\text{synchronisation reduces the drift}",
-            why="a model with errors of 2 degrees hands on its own 10.0 deg/s; only a y at rest, or a model without "
+            why="a model with errors of 2 degrees hands on its own 10.0 deg/s; only y held at zero, or a model without "
             "errors, takes the quadrature out of the rate",
         ),
     )
@@ -127,9 +127,9 @@ class SenseAxisSync(Block):
         partner_y: float = reads("sensor.partner_y.displacement?", "um", "measured displacement of the partner along y")
         partner_y_velocity: float = reads("sensor.partner_y.velocity?", "um/ms", "measured velocity of the partner")
         y: float = output("uN", "force along y this controller asks for")
-        error: float = tap("um", "y minus what it follows")
+        error: float = tap("um", "y minus its target")
         learned: float = tap("uN", "part of the force that has been learned")
-        phase_difference: float = tap("deg", "phase of y against that of the partner")
+        phase_difference: float = tap("deg", "phase of y against the partner's y")
         partner_rate: float = tap("deg/s", "rate read from the swing of the partner")
 
     @classmethod

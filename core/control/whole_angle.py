@@ -57,7 +57,7 @@ class WholeAngle(Block):
     )
     weaknesses = (
         "A damping that a fault makes unequal turns the line as a rate does, up to half the difference.",
-        "A held force tunes modes that lie far apart only roughly: with 674 Hz between them 100 deg/s reads 4 % high "
+        "A held force tunes modes that are far apart only roughly: with 674 Hz between them 100 deg/s reads 4 % high "
         "at 100 kHz, 0.24 % at 200 kHz and 0.01 % at 500 kHz.",
         "Modes of 18 kHz are too fast to be tuned at 100 kHz: set B reads almost nothing of any rate, and nothing says "
         "so; at 1 MHz it reads within 3 deg/s.",
@@ -67,7 +67,7 @@ class WholeAngle(Block):
         """Amplitude and gains."""
 
         amplitude_um: float | None = parameter(
-            None, "amplitude to hold; that of the device unless given", "um", gt=0, le=100
+            None, "amplitude to hold; the device's own unless given", "um", gt=0, le=100
         )
         energy_gain_per_ms: float = parameter(0.2, "gain gamma of the energy", "1/ms", ge=0, le=100)
         area_gain_per_ms: float = parameter(0.2, "gain kappa of the area", "1/ms", ge=0, le=100)

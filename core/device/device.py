@@ -93,9 +93,9 @@ class Device(BlockParams):
     transfer_function: TransferFunction | None = parameter(None, "of a plant that is no resonator", live=False)
     gyroscope: GyroscopeTable | None = parameter(None, "of a device with two axes", live=False)
     drawn_gyroscope: DrawnGyroscope | None = parameter(
-        None, "what a device with two axes has beside the drawing", live=False
+        None, "data of a device with two axes in addition to the drawing", live=False
     )
-    printed: Printed | None = parameter(None, "what the dissertation prints of it", live=False)
+    printed: Printed | None = parameter(None, "printed figures of the dissertation", live=False)
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
@@ -104,7 +104,7 @@ class Device(BlockParams):
             besides = [name for name in (*OF_RESONATOR, other) if getattr(self, name) is not None]
             if besides:
                 where = "its table" if self.drawn_gyroscope is None else "its drawing"
-                raise ValueError(f"all numbers of a gyroscope stand in {where}; leave out {', '.join(besides)}")
+                raise ValueError(f"all numbers of a gyroscope belong in {where}; leave out {', '.join(besides)}")
             if self.drawn_gyroscope is not None and self.geometry is None:
                 raise ValueError("drawn_gyroscope needs a geometry, the drawing of its parts")
             self.oscillator()

@@ -34,8 +34,10 @@ class GyroscopeTable(BlockParams):
     """
 
     mass_x_kg: MassKg = parameter(..., "mass that moves along x, the driven axis", "kg", live=False)
-    mass_y_kg: MassKg | None = parameter(None, "mass that moves along y; that of x unless given", "kg", live=False)
-    coriolis_mass_kg: MassKg | None = parameter(None, "mass the rate acts on; that of y unless given", "kg", live=False)
+    mass_y_kg: MassKg | None = parameter(None, "mass that moves along y; the mass of x unless given", "kg", live=False)
+    coriolis_mass_kg: MassKg | None = parameter(
+        None, "mass the rate acts on; the mass of y unless given", "kg", live=False
+    )
     stiffness_x_n_m: StiffnessNM = parameter(..., "stiffness k_x", "N/m", equation="6.1.3", live=False)
     stiffness_y_n_m: StiffnessNM = parameter(..., "stiffness k_y", "N/m", equation="6.1.3", live=False)
     stiffness_xy_n_m: float = parameter(0.0, "cross stiffness k_xy: quadrature", "N/m", equation="6.1.3", live=False)

@@ -32,7 +32,7 @@ PRINTED: dict[str, tuple[str, ...]] = {
 MISSING: dict[str, dict[str, str]] = {
     "mass": {
         "lithography": "line widths set the area of the shuttle",
-        "etching": "so does what is etched from each edge",
+        "etching": "so does the etch bias of each edge",
     },
     "damping": {"material growth": "the sacrificial layer is the gas film, and thickness the facing area of the combs"},
     "force": {

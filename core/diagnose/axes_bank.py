@@ -48,7 +48,7 @@ class AxesBank(Bank):
     residuals = ("residual_x", "residual_y")
     covariances = ("covariance_x", "covariance_xy", "covariance_y")
     gains = tuple((f"gain_{state}_x", f"gain_{state}_y") for state in ("x", "y", "x_velocity", "y_velocity", "rate"))
-    weighed = "what was believed before, the winner raised by the least evidence that counts"
+    weighed = "the probabilities before, the winner raised by the least evidence that counts"
     lengths = ("hypotheses",)
     weaknesses = (
         "Held at its amplitude, a device with half the drive and one with twice the damping take the same force. Where "
@@ -99,7 +99,7 @@ class AxesBank(Bank):
             0.003, "assumed noise of the force along y, over the same force", "1", ge=0, le=100
         )
         sensor_noise_um: float | None = parameter(
-            None, "assumed sensor noise; what the sensor has unless given", "um", gt=0, le=100
+            None, "assumed sensor noise; the sensor's own unless given", "um", gt=0, le=100
         )
         rate_std_dps: float = parameter(
             300.0, "uncertainty of the rate at the start, 0 to take it for 0", "deg/s", ge=0, le=1e6, live=False

@@ -41,7 +41,7 @@ class Bank(Block):
     gains: ClassVar[tuple[tuple[str, ...], ...]] = ()
     """Taps of the Kalman gain, a row for each state, a column for each residual; none without filters."""
 
-    weighed: ClassVar[str] = "what was believed before"
+    weighed: ClassVar[str] = "the probabilities before"
     """The prior of a sample, in words."""
 
     evidence: ClassVar[str] = ""

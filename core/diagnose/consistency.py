@@ -67,7 +67,7 @@ class Consistency(KalmanBank):
         )
         window: int = parameter(50, "samples of the window", equation="5.1.6.1", ge=2, le=4096, live=False)
         significance: float = parameter(1e-5, "chance that a test calls a true hypothesis false", gt=0, le=0.5)
-        tone_hz: float | None = parameter(None, "tone; that of the reference unless given", "Hz", gt=0, le=1e6)
+        tone_hz: float | None = parameter(None, "tone; the reference's unless given", "Hz", gt=0, le=1e6)
         isolated_after: int = parameter(50, "samples with the same one left", ge=1, le=1_000_000)
         unknown_after: int = parameter(200, "samples with none left", ge=1, le=1_000_000)
 

@@ -77,7 +77,7 @@ class ModelList(BlockParams):
     def _distinct(self) -> Self:
         twice = [name for name, count in Counter(item.name for item in self.hypotheses).items() if count > 1]
         if twice:
-            raise ValueError(f"hypothesis names must differ, {twice[0]} is there twice")
+            raise ValueError(f"hypothesis names must differ, {twice[0]} occurs twice")
         return self
 
 

@@ -37,7 +37,7 @@ class FilterParams(BlockParams):
         0.3, "assumed noise on the voltage, rms per sample", "V", equation="5.2.3.1.2", ge=0, le=100
     )
     sensor_noise_um: float | None = parameter(
-        None, "assumed sensor noise; what the sensor has unless given", "um", gt=0, le=100
+        None, "assumed sensor noise; the sensor's own unless given", "um", gt=0, le=100
     )
     assumed_noise_scale: float = parameter(1.0, "factor on both assumed variances", gt=0, le=1e4)
     voltage: Literal["parabola", "middle", "start"] = parameter(

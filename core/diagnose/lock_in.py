@@ -52,7 +52,7 @@ class LockIn(KalmanBank):
         window: int | None = parameter(
             None, "samples of the window; a period of the tone unless given", ge=2, le=4096, live=False
         )
-        tone_hz: float | None = parameter(None, "tone; that of the reference unless given", "Hz", gt=0, le=1e6)
+        tone_hz: float | None = parameter(None, "tone; the reference's unless given", "Hz", gt=0, le=1e6)
 
     class Packed(window.Packed):
         """Parameters of filters and window; floor under probabilities and its logarithm."""

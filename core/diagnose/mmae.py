@@ -65,7 +65,7 @@ class Mmae(KalmanBank):
             r"\quad p_k=\max(\mathrm{softmax}_k\,\ell,\;p_{min})",
             "5.2.3.2.6",
             printed=r"p_k(t_i)=\frac{f_k\,p_k(t_{i-1})}{\sum_j f_j\,p_j(t_{i-1})}",
-            why="as printed the probabilities of the faults sink for ever while the device is healthy, and steps "
+            why="as printed the probabilities of the faults sink without limit while the device is healthy, and steps "
             "2 to 6 are never found",
         ),
     )

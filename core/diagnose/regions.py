@@ -48,7 +48,7 @@ class Regions(Block):
         window: int | None = parameter(
             None, "samples of a comparison; a period of the tone unless given", ge=2, le=1_000_000
         )
-        tone_hz: float | None = parameter(None, "tone; that of the reference unless given", "Hz", gt=0, le=1e6)
+        tone_hz: float | None = parameter(None, "tone; the reference's unless given", "Hz", gt=0, le=1e6)
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:

@@ -69,7 +69,7 @@ class TwoOutput(KalmanBank):
 
         probability_floor: float = parameter(1e-3, "smallest probability", equation="5.2.3.2.6", ge=0, le=0.05)
         velocity_noise_um_ms: float | None = parameter(
-            None, "assumed noise of the velocity; what the velocimeter has unless given", "um/ms", gt=0, le=1e4
+            None, "assumed noise of the velocity; the velocimeter's own unless given", "um/ms", gt=0, le=1e4
         )
 
     class Packed(KalmanBank.Packed):

@@ -24,7 +24,7 @@ class Quadrature(Fault):
     title = "Quadrature"
     group, place = "Suspension", 6
     shows = "beams"
-    changes = "spring between x and y; what it pushes along y is in step with the displacement along x"
+    changes = "spring between x and y; its force along y is in step with the displacement along x"
     suggested = 500.0
     axes = ("x", "y")
     equations = (Equation("effect", r"k_{xy}\to k_{xy}+2m_c\omega_x\Omega_q", "6.1.3"),)

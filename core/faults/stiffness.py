@@ -20,7 +20,7 @@ class Stiffness(Fault):
     shows = "beams"
     changes = (
         "stiffness of the suspension along x in every plant, sideways and in rotation, and so pull-in, in the planar "
-        "plant; resonance and displacement at rest both move"
+        "plant; resonance and static displacement both move"
     )
     suggested = 0.05
     axes = None

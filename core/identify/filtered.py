@@ -117,7 +117,7 @@ class FilteredEstimator(Filtered):
 
         coefficient: Vector = tap("mixed", "estimated kp, a1 and a2, in um, V and 1/w0", labels=COEFFICIENTS)
         coefficient_true: Vector = tap("mixed", "true kp, a1 and a2", labels=COEFFICIENTS)
-        residual: float = tap("um", "filtered acceleration minus what the estimate says it is")
+        residual: float = tap("um", "filtered acceleration minus its estimate")
 
     @classmethod
     def fill_nominal(cls, p: Packed, params: Any, context: Context) -> None:

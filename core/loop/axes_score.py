@@ -43,7 +43,7 @@ class AxesScore(Block):
         """Inputs of any score, and the effects between the axes and of the second axis alone."""
 
         second_stiffness_scale: float = reads(
-            "effects.second_stiffness_scale", "1", "true stiffness of the second axis over that of all"
+            "effects.second_stiffness_scale", "1", "true stiffness of the second axis over the stiffness of all"
         )
         cross_stiffness: float = reads("effects.cross_stiffness", "uN/um", "true stiffness added between the axes")
 

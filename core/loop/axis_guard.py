@@ -44,7 +44,7 @@ class AxisGuard(Block):
     class Ports(BlockPorts):
         """Signals the guard watches, and its verdict."""
 
-        before: float = reads("@before", "1", "what the guard of the axis before says")
+        before: float = reads("@before", "1", "result of the guard of the axis before")
         displacement: float = reads("plant.{axis}", "um", "true displacement")
         velocity: float = reads("plant.{axis}_velocity", "um/ms", "true velocity")
         command: float = reads("@command", "uN", "force asked for")

@@ -25,8 +25,8 @@ class AxisMeasurement(Block):
 
         chosen: float = reads("@measuring", "um", "displacement of the sensor in use")
         chosen_velocity: float = reads("@measuring_velocity", "um/ms", "velocity of the sensor in use")
-        offset: float = reads("effects.sensor_offset", "um", "added to what is measured")
-        quantum: float = reads("effects.sensor_quantum", "um", "step what is measured is rounded to")
+        offset: float = reads("effects.sensor_offset", "um", "added to the measurement")
+        quantum: float = reads("effects.sensor_quantum", "um", "rounding step of the measurement")
         held: float = reads("effects.sensor_held", "1", "not zero while the sample is lost")
         displacement: float = output("um", "measured displacement along the axis")
         velocity: float = output("um/ms", "measured velocity along the axis")

@@ -24,7 +24,7 @@ class Drive(Block):
         quantum_v: float = parameter(0.0, "step of the converter, 0 for none", "V", ge=0, le=100)
         dither_v: float = parameter(
             0.0,
-            "random signs added to what the controller asks for, so that a constant drive tells something",
+            "random signs added to the controller's voltage, so that a constant drive carries information",
             "V",
             ge=0,
             le=100,

@@ -139,7 +139,7 @@ class Environment(Block):
         stiffness_scale: float = output("1", "stiffness over nominal", hidden=True)
         damping_scale: float = output("1", "damping over nominal", hidden=True)
         squeeze: float = output(
-            "1", "squeeze film over that of a continuous gas at 300 K, over the damping", hidden=True
+            "1", "squeeze film over its value in a continuous gas at 300 K, over the damping", hidden=True
         )
         friction: float = output("uN", "Coulomb friction without any fault", hidden=True)
         friction_scale: float = output("1", "friction at this humidity over that at 40 %", hidden=True)

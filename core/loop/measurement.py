@@ -17,8 +17,8 @@ class ChosenPorts(BlockPorts):
     """The sensor in use, and the faults of the measurement."""
 
     chosen: float = reads("@measuring", "um", "displacement of the sensor in use")
-    offset: float = reads("effects.sensor_offset", "um", "added to what is measured")
-    quantum: float = reads("effects.sensor_quantum", "um", "step what is measured is rounded to")
+    offset: float = reads("effects.sensor_offset", "um", "added to the measurement")
+    quantum: float = reads("effects.sensor_quantum", "um", "rounding step of the measurement")
     held: float = reads("effects.sensor_held", "1", "not zero while the sample is lost")
 
 
@@ -46,7 +46,7 @@ class Measurement(Block):
         displacement: float = output("um", "measured displacement")
         past: Records[Entry] = tap(
             "mixed",
-            "what was measured over the last samples, with voltage and variance",
+            "measurements of the last samples, with voltage and variance",
             labels=tuple(str(i) for i in range(KEPT * Entry.layout.size)),
             hidden=True,
         )

@@ -36,7 +36,7 @@ class Model(Block):
 
         kind: Literal["copy", "damped", "direct", "transfer_function"] = parameter(
             "copy",
-            "the nominal device, a damped one of the same resonance, just the displacement at rest, or a "
+            "the nominal device, a damped device of the same resonance, just the static displacement, or a "
             "transfer function",
             live=False,
         )

@@ -64,7 +64,10 @@ class Declaration:
             self._import(node)
         elif isinstance(node, ast.Import):
             if [(alias.name, alias.asname) for alias in node.names] != [("math", None)]:
-                refuse(node, "only math is imported whole; docs/own-units.md lists what can be imported from elsewhere")
+                refuse(
+                    node,
+                    "only math is imported whole; docs/own-units.md lists the other permitted imports",
+                )
             self.names["math"] = Mathematics()
         elif isinstance(node, ast.Assign) and len(node.targets) == 1:
             self._constant(node.targets[0], node.value)

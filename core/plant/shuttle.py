@@ -72,7 +72,7 @@ class Shuttle(Block):
         stiffness_scale: float = reads("effects.stiffness_scale", "1", "stiffness over nominal")
         damping_scale: float = reads("effects.damping_scale", "1", "damping over nominal")
         drive_gain: float = reads("effects.drive_gain", "1", "voltage at the comb over voltage applied")
-        drive_offset: float = reads("effects.drive_offset", "V", "voltage at the comb that nobody applied")
+        drive_offset: float = reads("effects.drive_offset", "V", "stray voltage at the comb")
         acceleration: float = reads("effects.acceleration", "um/ms^2", "acceleration of the frame along x")
         friction: float = reads("effects.friction", "uN", "Coulomb friction")
         shorted: float = reads("effects.short", "1", "combs shorted from outside")

@@ -19,7 +19,7 @@ class ReferenceParams(BlockParams):
     """Amplitude in volts, or in micrometres of static displacement of the nominal device."""
 
     amplitude_v: float | None = parameter(None, "amplitude", "V")
-    amplitude_um: float | None = parameter(None, "amplitude as displacement at rest, instead of volts", "um")
+    amplitude_um: float | None = parameter(None, "amplitude as static displacement, instead of volts", "um")
     offset_v: float = parameter(0.0, "constant added", "V")
 
     @model_validator(mode="after")
@@ -34,7 +34,7 @@ class ReferenceParams(BlockParams):
             return self.amplitude_v
         assert self.amplitude_um is not None  # _one_amplitude has checked it
         if context.device.static_gain == 0.0:
-            raise InputError("no voltage alone displaces this device at rest; give amplitude_v", "amplitude_um")
+            raise InputError("no constant voltage alone displaces this device; give amplitude_v", "amplitude_um")
         return self.amplitude_um / context.device.static_gain
 
 

@@ -25,7 +25,7 @@ SPEED = 100.0
 """Variance of the speed that a new filter assumes in motion, over its variance without motion: it covers the stroke at
 resonance."""
 
-PAST_PORT = reads("sensor.past", "mixed", "what was measured over the last samples, to begin from")
+PAST_PORT = reads("sensor.past", "mixed", "measurements of the last samples, to begin from")
 
 
 @kernel

@@ -10,7 +10,7 @@ from core.elementary import floor
 from core.kernel import kernel
 from core.ports import output, reads, tap
 
-LAST_PORT = reads("sensor.displacement", "um", "what was measured last: where to take over")
+LAST_PORT = reads("sensor.displacement", "um", "last measurement: where to take over")
 
 TRUE_PORT = reads("plant.displacement", "um", "true displacement, for the error only")
 RECOVERED_PORT = output("um", "recovered displacement")

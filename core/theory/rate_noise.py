@@ -164,7 +164,7 @@ def _figure(which: int, terms: FloatArray, covariance: FloatArray, needs: str) -
         value = math.sqrt(term)
         return Figure(scale * value, scale * 0.5 * deviation / value)
     most = scale * math.sqrt(term + STANDS_OUT * deviation)
-    return Figure(None, most, f"does not stand out, at most {format_si(most, UNITS[which], 3)}; needs {needs}")
+    return Figure(None, most, f"is below the noise, at most {format_si(most, UNITS[which], 3)}; needs {needs}")
 
 
 def _seconds(duration_s: float) -> str:

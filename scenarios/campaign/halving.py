@@ -85,7 +85,7 @@ class ThresholdTurn(BaseModel):
 
     value: float = Field(description="The value nearest to it at which the claim holds")
     begins: bool
-    low: float = Field(description="It lies between this value and the next")
+    low: float = Field(description="It is between this value and the next")
     high: float
 
 

@@ -55,7 +55,7 @@ class FoolTheBank(Game[Named]):
     )
     task = (
         "The bank of six hypotheses knows the device and its noise. A seed offers three faults. Inject them on the "
-        "bench and heal them again, and see how small a fault may be before the bank goes on saying healthy. Then "
+        "bench and heal them again, and see how small a fault may be before the bank misses it. Then "
         "name a fault and a severity that it misses, as large as you dare. You have one attempt at each seed."
     )
     rule = (
@@ -111,7 +111,7 @@ class FoolTheBank(Game[Named]):
             never = f"It finds this fault nowhere up to {_amount(kind, end)}, so there is no edge and no points."
             return Outcome(points=0.0, figures=figures, said=f"{count} {never}", worked="P=0")
         figures["edge"] = found
-        again = " Yours lies beyond the edge, and the bank misses it again." if worth and size > abs(found) else ""
+        again = " Yours is beyond the edge, and the bank misses it again." if worth and size > abs(found) else ""
         words = f"{format_number(worth, 1)} points. The smallest it finds is {_amount(kind, found)}.{again}"
         sides = (size, abs(found)) if size <= abs(found) else (abs(found), size)
         worked = rf"P=100\cdot\frac{{{sides[0]:.4g}}}{{{sides[1]:.4g}}}={worth:.1f}" if worth else "P=0"

@@ -114,7 +114,7 @@ class Doings:
             if now != before:
                 numbers[f"{noun}_scale"] = now
                 times = "again" if now == 1.0 else f"{format_short(now, '', 3)} times"
-                said.append(f"the {noun} is {times} that of a healthy device")
+                said.append(f"the {noun} is {times} the healthy value")
                 signals.append(name)
         return numbers, listed(said) if said else "", signals
 

@@ -14,9 +14,9 @@ KINDS: tuple[Kind, ...] = ("trip", "switch", "heal", "fault", "verdict", "false_
 class Sentence(BaseModel):
     """An event in one sentence, with the numbers in it."""
 
-    tick: int = Field(description="When it could be told")
+    tick: int = Field(description="When the sentence was possible")
     kind: Kind
     text: str
     signals: list[str] = Field(description="Where it shows")
-    span: tuple[int, int] = Field(description="First and last tick of what it speaks of")
+    span: tuple[int, int] = Field(description="First and last tick of its subject")
     numbers: dict[str, float] = Field(description="The figures it is made of: um, ms, ticks, shares")

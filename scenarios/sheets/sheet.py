@@ -52,7 +52,9 @@ class Bench(Part):
     scenario: str = Field(description="Id of a scenario of the library")
     drawn_device: bool = Field(False, description="Draw the device from the process spread, one for each student")
     set: dict[str, float | bool | str | dict[str, Any] | list[Any]] = Field({}, description="Written over the scenario")
-    time_scale: float | None = Field(None, gt=0, le=1, description="Device seconds per wall second; that of the device")
+    time_scale: float | None = Field(
+        None, gt=0, le=1, description="Device seconds per wall second; the device's usual scale"
+    )
 
 
 class Head(Part):
@@ -96,7 +98,7 @@ class Limits(Part):
     between: tuple[Formula, Formula] | None = None
     equals: str | None = None
     unit: str = ""
-    told: bool = Field(True, description="Whether the page says what it is to be")
+    told: bool = Field(True, description="Whether the page shows the limits")
 
     @model_validator(mode="before")
     @classmethod
@@ -126,7 +128,7 @@ class Hold(Step):
     for_ms: float = Field(gt=0, le=10_000)
     window_ms: float = Field(1.0, gt=0, le=1000, description="Looked at at the end of every so much device time")
     conditions: list[Limits] = Field(min_length=1, max_length=8)
-    trace: list[str] = Field([], max_length=3, description="Signals of which a small trace is kept")
+    trace: list[str] = Field([], max_length=3, description="Signals with a small stored trace")
 
 
 class Option(Part):

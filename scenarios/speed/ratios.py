@@ -173,7 +173,7 @@ class Speed:
                 rows.append(figure(name, ratio(costs, peer, own), "x", least=least))
         if "unit_walled" in costs:
             rows += [
-                figure("PID as a unit of one's own, per sample", scaled(costs, "unit", 1.0), "ns"),
+                figure("PID as a user unit, per sample", scaled(costs, "unit", 1.0), "ns"),
                 figure("the same behind the wall", scaled(costs, "unit_walled", 1.0), "ns"),
                 figure("behind the wall over machine code", ratio(costs, "unit_walled", "unit"), "x"),
             ]

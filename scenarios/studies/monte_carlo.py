@@ -29,7 +29,7 @@ class MonteCarlo(Study):
     class Params(BlockParams):
         """The number of runs and their length."""
 
-        runs: int = parameter(40, "seeds, from that of the bench on", ge=1, le=10_000)
+        runs: int = parameter(40, "seeds, starting at the seed of the bench", ge=1, le=10_000)
         samples: int = parameter(9000, "length of a run", ge=1, le=10_000_000)
         compare: list[str] = parameter([], "two diagnosers whose means are divided")
 

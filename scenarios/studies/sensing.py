@@ -33,7 +33,7 @@ class Sensing(Study):
     class Params(BlockParams):
         """The number of runs and their length."""
 
-        runs: int = parameter(60, "seeds, from that of the bench on", ge=1, le=10_000)
+        runs: int = parameter(60, "seeds, starting at the seed of the bench", ge=1, le=10_000)
         duration_ms: float = parameter(20.0, "length of a run", "ms", gt=0, le=10_000)
 
     @classmethod

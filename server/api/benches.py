@@ -32,12 +32,12 @@ class NewBench(StrictBody):
     set: dict[str, Any] = Field({}, description="Values by dotted path, written over the scenario")
     seed: int | None = Field(None, ge=0, le=2**53)
     paused: bool = False
-    keep: bool = Field(False, description="Never let it go, however long nobody watches it or asks for it")
+    keep: bool = Field(False, description="Keep it open, however long it is unused")
     time_scale: float | None = Field(
         DEFAULT_SCALE,
         ge=MIN_SCALE,
         le=MAX_SCALE,
-        description="Device seconds per wall second; null: as fast as possible. Unless given, that of the device",
+        description="Device seconds per wall second; null: as fast as possible. Unless given, the device's own",
     )
     quiet_lead: bool = Field(
         False,
@@ -63,7 +63,7 @@ class NewBench(StrictBody):
     @model_validator(mode="after")
     def _has_a_pace(self) -> Self:
         if self.quiet_lead and self.time_scale is None:
-            raise ValueError("quiet_lead needs a time_scale to go on at")
+            raise ValueError("quiet_lead needs a time_scale to continue at")
         return self
 
 
@@ -101,12 +101,12 @@ class ForkFrom(StrictBody):
 
     snapshot: str | None = Field(None, description="A snapshot of the bench; null: this moment, or the tick")
     tick: int | None = Field(None, ge=0, le=2**53, description="A tick of the past, computed again; null: the snapshot")
-    before: bool = Field(False, description="Leave out what was done at that very tick")
+    before: bool = Field(False, description="Leave out the commands at that very tick")
     window_ticks: int = Field(
         20_000, ge=0, le=1_000_000, description="Ticks before it that are computed too, for its panels"
     )
     paused: bool = Field(False, description="It waits, and may seek other ticks until something is done on it")
-    name: str = Field("", max_length=MAX_NAME, description="What it is called beside its title")
+    name: str = Field("", max_length=MAX_NAME, description="Its name, in addition to its title")
 
     @model_validator(mode="after")
     def _has_one_moment(self) -> Self:
@@ -127,7 +127,7 @@ class Variant(StrictBody):
     """How the second bench differs."""
 
     set: dict[str, Any] = Field({}, description="Values by dotted path; a whole table may be one")
-    repeat: bool = Field(False, description="What was done on this bench is done again, to its tick; there it stands")
+    repeat: bool = Field(False, description="The commands to this bench are repeated, to its tick; there it pauses")
 
 
 @router.post("", status_code=201, dependencies=[RateLimited])

@@ -61,7 +61,7 @@ class BlindClass(BaseModel):
 
     rule: str
     hidden: int = Field(description="How many have not answered yet")
-    answers: list[Answer] = Field(description="Oldest first, those that are hidden still among them")
+    answers: list[Answer] = Field(description="Oldest first, including faults that are still hidden")
 
 
 @router.get(BENCH)
@@ -132,5 +132,5 @@ async def reveal_class(class_id: str, service: ServiceDep, person: PersonDep) ->
             done += 1
         except REFUSED as error:
             failed.append(f"{student.name}: {why(error)}")
-    service.audit.add("teacher", "blind", f"showed {done} students what was hidden", class_id)
+    service.audit.add("teacher", "blind", f"showed the hidden faults to {done} students", class_id)
     return Outcomes(done=done, failed=failed)

@@ -35,7 +35,7 @@ class ClaimList(BaseModel):
     seed: int
     version: str
     tick: int = Field(description="Ticks that are measured")
-    ends_at: int = Field(description="Tick at which a headless run ends; what runs beyond it does not count")
+    ends_at: int = Field(description="Tick at which a headless run ends; later ticks do not count")
     is_over: bool = Field(description="Whether the run has come to its end; until then nothing is ticked or crossed")
     reason: str = Field(description="Why nothing is measured; empty if it is")
     verdict: Verdict | None = Field(description="Null until the run has come to its end")

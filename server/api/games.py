@@ -32,7 +32,7 @@ class GameCard(BaseModel):
     rule: str = Field(description="How points are counted")
     equations: list[EquationCard]
     attempts: int = Field(description="How often one person may hand in at one seed")
-    hand_in: list[ParameterCard] = Field(description="What is handed in")
+    hand_in: list[ParameterCard] = Field(description="The values of the answer")
     live: list[str] = Field(description="What of it can be set on the bench while it runs")
 
 
@@ -53,7 +53,7 @@ class HandIn(Body):
     """Values of an answer."""
 
     seed: int = Field(ge=0, le=MOST)
-    hand_in: dict[str, float | str] = Field(max_length=20, description="What is left out has its default")
+    hand_in: dict[str, float | str] = Field(max_length=20, description="Missing fields have their defaults")
 
 
 class Look(Body):

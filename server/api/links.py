@@ -25,10 +25,10 @@ LONGEST_TITLE, LONGEST_NOTE = 200, 2000
 class NewLink(Body):
     """The target of a link: a bench as it is now, a scenario, or a layout of the page alone."""
 
-    bench: str | None = Field(None, description="Id of a live bench; what was done to it is kept")
+    bench: str | None = Field(None, description="Id of a live bench; the commands to it are kept")
     scenario: str | dict[str, Any] | None = Field(None, description="Library id, TOML text, or document")
     layout: Layout = Field(None, description="Layout of the page, its cursors in it")
-    title: str = Field("", max_length=LONGEST_TITLE, description="That of the scenario unless given")
+    title: str = Field("", max_length=LONGEST_TITLE, description="The scenario's title unless given")
     note: str = Field("", max_length=LONGEST_NOTE)
 
 

@@ -105,7 +105,7 @@ async def compare_parameter_sets(
         second = (await service.parameter_sets.get(other)).values
     else:
         if not service.people.may(person, Need.WATCH, bench or ""):
-            raise ApiError(403, "forbidden", "only the person who has this bench may do that", "bench")
+            raise ApiError(403, "forbidden", "only the owner of this bench may do that", "bench")
         session = service.views.whole(bench or "", person)
         second = await service.engine.call(lambda: tuned(session.board.spec))
     rows = [

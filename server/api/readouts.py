@@ -36,7 +36,7 @@ class NoiseFigure(BaseModel):
     unit: str
     value: float | None = Field(description="Null where the record does not tell")
     error: float | None = Field(description="Standard error; without a value the most it may be, null if unknown")
-    reason: str = Field(description="Why there is no value, and what it takes")
+    reason: str = Field(description="Why there is no value, and how to get one")
     true: float = Field(description="The noise of the angular rate itself; a sensor adds its own")
 
 
@@ -45,7 +45,7 @@ class RateReadout(BaseModel):
 
     tick: int
     record_s: float
-    octaves: list[Octave] = Field(description="Those that have a pair, by rising averaging time")
+    octaves: list[Octave] = Field(description="Octaves with a pair, by rising averaging time")
     figures: list[NoiseFigure]
     from_s: float = Field(description="The shortest averaging time of the fit; 0 without one")
     to_s: float

@@ -35,8 +35,8 @@ class NewRun(Body):
     label: str = Field("", max_length=1000, description="Name for the run, at most 120 characters")
     all: bool = Field(
         False,
-        description="Also run the controllers that never drive, and keep all signals, those of sensors that are never "
-        "in use as well; no figure and no digest depends on it",
+        description="Also run the controllers that never drive, and keep all signals, also of sensors that are never "
+        "in use; no figure and no digest depends on it",
     )
     seeds: str | Annotated[list[int], Field(min_length=2, max_length=2)] | None = Field(
         None,
@@ -74,7 +74,7 @@ class RunList(BaseModel):
     "",
     status_code=202,
     dependencies=[RateLimited],
-    responses={200: {"model": Run, "description": "The same run is there already"}},
+    responses={200: {"model": Run, "description": "The same run existed already"}},
 )
 async def start_run(body: NewRun, service: ServiceDep, response: Response) -> Run:
     """Queue a headless run; it does not disturb the live benches."""

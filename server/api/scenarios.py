@@ -30,7 +30,7 @@ class ScenarioCard(BaseModel):
     source: str
     summary: str
     claim: str
-    verdict: Verdict | None = Field(description="If all expectations hold; it follows from what the rows state")
+    verdict: Verdict | None = Field(description="If all expectations hold; it follows from the rows")
     samples: int | None
     plant: str | None = Field(description="Plant of the bench; null for a study")
     study: str | None = Field(description="Kind of the study; null for a scenario that runs on a bench")

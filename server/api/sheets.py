@@ -37,7 +37,7 @@ class SheetCard(BaseModel):
     minutes: int
     points: float
     steps: int
-    own: bool = Field(description="Somebody opened it; the others are those of the library")
+    own: bool = Field(description="A user opened it; the others belong to the library")
     work: SheetBrief | None = Field(description="How far the caller has come")
 
 

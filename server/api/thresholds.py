@@ -34,7 +34,7 @@ class NewThreshold(Body, Wanted):
     "",
     status_code=202,
     dependencies=[RateLimited],
-    responses={200: {"model": ThresholdRun, "description": "The same search is there already"}},
+    responses={200: {"model": ThresholdRun, "description": "The same search existed already"}},
 )
 async def find_threshold(
     body: NewThreshold, service: ServiceDep, person: PersonDep, response: Response

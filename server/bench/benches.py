@@ -89,7 +89,7 @@ class Benches:
         session = self._sessions.get(bench_id)
         if session is None:
             raise not_found(
-                "bench", bench_id, "list the live ones at /api/v1/benches; one that was let go comes back by /reopen"
+                "bench", bench_id, "list the live ones at /api/v1/benches; a closed idle bench comes back by /reopen"
             )
         return session
 

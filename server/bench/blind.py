@@ -89,7 +89,7 @@ class Blind(BaseModel):
     faults: list[Document]
     sheet: Document
     may_set: list[str] = Field([], description="In a game: further parameters that may be set")
-    may_inject: list[str] = Field([], description="In a game without hidden faults: those that may be tried")
+    may_inject: list[str] = Field([], description="In a game without hidden faults: the faults that may be tried")
 
     def inject(self, board: TickSource) -> None:
         """Let the fault wait for its moment."""

@@ -135,7 +135,7 @@ class Checkpoints:
             except FileNotFoundError:
                 return None
             except Exception:
-                log.exception("what was kept of bench %s cannot be read", bench_id)
+                log.exception("the checkpoint of bench %s cannot be read", bench_id)
                 return None
 
     async def forget(self, bench_id: str) -> None:

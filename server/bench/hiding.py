@@ -106,7 +106,7 @@ class Hiding:
     def reveal(self, actor: str) -> None:
         """Serve everything again (a job of the engine)."""
         self.view = None
-        self._bench.note(actor, "revealed", "what was hidden was shown")
+        self._bench.note(actor, "revealed", "the hidden fault was shown")
         self._bench.refresh_status()
 
     def look(self, rows: Rows) -> None:

@@ -127,7 +127,7 @@ class Playing(Running):
         start = tape.first if command.start_tick is None else command.start_tick
         end = tape.end if command.end_tick is None else command.end_tick
         if not tape.first <= start < end <= tape.end or end - start < LEAST_LOOP:
-            text = f"must lie in {tape.first} to {tape.end} and have at least {LEAST_LOOP} ticks"
+            text = f"must be within {tape.first} to {tape.end} and have at least {LEAST_LOOP} ticks"
             raise InputError(text, "end_tick")
         had_ended = tape.tick >= tape.end
         self._loop_start, self.ends_at = start, end

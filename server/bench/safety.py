@@ -94,7 +94,7 @@ class Safety:
             if isinstance(session, Session):
                 self._engine.interrupt(lambda one=session: _shut(one))  # type: ignore[misc]
                 self._on_loop(lambda one=session: self._begin(self._end(one)))  # type: ignore[misc]
-                log.error("bench %s hangs and is given up", session.id)
+                log.error("bench %s hangs and is closed", session.id)
 
     def _on_loop(self, function: Callable[[], None]) -> None:
         """Let the event loop do something."""
@@ -155,7 +155,7 @@ def make_safe(session: Session, reason: str) -> None:
 def _shut(session: Session) -> None:
     """Refuse all further commands to a bench (urgent)."""
     session.close()
-    show_trip(session, "the bench hung and has been given up")
+    show_trip(session, "the bench hung and was closed")
 
 
 def _with_outputs(benches: Sequence[Workload]) -> list[Session]:

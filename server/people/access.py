@@ -25,7 +25,7 @@ class Need(Enum):
     MEMBER = "the session of a student"
     WATCH = "may watch the bench in the path"
     MAY_DRIVE = "may drive the bench in the path, also while others drive"
-    DRIVE = "may drive the bench in the path, and nobody else does"
+    DRIVE = "may drive the bench in the path, and no other person drives it"
     TEACHER = "the teacher"
 
 

@@ -82,7 +82,7 @@ class Audit:
             try:
                 await self.write()
             except Exception:
-                log.exception("what people did could not be written; it is tried again")
+                log.exception("the log of actions could not be written; it is tried again")
 
     async def write(self) -> None:
         """Write the entries since the last time."""

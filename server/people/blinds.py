@@ -44,7 +44,7 @@ class Answer(BaseModel):
     name: str
     bench: str
     title: str
-    seed: int | None = Field(description="Of somebody alone: the same one hides the same fault")
+    seed: int | None = Field(description="For a user outside a class: the same seed hides the same fault")
     state: Literal["hidden", "answered", "revealed"] = "hidden"
     said: str | None = None
     confidence: float | None = None
@@ -54,9 +54,9 @@ class Answer(BaseModel):
     came_tick: int | None = Field(description="When the fault came; null for a healthy device")
     ended_tick: int | None = None
     took_ms: float | None = Field(None, description="Device time from the fault to the answer; null: none had come")
-    verdicts: dict[str, str] = Field({}, description="What each diagnoser said then")
-    healthy: Resonance | None = Field(None, description="What a sweep shows of the device without the fault")
-    faulty: Resonance | None = Field(None, description="What it shows with the fault; null for a device of two axes")
+    verdicts: dict[str, str] = Field({}, description="Verdict of each diagnoser then")
+    healthy: Resonance | None = Field(None, description="Response of the device without the fault")
+    faulty: Resonance | None = Field(None, description="Response with the fault; null for a device of two axes")
     began: datetime
     ended: datetime | None = None
 

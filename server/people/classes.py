@@ -44,16 +44,18 @@ class Class(BaseModel):
 
     id: str
     name: str
-    scenario: str = Field(description="What the benches of new students begin with")
+    scenario: str = Field(description="Start of the benches of new students")
     created: datetime
     until: datetime = Field(description="When it ends, and its students are forgotten")
     students: int
     shown: str | None = Field(None, description="The bench that all students see now; null: each sees the own one")
-    code: str | None = Field(description="As it stands on the wall; null: nobody can join, or it has to be made anew")
+    code: str | None = Field(
+        description="As shown on the wall; null: joining is closed, or the code has to be made anew"
+    )
     code_until: datetime | None
     path: str | None = Field(description="Path of the address by which students join")
     addresses: list[str] = Field(
-        [], description="Whole addresses from elsewhere, likeliest first; none: nobody can come"
+        [], description="Whole addresses for other machines, likeliest first; none: no other machine can connect"
     )
 
 

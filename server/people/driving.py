@@ -280,7 +280,7 @@ class Driving:
         """Return the lease of a bench with a driver, or refuse."""
         lease = self._leases.get(bench_id)
         if lease is None:
-            raise ApiError(409, "conflict", "nobody else has this bench open, so it needs no driver")
+            raise ApiError(409, "conflict", "no other person has this bench open, so it needs no driver")
         if not lease.is_of(person):
             raise lease.refusal(person)
         return lease

@@ -49,7 +49,7 @@ class Turns(BaseModel):
     """The attempts of a player at a game and a seed."""
 
     attempts: list[Attempt] = Field(description="Oldest first")
-    looked: bool = Field(description="Whether what was hidden has been shown")
+    looked: bool = Field(description="Whether the hidden values have been shown")
 
 
 class GameTable:

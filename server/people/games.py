@@ -34,7 +34,9 @@ class Play(BaseModel):
     attempts: list[Attempt] = Field(description="The caller's own, oldest first")
     best: float | None = Field(description="The most points of all in the table")
     table: list[Standing] = Field(description="Most points first, of the same the earlier first")
-    hidden: list[Fact] | None = Field(description="What the seed hides; null while the caller may still hand in")
+    hidden: list[Fact] | None = Field(
+        description="The hidden values of the seed; null while the caller may still hand in"
+    )
     bench: str | None = Field(description="The bench on which the caller plays it")
 
 

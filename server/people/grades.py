@@ -21,8 +21,8 @@ class StepGrade(BaseModel):
 
     step: str
     kind: str
-    state: str = Field(description="done, given up, or open")
-    earned: float = Field(description="Points before what was lost; those of a prediction once it is judged")
+    state: str = Field(description="done, left out, or open")
+    earned: float = Field(description="Points before losses; points of a prediction once it is judged")
     lost: float = Field(description="Points that wrong answers and hints cost")
     of: float
     answers: list[str]

@@ -56,7 +56,7 @@ class Shelf:
                 self._own[row.id] = await asyncio.to_thread(check, row.text, row.id)
             except InputError as error:
                 self._unread.add(row.id)
-                log.warning("a sheet of somebody cannot be read any more: %s", error)
+                log.warning("a user's sheet cannot be read any more: %s", error)
 
     def all(self) -> list[Sheet]:
         """List the sheets: the library in its order, then the sheets of users."""
@@ -85,6 +85,6 @@ class Shelf:
     def deletion(self, sheet_id: str) -> Change:
         """Delete a user's sheet."""
         if sheet_id not in self._own:
-            raise not_found("sheet of your own", sheet_id, "those of the library stay")
+            raise not_found("sheet of your own", sheet_id, "the sheets of the library stay")
         gone = delete(SheetRow).where(SheetRow.id == sheet_id)
         return Change(lambda session: session.execute(gone), lambda: self._own.pop(sheet_id, None))

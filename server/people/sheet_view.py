@@ -43,7 +43,7 @@ class StepView(BaseModel):
     id: str
     kind: Literal["hold", "question", "prediction", "blind"]
     points: float
-    earned: float | None = Field(description="Null while it is not told")
+    earned: float | None = Field(description="Null while it is hidden")
     lost: float
     rule: str = Field(description="How it earns and loses points")
     question: str = ""
@@ -78,8 +78,8 @@ class SheetView(BaseModel):
     title: str
     summary: str
     minutes: int
-    points: float = Field(description="What it can earn")
-    earned: float = Field(description="What it has earned so far; answers that are wrong may make it less than 0")
+    points: float = Field(description="Points that it can earn")
+    earned: float = Field(description="Points so far; wrong answers may make them less than 0")
     begun: bool
     done: bool
     bench: str | None = Field(description="The bench it is about; null: it is not there")

@@ -220,7 +220,7 @@ class Sheets:
                 try:
                     await self.begin(person, sheet.id)
                 except (InputError, ApiError):
-                    log.exception("the sheet %s could not be begun with somebody who joined", sheet.id)
+                    log.exception("the sheet %s could not be begun with a student who joined", sheet.id)
 
     async def change(self, person: Person, sheet_id: str, what: Callable[[Progress, Sheet, int], None]) -> None:
         """Do something at a sheet, and keep it.

@@ -165,7 +165,7 @@ class StudentBenches:
         try:
             return await self._benches.revive(found, self.on_revived)
         except Exception:
-            log.exception("bench %s cannot go on from what was kept", bench_id)
+            log.exception("bench %s cannot continue from its checkpoint", bench_id)
             self._given_up.add(bench_id)
             return None
 

@@ -46,7 +46,7 @@ class Tile(BaseModel):
     controller: str = ""
     faults: list[ActiveFault] = []
     verdicts: list[Verdict] = []
-    blind: Answer | None = Field(None, description="What was hidden last, and what was answered")
+    blind: Answer | None = Field(None, description="The last hidden fault, and the answer")
     sheet: SheetBrief | None = Field(None, description="The lab sheet begun last")
     trace: list[tuple[float, float]] = Field([], description="Minimum and maximum of the displacement, um, by column")
 

@@ -24,7 +24,7 @@ class FigureRow(BaseModel):
 
     metric: str
     values: list[float | None] = Field(description="In the order of the runs; null where a run has no such figure")
-    differences: list[float | None] = Field(description="Each value less that of the first run")
+    differences: list[float | None] = Field(description="Each value less the value of the first run")
 
 
 class RunSignal(BaseModel):

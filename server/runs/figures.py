@@ -115,7 +115,7 @@ class Figures:
             except Exception as error:
                 self.failed[scenario.id] = str(error) or type(error).__name__
                 self._tell(f"the figure of {scenario.id} could not be made: {self.failed[scenario.id]}")
-        log.info("figures of the gallery: %d of %d are there", len(self.made), self.total)
+        log.info("figures of the gallery: %d of %d exist", len(self.made), self.total)
 
     async def _draw(self, scenario: Scenario) -> dict[str, Any]:
         campaign = Campaign(

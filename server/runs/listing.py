@@ -40,10 +40,10 @@ class Run(BaseModel):
     state: str
     scenario_id: str
     title: str
-    label: str = Field("", description="Name that somebody gave it")
+    label: str = Field("", description="Name given by a user")
     seeds: list[int]
     all: bool = Field(
-        validation_alias="everything", description="Whether the trace has the signals of blocks that only look on too"
+        validation_alias="everything", description="Whether the trace has the signals of blocks in shadow too"
     )
     created: datetime
     finished: datetime | None
@@ -56,8 +56,8 @@ class RunFilter(BaseModel):
     """Which runs or campaigns a list is to have."""
 
     text: str = Field("", max_length=200, description="Words in the name, the title or the id of the scenario")
-    state: State | None = Field(None, description="Only those in this state")
-    scenario: str = Field("", max_length=200, description="Only those of this scenario")
+    state: State | None = Field(None, description="Only rows in this state")
+    scenario: str = Field("", max_length=200, description="Only rows of this scenario")
 
     def of(self, kind: Kind) -> Select[Any]:
         """Return the requested rows, newest first."""

@@ -170,7 +170,7 @@ class Queue:
             if text:
                 await self._end(row.id, "aborted", error={"code": "aborted", "message": text})
                 continue
-            log.info("%s %s goes on", row.kind, row.id)
+            log.info("%s %s continues", row.kind, row.id)
             self._tasks[row.id] = asyncio.create_task(self._carry_out(row))
 
     async def close(self) -> None:

@@ -165,7 +165,7 @@ class Gate:
     def _units_refused(self, person: Person | None) -> str:
         """Return why this person may not bring units of their own; nothing where they may."""
         if self._units == "off":
-            return "this server takes no units of one's own"
+            return "this server takes no user units"
         if self._units == "everyone" and person is not None:
             return ""
         return "" if person is not None and person.is_teacher else "only the teacher may bring units of their own"

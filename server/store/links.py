@@ -82,7 +82,7 @@ class Links:
         plain = content.model_dump(mode="json")
         size = len(json.dumps(plain))
         if size > MOST_CONTENT:
-            text = f"what was done and how it looked take {size} characters, at most {MOST_CONTENT}"
+            text = f"the commands and the layout take {size} characters, at most {MOST_CONTENT}"
             raise ApiError(413, "too_large", text, hint="save it as a scenario instead")
         done = content.experiment
         row = LinkRow(

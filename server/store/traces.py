@@ -112,7 +112,7 @@ def read_cut(path: Path, cut: Cut, most: int) -> pa.Table:
             )
         pieces.append(piece)
     if not count:
-        raise InputError("nothing of the trace lies in that span", "start_tick")
+        raise InputError("the trace has no tick in that span", "start_tick")
     schema = pa.schema([file.schema_arrow.field(name) for name in columns], metadata=file.schema_arrow.metadata)
     return pa.Table.from_batches(pieces).cast(schema)
 

@@ -100,7 +100,7 @@ class Units:
     def remove(self, name: str) -> None:
         """Delete a unit from the folder; benches that have it keep it."""
         if name not in self._kept:
-            raise not_found("unit of this server", name, "those of the library and of serve --unit stay")
+            raise not_found("unit of this server", name, "the units of the library and of serve --unit stay")
         (self._folder / f"{name}.py").unlink(missing_ok=True)
         del self._kept[name]
 

@@ -149,7 +149,7 @@ class Hub:
     def turn_bench(self, bench_id: str) -> None:
         """Close the streams of a bench whose view has changed; its pages come back at once."""
         for client in self._all(bench_id):
-            client.close(CLOSE_TURNED, "what may be seen of the bench has changed")
+            client.close(CLOSE_TURNED, "the visible part of the bench has changed")
 
     def close_all(self, reason: str) -> None:
         """Close every stream because the server stops."""

@@ -50,7 +50,7 @@ class TriggerSpec(Message):
             if self.upper is None:
                 raise ValueError("give the upper level of the window")
             if not self.upper > self.level:
-                raise ValueError("the upper level of the window must lie above the level")
+                raise ValueError("the upper level of the window must be above the level")
         return self
 
 
@@ -58,7 +58,7 @@ class BehindSpec(Message):
     """Another bench whose signals of the same names are shown behind the signals of a panel."""
 
     bench: str = Field(max_length=64)
-    shift_ticks: int = Field(0, ge=-MAX_TICK, le=MAX_TICK, description="Its tick minus that of this bench")
+    shift_ticks: int = Field(0, ge=-MAX_TICK, le=MAX_TICK, description="Its tick minus the tick of this bench")
 
 
 class Subscribe(Message):
@@ -178,7 +178,7 @@ class CaptureMark(BaseModel):
     """A capture of a triggered panel."""
 
     tick: int = Field(description="The first tick beyond the crossing")
-    trigger_tick: float = Field(description="Where it lies between ticks, on the line between them")
+    trigger_tick: float = Field(description="Its place between ticks, on the line between them")
     start_tick: int
     end_tick: int
 
@@ -199,7 +199,7 @@ class CaptureList(BaseModel):
     panel: int
     captures: list[CaptureMark]
     most: int = Field(description="Captures of one trigger")
-    is_short: bool = Field(description="Memory leaves room for fewer, or the bench keeps those of too many triggers")
+    is_short: bool = Field(description="Memory leaves room for fewer, or the bench keeps captures of too many triggers")
 
 
 class Reply(BaseModel):
@@ -224,7 +224,7 @@ class Notice(BaseModel):
 
     type: Literal["notice"] = "notice"
     code: Literal["slow_client", "events_lost", "shutdown", "ask_me"] = Field(
-        description="ask_me: what this person sees or may do has changed; /me says how"
+        description="ask_me: the view or the rights of this person have changed; read /me"
     )
     message: str
 

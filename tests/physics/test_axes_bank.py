@@ -198,5 +198,5 @@ def test_what_does_not_fit_is_refused():
         make({"diagnosers": {"bank": {"kind": "axes_bank"}}})
     with pytest.raises(InputError, match="is for one displacement"):
         make({"diagnosers": {"bank": {"kind": "mmae"}}}, base=GYRO)
-    with pytest.raises(InputError, match="a is there twice"):
+    with pytest.raises(InputError, match="a occurs twice"):
         bank(hypotheses=[{"name": "a"}, {"name": "a", "mass": 1.1}])

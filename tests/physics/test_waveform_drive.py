@@ -117,7 +117,7 @@ def test_a_waveform_is_silent_unless_asked_for_and_wants_volts():
         bench({"kind": "sine", "amplitude_um": 1.0})
     assert (caught.value.field, caught.value.message) == (
         "waveform.amplitude_um",
-        "no voltage alone displaces this device at rest; give amplitude_v",
+        "no constant voltage alone displaces this device; give amplitude_v",
     )
     with pytest.raises(InputError, match="needs exactly one"):
         bench({"kind": "sine"})

@@ -146,7 +146,7 @@ def test_one_that_stops_says_how_to_go_on(sweep: Any, monkeypatch: pytest.Monkey
     monkeypatch.setattr("scenarios.campaign.campaign.Campaign.run", stops)
     ended = sweep("--out", "here")
     assert ended.exit_code == 1 and "3 of 12 runs are done" in ended.stderr
-    assert "go on with: combbench sweep mine.toml --out here --resume" in ended.stderr
+    assert "continue with: combbench sweep mine.toml --out here --resume" in ended.stderr
 
     def interrupted(*_: Any) -> None:
         raise KeyboardInterrupt

@@ -177,7 +177,7 @@ def test_the_numbers_of_faults_switches_and_trips_follow_from_the_trace(seed: in
                 if scale[said.tick] != scale[said.tick - 1]:
                     numbers[f"{noun}_scale"] = scale[said.tick]
                     times = "again" if scale[said.tick] == 1.0 else f"{format_short(scale[said.tick], '', 3)} times"
-                    assert f"the {noun} is {times} that of a healthy device" in said.text
+                    assert f"the {noun} is {times} the healthy value" in said.text
         assert said.numbers == pytest.approx(numbers, rel=1e-9)
     for said in of(found, "trip"):
         assert found.trip is not None
