@@ -7,7 +7,7 @@ interface Capture {
   end_tick: number;
 }
 
-test("a scope moves with device time, looks back while it runs on, and measures what it shows; the picture is kept", async ({
+test("a scope moves with device time, looks back while it runs on, and measures its signals; the picture is saved", async ({
   page,
   server,
   openBench,

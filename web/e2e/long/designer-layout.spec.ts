@@ -33,7 +33,7 @@ const faultsOf = (page: Page): Promise<string[]> =>
     return [...missing.map((name) => `${name} is missing`), ...over, ...out];
   }, PANELS);
 
-test("no panel of the designer lies over another or is cut, at any width", async ({ page, server }) => {
+test("no panel of the designer covers another or is cut, at any width", async ({ page, server }) => {
   await page.request.get(server.url);
   await page.goto(`${server.origin}/?page=designer`);
   await expect(page.getByRole("img", { name: /^Bode diagram/ })).toBeVisible();

@@ -23,7 +23,7 @@ async function fieldOf(page: Page) {
   return { x: (share: number) => box.x + share * box.width, y: box.y + box.height / 2 };
 }
 
-test("under the pointer the device in 3D is that of the moment, and it comes back when the pointer leaves", async ({
+test("under the pointer the device in 3D shows that moment, and it comes back when the pointer leaves", async ({
   page,
   openBench,
   server,

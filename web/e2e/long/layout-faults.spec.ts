@@ -37,7 +37,7 @@ const RIGHT = `
   <p style="width: 90px; overflow: hidden; text-overflow: ellipsis; white-space: nowrap">cut with a sign of it</p>
   <div data-portal="true" style="position: absolute; top: 0; background: #fff">a menu over the page</div>`;
 
-test("what is wrong with a page is seen, each by itself, and nothing else is", async ({ page }) => {
+test("each fault of a page is found by itself, and nothing else is found", async ({ page }) => {
   await showOn(page, SCREENS[3]);
   const show = (html: string) =>
     page.setContent(
