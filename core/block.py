@@ -1,8 +1,8 @@
 """A block: parameters, ports, equations and one step.
 
-A step is ``step(p, s, x)``: what it reads, its state, and its ports, all by name. A block declares each once, in the
-classes ``Params`` (what people set), ``Packed``, ``State`` and ``Ports``. The same function, run uncompiled, is its own
-oracle.
+A step is ``step(p, s, x)``: its numbers, its state, and its ports, all by name. A block declares each once, in the
+classes ``Params`` (the user's settings), ``Packed``, ``State`` and ``Ports``. The same function, run uncompiled, is its
+own oracle.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ IntArray = NDArray[np.int64]
 
 
 LEAST, MOST = 1e-60, 1e100
-"""Parameters are 0 or lie between these in size: products and ratios of a few of them are still numbers."""
+"""Parameters are 0 or between these in size: products and ratios of a few of them are still finite."""
 
 
 class BlockParams(Table):
@@ -39,7 +39,7 @@ class BlockParams(Table):
 
     @model_validator(mode="after")
     def _of_a_size_to_compute_with(self) -> Self:
-        """Refuse a number so small or so large that what is worked out from it is none."""
+        """Refuse a number so small or so large that the packed numbers would not be finite."""
         for name, value in self.__dict__.items():
             for one in value if type(value) is list else (value,):
                 if type(one) in (int, float) and one and not LEAST <= abs(one) <= MOST:
@@ -88,12 +88,12 @@ class Oscillator:
 
     @property
     def static_gain(self) -> float:
-        """Displacement per volt at rest, um/V, signed; 0 for a plant that is nowhere at rest."""
+        """Static displacement per volt, um/V, signed; 0 for a plant without a static equilibrium."""
         return self.force / self.stiffness if self.stiffness != 0.0 else 0.0
 
     @property
     def natural_frequency(self) -> float:
-        """Undamped natural frequency, rad/ms; what counts as 1 in time of a transfer function."""
+        """Undamped natural frequency, rad/ms; the unit 1 in the time of a transfer function."""
         if self.time_unit_ms > 0.0:
             return 1.0 / self.time_unit_ms
         return float(math.sqrt(self.stiffness / self.mass))
@@ -140,15 +140,15 @@ class Context:
     analogue : bool
         Whether the reference drives the plant between samples.
     limit_v : float
-        What the drive reaches to either side.
+        Reach of the drive to either side.
     limit_un : float
         The same for a plant with axes, whose drive is a force.
     axis : str
-        The axis the block stands at, if it stands at one.
+        The axis of the block, if it belongs to one.
     tone_hz : float
         Frequency of the reference, 0 if it has none.
     sensors : mapping of str to BlockParams
-        Parameters of every sensor: what calibrating it would tell.
+        Parameters of every sensor, as a calibration would give them.
     """
 
     dt_ms: float
@@ -181,7 +181,7 @@ class Block:
     name: ClassVar[str]
     title: ClassVar[str]
     text: ClassVar[str] = ""
-    """Of a unit of one's own, what it was read from."""
+    """The text of a user unit."""
     group: ClassVar[str] = ""
     place: ClassVar[int] = 1000
     """Where lists for people have the block: under which heading, and in which order, the usual first."""
@@ -206,11 +206,11 @@ class Block:
     per_axis: ClassVar[bool] = False
     """Whether the board makes one instance for each axis of the plant."""
     slot: ClassVar[str] = ""
-    """Of a controller: the slot it stands in."""
+    """The slot of a controller."""
     slots: ClassVar[dict[str, str]] = {"": "open_loop"}
     """Of a plant: its slots, each with the controller that usually drives; ``controller.kind`` means the last."""
     generators: ClassVar[dict[str, str]] = {}
-    """Of a plant with axes: what comes from outside besides its forces, and the family of each."""
+    """The inputs of a plant with axes besides its forces, and the family of each."""
     usual_sensor: ClassVar[str] = "ideal"
     lengths: ClassVar[tuple[str, ...]] = ()
     """Parameters that set the length of the tail of ``State``; none of them may change while the board runs."""
@@ -241,7 +241,7 @@ class Block:
 
     @classmethod
     def fits(cls, axes: tuple[str, ...]) -> bool:
-        """Say whether the block goes with a plant that moves along these axes."""
+        """Return whether the block fits a plant that moves along these axes."""
         if cls.per_axis:
             return bool(axes)
         if cls.axes is None:
@@ -255,12 +255,12 @@ class Block:
 
     @classmethod
     def caution(cls, params: Any, context: Context, hz: float) -> str:  # noqa: ARG003 (most blocks take it as it is)
-        """Say what the block takes the voltage for and loses by it under a tone; nothing when that is little."""
+        """Return a warning about the loss by the block's hold assumption under a tone; empty when the loss is small."""
         return ""
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Record:  # noqa: ARG003 (some read parameters only)
-        """Return what the step reads; a number left blank is the parameter of its name."""
+        """Return the numbers of the step; a number left blank is the parameter of its name."""
         return cls.Packed.blank()
 
     @classmethod
@@ -275,7 +275,7 @@ class Block:
         Raises
         ------
         TypeError
-            When neither ``pack`` nor a parameter says one of them.
+            When neither ``pack`` nor a parameter sets one of them.
         """
         record = cls.pack(params, context)
         for name in record.blanks():

@@ -1,4 +1,4 @@
-"""Cards: what people are told of a block, in catalogue, documents and forms."""
+"""Cards: descriptions of a block in catalogue, documents and forms."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class EquationCard(BaseModel):
 
 
 class StageCard(BaseModel):
-    """A stage of a block as people see it: what it takes and gives by the names of ports and states."""
+    """A visible stage of a block: its inputs and outputs by the names of ports and states."""
 
     title: str
     takes: list[str]
@@ -59,7 +59,7 @@ class StageCard(BaseModel):
 
 
 class BlockCard(BaseModel):
-    """All that the catalogue says of a block."""
+    """The catalogue entry of a block."""
 
     family: str
     name: str
@@ -124,7 +124,7 @@ def is_live(info: FieldInfo) -> bool:
 
 
 def check_structure(entry: type[Block]) -> None:
-    """Refuse stages that name what the block does not have, or that leave out one of its outputs or equations.
+    """Refuse stages with unknown names, or stages that leave out an output or an equation of the block.
 
     Raises
     ------
@@ -160,7 +160,7 @@ def _labelled(entry: type[Block]) -> dict[str, Equation]:
 
 
 def _structure(entry: type[Block]) -> list[StageCard]:
-    """Return the stages of a block; one that states none is a single stage with all of its ports."""
+    """Return the stages of a block; a block without declared stages is a single stage with all of its ports."""
     labelled = _labelled(entry)
     visible = [port for port in entry.Ports.declared if not port.hidden]
     inputs, others = ([p.name for p in visible if (p.kind == INPUT) is taken] for taken in (True, False))

@@ -18,7 +18,7 @@ class Converter(Record):
 
 @kernel
 def convert(p: Converter, u: float) -> float:
-    """Clip to the limit and round to the converter's step; nothing comes out for what is not a number."""
+    """Clip to the limit and round to the converter's step; a value that is not a number gives 0."""
     if not math.isfinite(u):
         return 0.0
     u = min(max(u, -p.limit), p.limit)

@@ -38,7 +38,7 @@ UNITS = (
 
 
 MOST_LISTED = 40
-"""Names that an error lists; of more it says how many there are."""
+"""Names that an error lists; of more it gives the number."""
 ALTERNATIVE = re.compile(r"(?:list|dict|literal)\[.*\]")
 """Part of a pydantic location that names one of the types a value may have."""
 
@@ -137,7 +137,7 @@ def from_validation(error: ValidationError, known: Mapping[str, Sequence[str]] |
     error : ValidationError
         The error pydantic raised.
     known : mapping of str to sequence of str, optional
-        Field names allowed under each dotted parent, to suggest the one that was meant.
+        Field names allowed under each dotted parent, to suggest the intended name.
     """
     complaints = error.errors(include_url=False)
     first, path = complaints[0], field_of(complaints[0])

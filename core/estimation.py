@@ -26,7 +26,7 @@ def diagonal(n: int, value: float) -> list[float]:
 
 @kernel
 def entry(row: int, column: int) -> int:
-    """Return where an element stands in the lower triangle."""
+    """Return the place of an element in the lower triangle."""
     return row * (row + 1) // 2 + column if row >= column else column * (column + 1) // 2 + row
 
 
@@ -132,8 +132,8 @@ def estimate(
 
     so that :math:`P^{-1}\leftarrow\mu(P^{-1}+\phi\phi^T/r)`: with :math:`r=\mu` the usual discrete recursion, with
     :math:`r=m^2\mu/h,\;\mu=e^{-Bh}` the exact sample of the continuous law with rate B and normaliser m. A covariance
-    whose trace would grow beyond the limit stays as it is (Ioannou and Sun, Robust Adaptive Control, 4.3.6): the
-    estimate goes on learning, and parameters that are not excited do not wind up.
+    whose trace would grow beyond the limit stays unchanged (Ioannou and Sun, Robust Adaptive Control, 4.3.6): the
+    estimate continues to learn, and parameters that are not excited do not wind up.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ def estimate(
             total += covariance[row + j] * regressor[j]
         at = row + i
         before += abs(covariance[at])
-        # the rest of the row stands in the column below the diagonal
+        # the rest of the row is in the column below the diagonal
         for j in range(i, n):
             total += covariance[at] * regressor[j]
             at += j + 1
@@ -192,12 +192,12 @@ def estimate(
 
 @kernel
 def project_onto(theta: Vector, covariance: Vector, n: int, which: int, low: float, high: float) -> None:
-    r"""Bring one parameter back into its bounds, and move the others with it as their covariance says.
+    r"""Bring one parameter back into its bounds, and move the others with it by their covariance.
 
     .. math:: \theta\leftarrow\theta+\frac{Pe_i}{P_{ii}}(\text{bound}-\theta_i)
 
     The result is the nearest estimate within the bounds in the metric of :math:`P^{-1}`, so the projection never undoes
-    what the update has gained.
+    the gain of the update.
     """
     value = theta[which]
     missing = min(max(value, low), high) - value

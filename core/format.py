@@ -63,7 +63,7 @@ def unit_scale(unit: str, magnitude: float, digits: int = 4) -> UnitScale:
 
 
 def plain_scale(unit: str, values: Sequence[float]) -> tuple[float, str]:
-    """Return a factor and the unit in which figures beside each other read without a power of ten.
+    """Return a factor and the unit in which figures next to each other read without a power of ten.
 
     It is their own unit where it does, else the same with a prefix.
     """
@@ -112,17 +112,17 @@ def format_in(value: float, unit: str, decimals: int) -> str:
 
 
 def format_percent(share: float, decimals: int = 1) -> str:
-    """Write a share as a percentage; one close to 0 or 100 % keeps the digits that tell it from them."""
+    """Write a share as a percentage; a share close to 0 or 100 % keeps its distinctive digits."""
     return _part(share * 100.0, 100.0, "%", decimals)
 
 
 def format_share(share: float, decimals: int = 4) -> str:
-    """Write a share as a part of one, told from 0 and 1 in the same way."""
+    """Write a share as a part of one, distinct from 0 and 1 in the same way."""
     return _part(share, 1.0, "", decimals)
 
 
 def format_figure(metric: str, value: float | None, digits: int = 4, unit: str = "") -> str:
-    """Write a measured figure by the name of its metric, none as a dash; what is whole, as a count is, whole."""
+    """Write a measured figure by the name of its metric, None as a dash; a count is written as a whole number."""
     if value is None:
         return NOTHING
     if metric.endswith("_fraction"):
@@ -174,7 +174,7 @@ def tick_labels(ticks: Sequence[float]) -> list[str]:
 
 
 def labels_on(scale: UnitScale, ticks: Sequence[float]) -> list[str]:
-    """Label the ticks of an axis whose title says the unit of its scale."""
+    """Label the ticks of an axis whose title has the unit of its scale."""
     shown = [round_to(tick * scale.factor, 12) for tick in ticks]
     decimals = max((_decimals_of(tick, 9) for tick in shown), default=0)
     return [format_number(tick, decimals) + (scale.exponent if tick else "") for tick in shown]
@@ -210,13 +210,13 @@ def round_to(value: float, digits: int) -> float:
 
 
 def _pair(value: str, spread: str, scale: UnitScale) -> str:
-    """Join a value and what it may be off by, with the power of ten and the unit of both."""
+    """Join a value and its uncertainty, with the power of ten and the unit of both."""
     pair = f"{value}{PLUS_MINUS}{spread}"
     return _with_unit(f"({pair}){scale.exponent}" if scale.exponent else pair, scale.unit)
 
 
 def _part(part: float, whole: float, unit: str, decimals: int) -> str:
-    """Write a part of a whole; one that would read as none or all of it gets up to two more decimals, then a bound."""
+    """Write a part of a whole; if it would read as none or all, it gets up to two more decimals, then a bound."""
     if not math.isfinite(part):
         return NOTHING
     ends, most = (0.0, whole), decimals + 2
@@ -232,7 +232,7 @@ def _part(part: float, whole: float, unit: str, decimals: int) -> str:
 
 
 def _least(value: float, decimals: int) -> str:
-    """Write a number; one that is not zero and would read as zero gets a bound."""
+    """Write a number; a number other than zero that would read as zero gets a bound."""
     if value != 0.0 and float(_fixed(value, decimals)) == 0.0:
         return f"<{SPACE}{format_number(10.0**-decimals, decimals)}"
     return format_number(value, decimals)
@@ -257,7 +257,7 @@ def _decimals_for(shown: float, digits: int) -> int:
 
 
 def _decimals_of(value: float, most: int) -> int:
-    """Return the fewest decimals that show a value as so many do."""
+    """Return the fewest decimals that show a value as exactly as ``most`` decimals."""
     return len(_fixed(value, most).partition(".")[2].rstrip("0"))
 
 
@@ -276,7 +276,7 @@ def _rounding(digits: int) -> Context:
 
 @cache
 def _last(decimals: int) -> Decimal:
-    """Return one in the last of so many decimals."""
+    """Return 1 in the last place of a number of decimals."""
     return Decimal(1).scaleb(-decimals)
 
 

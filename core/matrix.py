@@ -1,7 +1,7 @@
 """Algebra of the small matrices of packing, in plain loops: the same bits on every machine.
 
 The machine's linear algebra picks its code, and with it the order of its sums, by the processor and by the number of
-its cores; what a step reads must not depend on either.
+its cores; the numbers of a step must not depend on either.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def riccati(phi: FloatArray, seen: FloatArray, noise: FloatArray, measured: Floa
     Parameters
     ----------
     phi, noise : ndarray, shape (n, n)
-        Transition between two measurements, and the covariance Q of what noise adds.
+        Transition between two measurements, and the covariance Q that noise adds.
     seen : ndarray, shape (m, n)
         H.
     measured : ndarray, shape (m, m)
@@ -105,7 +105,7 @@ def _product(a: FloatArray, b: FloatArray) -> FloatArray:
 
 @kernel
 def _eliminate(a: FloatArray, x: FloatArray) -> bool:
-    """Solve in place; say whether the matrix was regular."""
+    """Solve in place; return whether the matrix was regular."""
     n, m = x.shape
     for k in range(n):
         pivot = k
@@ -160,7 +160,7 @@ def _exponential(a: FloatArray) -> FloatArray:
 
 @kernel
 def _settled(p: FloatArray, more: FloatArray) -> bool:
-    """Add to a sum; say whether what was added was nothing beside it."""
+    """Add to a sum; return whether the addition was negligible."""
     largest = added = 0.0
     for i in range(p.shape[0]):
         for j in range(p.shape[1]):
@@ -181,7 +181,7 @@ def _transposed(a: FloatArray) -> FloatArray:
 
 @kernel
 def _riccati(a: FloatArray, g: FloatArray, p: FloatArray) -> bool:
-    """Double in place until nothing is added; say whether there was an end."""
+    """Double in place until the change is negligible; return whether there was an end."""
     n = a.shape[0]
     for _ in range(MOST_DOUBLINGS):
         matrix = _product(g, p)

@@ -1,4 +1,4 @@
-"""How deep a document may be nested: whoever copies, checks or prints a deeper one may run out of stack."""
+"""How deep a document may be nested: code that copies, checks or prints a deeper document may run out of stack."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LONG_KEY = re.compile(rf"""(?<![\w"'-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{DEE
 
 
 def depth(document: Any) -> int:
-    """Return how many tables and lists lie in one another."""
+    """Return the depth of nested tables and lists."""
     levels, inside = 0, [document]
     while tables := [one for one in inside if isinstance(one, dict | list)]:
         inside = [one for table in tables for one in (table.values() if isinstance(table, dict) else table)]
@@ -32,7 +32,7 @@ def read_toml(text: str, field: str, what: str = "TOML") -> dict[str, Any]:
     Raises
     ------
     InputError
-        Naming the line of malformed TOML, with the code ``malformed``; or saying how deep it may be nested.
+        Naming the line of malformed TOML, with the code ``malformed``; or the limit of nesting.
     """
     if not _LONG_KEY.search(text):
         try:

@@ -1,4 +1,4 @@
-"""Steps and helpers as plain Python: the oracle of what is compiled from the same text."""
+"""Steps and helpers as plain Python: the oracle of the compiled code from the same text."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ def rebound(value: Any, swap: Swap, builtins: dict[str, Any] | None = None) -> A
     value
         A function, compiled or not, or anything a function may name.
     swap : callable
-        Gets every value that is named, and returns the one to use in its place, or the value itself.
+        Gets every named value, and returns its replacement, or the value itself.
     builtins : dict, optional
-        Names that hide those of Python itself.
+        Names that hide the names of Python itself.
     """
     value = getattr(value, "py_func", value)
     other = swap(value)

@@ -36,8 +36,7 @@ class Port:
     unit, meaning : str
         Shown to people.
     source : str
-        For inputs: the signal it is wired to unless the wiring says otherwise. One that ends in ``?`` may be
-        missing and reads 0 then.
+        For inputs: the signal it is wired to by default. A signal that ends in ``?`` may be missing and reads 0 then.
     labels : tuple of str
         For vectors: one name per component.
     each : str
@@ -45,7 +44,7 @@ class Port:
     hidden : bool
         Plumbing: neither traced nor offered to scopes.
     warning : str
-        For a tap: what the log says when it rises from 0.
+        For a tap: the text of the log when it rises from 0.
     kind : str
         Input, output or tap.
     vector : bool
@@ -143,7 +142,7 @@ class _Reserved:
 
 
 class BlockPorts:
-    """Ports of a block; a subclass annotates them, ``float``, ``Vector`` or ``Records``, and says what each is.
+    """Ports of a block; a subclass annotates them, ``float``, ``Vector`` or ``Records``, and describes each.
 
     An instance is a view: of all signals, and of the places of its own among them. Every step may also read ``x.tick``,
     and ``x.time_ms``, which is device time.
@@ -159,7 +158,7 @@ class BlockPorts:
         self.signals, self.places = signals, places
 
     def __init_subclass__(cls) -> None:
-        """Give every port its place: those of the bases first, then its own, a port declared anew where it was."""
+        """Give every port its place: ports of the bases first, then its own, a port declared anew at its old place."""
         ports = {port.name: port for base in cls.__bases__ for port in getattr(base, "declared", ())}
         hints = get_type_hints(cls)
         for name in get_annotations(cls):

@@ -1,7 +1,7 @@
 """Named numbers in a flat array of float64: the ``p`` and the ``s`` of a step.
 
-The class says which numbers there are; an instance is a view of an array. Compiled steps see the same names at the same
-places (``core.views``).
+The class declares the numbers; an instance is a view of an array. Compiled steps see the same names at the same places
+(``core.views``).
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ Vector = NDArray[np.float64]
 """Several numbers under one name, ``s.x1[i]``."""
 
 Choice = Annotated[float, "choice"]
-"""A number that says how a step runs, such as a count, an interval or a form.
+"""A number that controls how a step runs, such as a count, an interval or a form.
 
 Boards side by side share it, so that a branch on it is a branch for all of them and a loop has one length.
 """
 
 BLANK_BITS = 0x7FF8_B1A2_4B1A_24B1
 BLANK = np.uint64(BLANK_BITS)
-"""Bits of a number that nobody has packed yet: not a number, and not the one that arithmetic makes."""
+"""Bits of a number that is not packed yet: not a number, and different from the NaN of arithmetic."""
 
 SCALAR, VECTOR, RECORD, RECORDS = "number", "vector", "record", "records"
 """Kinds of fields."""
@@ -34,7 +34,7 @@ SCALAR, VECTOR, RECORD, RECORDS = "number", "vector", "record", "records"
 
 @dataclass(frozen=True)
 class Field:
-    """Where a field stands.
+    """Place of a field.
 
     Parameters
     ----------
@@ -42,11 +42,11 @@ class Field:
     offset : int
         From the start of the record; for a tail, its turn among the tails.
     count : int
-        Numbers of a vector, records of several; 0 for a tail, whose length is that of the array.
+        Numbers of a vector, records of several; 0 for a tail, whose length is the length of the array.
     inner : Layout, optional
         Of the record, or of each of several.
     tail : bool
-        Whether it stands behind the fixed fields.
+        Whether it comes after the fixed fields.
     is_choice : bool
         Whether boards side by side share it.
     """
@@ -64,7 +64,7 @@ class Field:
 class Layout:
     """The fields of a record, and the numbers of the fixed ones.
 
-    Several tails are vectors of one common length; it stands in the last of the fixed numbers.
+    Several tails are vectors of one common length; it is in the last of the fixed numbers.
     """
 
     fields: tuple[Field, ...]
@@ -72,12 +72,12 @@ class Layout:
 
     @cached_property
     def tails(self) -> int:
-        """How many fields stand behind the fixed ones."""
+        """Number of fields after the fixed fields."""
         return sum(field.tail for field in self.fields)
 
     @cached_property
     def scalars(self) -> dict[int, str]:
-        """The names of single numbers by place, those of nested records with a dot."""
+        """The names of single numbers by place, names of nested records with a dot."""
         found = {}
         for field in self.fields:
             if field.kind == SCALAR:
@@ -93,7 +93,7 @@ class Layout:
 
     @cached_property
     def behind(self) -> int:
-        """How many numbers stand behind the fixed ones for each of the length of the tails."""
+        """Numbers after the fixed numbers for each unit of the length of the tails."""
         return sum(field.inner.size if field.inner else 1 for field in self.fields if field.tail)
 
     def numbers(self, length: int) -> int:
@@ -109,17 +109,17 @@ class _Many:
 
 
 def vector(count: int) -> Any:
-    """Declare a vector of so many numbers."""
+    """Declare a vector of ``count`` numbers."""
     return _Many(count)
 
 
 def several(count: int) -> Any:
-    """Declare so many records of one kind."""
+    """Declare ``count`` records of one kind."""
     return _Many(count)
 
 
 def tail() -> Any:
-    """Declare a vector or records of a length that is known when the record is made; all other fields stand before."""
+    """Declare a vector or records of a length that is known when the record is made; all other fields come before."""
     return _Many(0)
 
 
@@ -136,7 +136,7 @@ class Record:
         self.array: Any = array
 
     def __init_subclass__(cls) -> None:
-        """Lay the fields out: those of the bases first, then its own."""
+        """Lay the fields out: fields of the bases first, then its own."""
         declared = {name: many for base in cls.__bases__ for name, many in getattr(base, "_declared", {}).items()}
         hints = get_type_hints(cls, include_extras=True)
         for name in get_annotations(cls):
@@ -153,7 +153,7 @@ class Record:
 
     @classmethod
     def zeros(cls, length: int = 0) -> Self:
-        """Return a record of zeros; ``length`` is that of its tails."""
+        """Return a record of zeros; ``length`` is the length of its tails."""
         record = cls(np.zeros(cls.layout.numbers(length)))
         if cls.layout.tails > 1:
             record.array[cls.layout.size - 1] = length
@@ -170,11 +170,11 @@ class Record:
 
     @cached_property
     def address(self) -> int:
-        """Where its numbers stand in memory."""
+        """Address of its numbers in memory."""
         return int(self.array.ctypes.data)
 
     def blanks(self) -> list[str]:
-        """Return the names of the numbers that nobody has packed."""
+        """Return the names of the numbers that are not packed."""
         bits = self.array.view(np.uint64)[self.layout.scalar_places].tolist()
         if BLANK_BITS not in bits:
             return []
@@ -202,7 +202,7 @@ class Records(Generic[R]):
 
 
 def record_of(hint: Any) -> type[Record] | None:
-    """Return the record that an annotation names, or of which it names several."""
+    """Return the record class in an annotation, also of several records."""
     inner = get_args(hint)[0] if get_origin(hint) is Records else hint
     return inner if isinstance(inner, type) and issubclass(inner, Record) else None
 

@@ -16,7 +16,7 @@ FAMILIES = ("reference", "rate", "plant", "sense", "control", "identify", "diagn
 
 @cache
 def blocks(family: str) -> dict[str, type[Block]]:
-    """Return the blocks of a family by name, those of installed packages included, those that stand apart left out."""
+    """Return the blocks of a family by name, with blocks of installed packages, without blocks marked ``apart``."""
     return {name: entry for name, entry in _all(family).items() if not entry.apart}
 
 

@@ -1,4 +1,4 @@
-"""What a block tells of its inside: its equations, and the stages a sample passes."""
+"""The inside of a block: its equations, and the stages of a sample."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Equation:
-    """An equation shown beside the block, with the erratum if the printed one is wrong."""
+    """An equation shown with the block, with the erratum if the printed equation is wrong."""
 
     label: str
     latex: str
@@ -18,16 +18,16 @@ class Equation:
 
 @dataclass(frozen=True)
 class Stage:
-    """A part of what a step computes; where one stage takes what another gives, the drawing has a line.
+    """A part of a step; where one stage takes the output of another, the drawing has a line.
 
     Parameters
     ----------
     title : str
-        What it is called.
+        Its name.
     takes, gives : str
         Names with spaces between: ports of the block, or fields of its state.
     equations : tuple of str
-        Labels of the equations it carries, the block's own or those of its bases.
+        Labels of its equations, from the block or its bases.
     """
 
     title: str

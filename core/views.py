@@ -60,7 +60,7 @@ class PortsType(types.Type):
 
 
 def _several(seen: bool | Layout) -> str:
-    """Return what stands behind the name of a port: nothing, or that it is a vector, or of which records."""
+    """Return the mark after the name of a port: none, a vector, or its records."""
     return f"[{_text(seen)}]" if isinstance(seen, Layout) else "[]" * seen
 
 
@@ -143,7 +143,7 @@ def _place(builder: Any, base: Any, layout: Layout, field: Field) -> Any:
     if field.offset == 0:
         return behind
     length = builder.load(builder.gep(base, [_integer(layout.size - 1)]))
-    # nobody writes it, so it need not be read again after every number that is written
+    # it is never written, so it need not be read again after every number that is written
     length.set_metadata("invariant.load", builder.module.add_metadata([]))
     return builder.gep(behind, [builder.mul(builder.fptosi(length, ir.IntType(64)), _integer(field.offset))])
 
@@ -202,13 +202,13 @@ def _type(record: Any) -> RecordType:
     return RecordType(record.layout)
 
 
-# numba asks a value itself before it looks up what is registered for its class, which takes twice as long
+# numba asks a value itself before its registry, which takes twice as long
 Record._numba_type_ = property(lambda record: _type(record.__class__))  # type: ignore[attr-defined]
 
 
 @unbox(RecordType)
 def _take(kind: Any, record: Any, c: Any) -> Any:
-    """Let Python call kernels with its own records: what they write is written there."""
+    """Let Python call kernels with its own records: a kernel writes into them directly."""
     number = c.pyapi.object_getattr_string(record, "address")
     base = c.builder.inttoptr(c.pyapi.long_as_ulonglong(number), c.context.get_value_type(DOUBLES))
     c.pyapi.decref(number)
@@ -216,7 +216,7 @@ def _take(kind: Any, record: Any, c: Any) -> Any:
 
 
 def record_at(layout: Layout) -> Any:
-    """Return what makes a view of a record from a pointer, for compiled code."""
+    """Return the constructor of a view of a record from a pointer, for compiled code."""
     kind = RecordType(layout)
 
     def view(typing: Any, base: Any) -> Any:
@@ -229,9 +229,9 @@ def record_at(layout: Layout) -> Any:
 
 
 def ports_at(ports: tuple[tuple[str, bool | Layout], ...]) -> Any:
-    """Return what makes a view of ports from the signals and their places, for compiled code.
+    """Return the constructor of a view of ports from the signals and their places, for compiled code.
 
-    Of every port its name, and whether it is a vector or of which records.
+    Of every port its name, and whether it is a vector or its record class.
     """
     kind = PortsType(ports)
 

@@ -107,7 +107,7 @@ def moves(x: AppliedPorts) -> tuple[float, float, float]:
 
 
 def over_tick(device: Oscillator, gain: float, h: float, analogue: bool) -> tuple[float, ...]:
-    """Return the numbers of a `Tick`; at rest, stiffness times displacement is the gain times the voltage."""
+    """Return the numbers of a `Tick`; statically, stiffness times displacement is the gain times the voltage."""
     phi11, phi12, phi21, phi22 = transition(device.mass, device.damping, device.stiffness, h)
     rest = gain / device.stiffness
     push1 = _gained(device, rest, h, phi11)
@@ -121,7 +121,7 @@ def tick_of(device: Oscillator, gain: float, h: float, analogue: bool) -> Tick:
 
 
 def interval_of(context: Context) -> Interval:
-    """Return the nominal device over a tick and the interval of the block, for a displacement at rest of 1 um/V."""
+    """Return the nominal device over a tick and the interval of the block, for a static displacement of 1 um/V."""
     device, interval = context.device, Interval.blank()
     moving = over_tick(device, device.stiffness, context.dt_ms / context.every, context.analogue)
     interval.array[: len(moving)] = moving

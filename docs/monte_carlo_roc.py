@@ -1,10 +1,10 @@
 # %% [markdown]
-# # How well is a fault told from noise?
+# # How well does a diagnoser separate a fault from noise?
 #
 # A diagnoser gives the probability of a fault; at which probability should one act? The receiver operating
-# characteristic answers for every threshold at once: the share of faulty samples that are called so, over the share of
-# healthy ones that are. Here it is measured by Monte Carlo: the seven faults of chapter 5, many seeds, and four levels
-# of sensor noise, while the filters go on assuming the usual 0.05 um.
+# characteristic answers for every threshold at once: the detected share of the faulty samples over the share of healthy
+# samples with a false alarm. Here it is measured by Monte Carlo: the seven faults of chapter 5, many seeds, and four
+# levels of sensor noise, while the filters still assume the usual 0.05 um.
 #
 # Cells are marked with `# %%`; an editor with notebooks runs them one by one, `python docs/monte_carlo_roc.py` all.
 
@@ -32,11 +32,11 @@ seeds = "1:{RUNS}"
 "sensor.noise_um" = {NOISE_UM}
 """
 
-# %% Run it on all processors; started again it goes on where it was stopped
+# %% Run it on all processors; started again it continues from the runs that are done
 Path("monte-carlo-roc.toml").write_text(CAMPAIGN)
 subprocess.run(["combbench", "sweep", "monte-carlo-roc.toml", "--out", FOLDER, "--resume"], check=True)
 
-# %% Area under the curve for each noise, and what Monte Carlo leaves open
+# %% Area under the curve for each noise, and the uncertainty of Monte Carlo
 points = json.loads((FOLDER / "points.json").read_text())
 print("noise, um   area     samples right, mean ± standard error of the mean")
 areas = []

@@ -1,4 +1,4 @@
-"""The claims of a scenario: what is printed, what is expected and why, beside what was measured."""
+"""The claims of a scenario: the printed value, the expected value with its reason, and the measured value."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Mark(BaseModel):
     section: str
     words: str
     number: str = Field(description="The part of the words that is the number")
-    reading: str = Field(description="How what is drawn follows from the words, where it does not stand in them")
+    reading: str = Field(description="How the drawn number follows from the words, where it is not in them")
     kind: Kind
     signal: str
     unit: str
@@ -37,7 +37,7 @@ class Mark(BaseModel):
 
 
 class Claim(BaseModel):
-    """An expectation of a scenario beside what was measured."""
+    """An expectation of a scenario with the measured value."""
 
     metric: str
     published: str
@@ -51,7 +51,7 @@ class Claim(BaseModel):
     note: str
     reason: str
     fitted: list[str]
-    measured: float | None = Field(description="Over what has run")
+    measured: float | None = Field(description="Over the run so far")
     as_expected: bool | None = Field(description="Null without a measured value")
     state: State = Field(description="Of the printed claim; of the expectation where nothing is printed")
     verdict: Verdict | None = Field(description="Null until the run has come to its end")
@@ -71,9 +71,9 @@ def claims(
     scenario : Scenario
         The scenario.
     metrics : mapping
-        Figures of what has run.
+        Measured figures.
     signals : sequence of Signal
-        Those of the bench, for what is drawn.
+        Signals of the bench, for the printed marks.
     is_over : bool
         Whether the run has come to its end: before it nothing is ticked or crossed.
     """
@@ -84,7 +84,7 @@ def claims(
 
 
 def holds(entry: Expectation, measured: float | None) -> bool:
-    """Return whether a figure bears out what is printed, or what is expected where nothing is."""
+    """Return whether a figure agrees with the printed value, or with the expected value where nothing is printed."""
     if entry.agreeing is None:
         return entry.holds(measured)
     low, high = entry.agreeing
@@ -92,7 +92,7 @@ def holds(entry: Expectation, measured: float | None) -> bool:
 
 
 def marks(scenario: Scenario, signals: Sequence[Signal], metric: str | None = None) -> list[Mark]:
-    """Return what is drawn of a scenario on a bench: all of it, or what a metric judges; an empty one: nothing does."""
+    """Return the marks that a bench can draw: all, or the marks of one metric; an empty name means no metric."""
     units = {signal.name: signal.unit for signal in signals}
     return [
         _mark(entry, scenario, units) for entry in scenario.head.printed if metric is None or entry.metric == metric

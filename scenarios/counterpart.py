@@ -1,4 +1,4 @@
-"""The counterpart of a scenario: the same with its controllers taken away, to see what they are worth."""
+"""The counterpart of a scenario: the same without its controllers, for a comparison."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ OPEN = ("open_loop", "open_loop_rate")
 
 
 def counterpart(scenario: Scenario, kind: str = "open_loop") -> Scenario | None:
-    """Return the scenario with another controller in place of every one that drives, in its events and twins too.
+    """Return the scenario with another controller in place of every driving controller, in its events and twins too.
 
-    The same faults come at the same moments; switches lead to the other controller, and what events set of the
-    controller in use is left out. The drive loop of a gyroscope goes on, because without it nothing swings; its sense
-    axis is read in the open loop.
+    The same faults come at the same moments; switches lead to the other controller, and events that set parameters of
+    the controller in use are left out. The drive loop of a gyroscope stays, because without it there is no oscillation;
+    its sense axis is read in the open loop.
 
     Returns
     -------
@@ -29,7 +29,7 @@ def counterpart(scenario: Scenario, kind: str = "open_loop") -> Scenario | None:
 
 
 def replaced(scenario: Scenario, kind: str) -> Document:
-    """Return what the counterpart writes over its scenario; nothing where there is nothing to take away."""
+    """Return the fields that the counterpart writes over its scenario; empty without a controller."""
     switches = [command.switch for event in scenario.events for command in event if isinstance(command, Switch)]
     drive = {scenario.spec.active, *(twin.active for twin in scenario.twins.values()), *switches}
     if scenario.study is not None or drive <= {*OPEN, kind}:

@@ -70,7 +70,7 @@ def sensitivities(geometry: Geometry) -> dict[str, dict[str, float]]:
 
 
 def bode_band(spec: Spec, frequency_hz: FloatArray, seed: int) -> Band:
-    """Return displacement per volt over that of the nominal device at rest, dB and degrees, and its tolerance band.
+    """Return displacement per volt over the static gain of the nominal device, dB and degrees, and its tolerance band.
 
     With a drawing the band holds the 1st to the 99th percentile of devices drawn from the process; without one it is
     the exact envelope of 5 % more or less of mass, damping and stiffness.
@@ -87,7 +87,7 @@ def bode_band(spec: Spec, frequency_hz: FloatArray, seed: int) -> Band:
     Raises
     ------
     InputError
-        For a device without mass, or one that is driven by forces.
+        For a device without mass, or a device that is driven by forces.
     """
     if spec.device.two_axes is not None:
         raise InputError("is driven by forces along two axes, so nothing is a displacement per volt", "device.id")
@@ -111,8 +111,8 @@ def bode_band(spec: Spec, frequency_hz: FloatArray, seed: int) -> Band:
 def process(spec: Spec, draws: int, seed: int) -> Spread:
     """Draw devices from the process: mass, damping, stiffness and force per volt in their environment.
 
-    A value that the device states beside its drawing varies by the same share as the value from the drawing. Stators
-    that pull alike leave no force to vary.
+    A value that the device states in addition to its drawing varies by the same share as the value from the drawing.
+    Stators that pull alike leave no force to vary.
 
     Raises
     ------
@@ -133,7 +133,7 @@ def process(spec: Spec, draws: int, seed: int) -> Spread:
 
 
 def _shares(geometry: Geometry, draws: int, seed: int) -> Spread:
-    """Draw devices from the process, each parameter over that of the drawing."""
+    """Draw devices from the process, each parameter over its value in the drawing."""
     spread = draw(geometry, Tolerances(), draws, seed)
     return Spread(spread.drawn, {name: spread.found[name] / value for name, value in evaluate(geometry).items()})
 

@@ -31,7 +31,7 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
 
 
 def written(document: Document, values: dict[str, Any]) -> Document:
-    """Return a scenario with values written over; a fitted field that goes with that is no longer named.
+    """Return a scenario with values written over; a fitted field that changes with them is no longer named.
 
     Printed marks belong to the events they count from, so other events have none; a comparator belongs to the bench it
     was chosen on, so another bench has none; a length in samples takes the place of one in milliseconds, and the other
@@ -53,7 +53,7 @@ def written(document: Document, values: dict[str, Any]) -> Document:
 
 
 def _still(row: Any, before: Document, changed: Document) -> Any:
-    """Return an expectation that names what of its fitted fields and its PID is still there."""
+    """Return an expectation that names only its remaining fitted fields and its PID."""
     if not isinstance(row, dict):
         return row
     row = {**row}

@@ -1,4 +1,4 @@
-"""An expectation: what a figure should be, what was published of it, and the word that follows from both."""
+"""An expectation: the expected figure, the published figure, and the word that follows from both."""
 
 from __future__ import annotations
 
@@ -25,19 +25,19 @@ VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 AGREES = 0.05
 """Share of a published number within which a figure agrees with it, where no range is given."""
 LESS = ("error_um", "error_nm", "settling_ms")
-"""Ends of the metrics of which less is better, however little."""
+"""Ends of the metrics where less is always better."""
 End = Annotated[float, Field(allow_inf_nan=True)]
 
 
 class Expectation(Table):
-    """What a metric should be, and what was published.
+    """The expected and the published value of a metric.
 
-    ``published`` are the words of the text, ``published_value`` its number. A figure agrees with the text when it lies
-    in ``published_range``, ends included; where none is given, within 5 % of ``published_value``. ``fitted`` are the
-    fields of the scenario that were chosen so that it does. ``compare`` says what must miss the expectation by
-    `margin` for it to praise a controller: the open loop, or nothing, for a ``reason``. With ``"pid"`` the comparator
-    of the scenario is beside it too, and ``pid_too`` says that this PID `does_as_well`. ``verdict`` is not read:
-    earlier files have one.
+    ``published`` are the words of the text, ``published_value`` its number. A figure agrees with the text when it is in
+    ``published_range``, ends included; without a range, within 5 % of ``published_value``. ``fitted`` are the fields of
+    the scenario that were chosen so that it agrees. ``compare`` names the case that must miss the expectation by
+    `margin` for it to praise a controller: the open loop, or none, for a ``reason``. With ``"pid"`` the comparator of
+    the scenario is compared too, and ``pid_too`` says that this PID `does_as_well`. ``verdict`` is not read: earlier
+    files have one.
     """
 
     metric: str
@@ -116,8 +116,8 @@ class Expectation(Table):
     def margin(self) -> float:
         """How far outside its bounds a figure misses by twice the tolerance.
 
-        The tolerance is half the width of the bounds. With one bound it is what that leaves to the best there is: the
-        bound itself above 0, for a share what is left to 1, else half the bound.
+        The tolerance is half the width of the bounds. With one bound it is the distance to the best possible value: the
+        bound itself above 0, for a share the difference to 1, else half the bound.
         """
         low, high = self.bounds()
         if low is not None and high is not None:
@@ -164,7 +164,7 @@ class Expectation(Table):
         measured : float, optional
             The figure.
         pid : float, optional
-            That of the comparator; without one ``pid_too`` holds.
+            Figure of the comparator; without it ``pid_too`` holds.
         """
         if self.agreeing is None:
             return None if self.published else "ours"
@@ -188,10 +188,11 @@ class Expectation(Table):
 
 
 def overall(words: Iterable[Verdict | None]) -> Verdict | None:
-    """Return the word for a scenario from those of its rows; None where none has one.
+    """Return the word for a scenario from the words of its rows; None where no row has a word.
 
-    What the dissertation does not claim does not count beside what it does. If all the rest agrees, the scenario is
-    reproduced, by tuning where one row is, by a PID too where one row is; if nothing agrees it is not; else partly.
+    Rows that the dissertation does not claim do not count if other rows are claimed. If all the rest agrees, the
+    scenario is reproduced, by tuning where one row is, by a PID too where one row is; if nothing agrees it is not; else
+    partly.
     """
     found = {word for word in words if word is not None}
     claimed = found - {"ours"}

@@ -25,7 +25,7 @@ class Folder:
         self._path = path
 
     def get(self, name: str) -> bytes | None:
-        """Return a kernel, if it is there; its time of change is that of its last use."""
+        """Return a stored kernel; its modification time is the time of its last use."""
         path = self._path / name
         try:
             code = path.read_bytes()
@@ -44,7 +44,7 @@ class Folder:
 
 
 def prune(path: Path) -> None:
-    """Delete the kernels nobody has used for a month; a version may miss one of them, so none counts as complete."""
+    """Delete the kernels that were unused for a month; a version may miss one of them, so none counts as complete."""
     oldest, pruned = time.time() - KEPT_S, False
     for file in path.iterdir():
         with contextlib.suppress(OSError):  # another process was faster

@@ -1,7 +1,6 @@
 """Compiles the kernels that are not kept yet, on all cores.
 
-``python -m scenarios.kernels`` prints its progress, then deletes the kernels that nobody has used for a month. All
-processes load the kernels that one has compiled.
+``python -m scenarios.kernels`` prints its progress, then deletes the kernels that were unused for a month.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ NICE = 10
 LINE_EVERY = 10
 """Kernels from one line of progress to the next, where there is no terminal to write over the last one."""
 LOOP = ("", "loop")
-"""The task that compiles the kernels every bench needs beside its blocks."""
+"""The task that compiles the kernels every bench needs besides its blocks."""
 
 Task = tuple[str, str]
 
@@ -75,7 +74,7 @@ def tasks(*, first_bench_only: bool = False) -> list[Task]:
 
 
 def compile_all(work: list[Task], told: Callable[[int, int], None], *, abreast: bool = True) -> None:
-    """Compile some kernels in processes of their own, those of boards abreast too; tell how many are done."""
+    """Compile some kernels in processes of their own, also for boards abreast; report the progress."""
     method = "fork" if sys.platform == "linux" else "spawn"
     with ProcessPoolExecutor(os.cpu_count(), multiprocessing.get_context(method)) as pool:
         done = [pool.submit(_compile, task, abreast) for task in [LOOP, *work]]
@@ -102,7 +101,7 @@ def complete() -> Path | None:
 
 
 def main() -> None:
-    """Compile all kernels, those of the first bench only with ``first``, ``behind`` benches that run."""
+    """Compile all kernels; ``first``: only for the first bench, ``behind``: at lower priority than running benches."""
     start = time.monotonic()
     first = "first" in sys.argv
     if "behind" in sys.argv and os.name == "posix":
@@ -122,7 +121,7 @@ def main() -> None:
         sys.stdout.write("\n")
     done = complete()
     if done is not None and not first:
-        prune(done.parent)  # those of this version have just been used, every single one
+        prune(done.parent)  # the kernels of this version have just been used
         done.touch()
 
 

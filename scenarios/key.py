@@ -29,7 +29,7 @@ def code_version() -> str:
 def content_hash(document: dict[str, Any]) -> str:
     """Return a hash of a scenario without its seed, with the packages it names; the order of fields does not matter.
 
-    What is drawn of the printed figure is left out: no run depends on it.
+    The printed marks are left out: no run depends on them.
     """
     whole = written_over(carried(document), {})
     content = {name: value for name, value in whole.items() if name not in ("seed", "printed")}

@@ -19,7 +19,7 @@ TRUE_ONES = ("sensor.noise_um", "plant.drive_noise_v", "reference.amplitude_v", 
 NAMED = ("gain", "forgetting", "rate", "covariance", "noise", "slope", "floor", "anchor", "layer", "bound")
 """Words in the names of parameters that set how a controller, a diagnoser or an identifier works."""
 WIDER = ("gain", "noise", "covariance", "rate", "anchor", "frequency")
-"""Words in the names of those that are told by factors: a decade to either side."""
+"""Words in the names of parameters that are varied by factors: a decade to either side."""
 LEAST_NOISE = 0.1
 """Upper end for a noise that is 0."""
 MOST = 16
@@ -41,7 +41,7 @@ class Knob(BaseModel):
 
 
 def knobs(scenario: Scenario, entry: Expectation) -> list[Knob]:
-    """Return what may be turned for a claim: what was fitted, severities, then noise and the parts it is about."""
+    """Return the parameters to vary for a claim: fitted fields, severities, then noise and parts of the claim."""
     paths = dict.fromkeys(
         [
             *entry.fitted,
@@ -55,7 +55,7 @@ def knobs(scenario: Scenario, entry: Expectation) -> list[Knob]:
 
 
 def _parts(scenario: Scenario, metric: str) -> Iterator[str]:
-    """Yield the paths of what works in the parts that a metric is about."""
+    """Yield the paths of the active blocks in the parts of a metric."""
     family, _, rest = metric.removeprefix("twins.").partition(".")
     groups = {"diagnosis": "diagnosers", "identify": "identifiers"}
     head = f"{groups[family]}.{rest.partition('.')[0]}" if family in groups else "controller"
@@ -89,7 +89,7 @@ def _knob(scenario: Scenario, path: str, is_fitted: bool) -> Knob | None:
 
 
 def _card(scenario: Scenario, head: str, leaf: str) -> tuple[ParameterCard | None, Any, str | None]:
-    """Return what is known of a parameter, its value, and the fault whose severity it is."""
+    """Return the card of a parameter, its value, and the fault whose severity it is."""
     parts = head.split(".")
     if parts[0] == "events":
         command = next((one for one in scenario.events[int(parts[1])] if isinstance(one, Inject)), None)
@@ -106,7 +106,7 @@ def _card(scenario: Scenario, head: str, leaf: str) -> tuple[ParameterCard | Non
 
 
 def _at(document: Document, path: str) -> Any:
-    """Return what stands at a path of a document, None where it leads nowhere."""
+    """Return the value at a path of a document, None where the path does not exist."""
     found: Any = document
     for part in path.split("."):
         if isinstance(found, dict):
@@ -119,7 +119,7 @@ def _at(document: Document, path: str) -> Any:
 
 
 def _range(leaf: str, value: float, card: ParameterCard | None) -> tuple[float, float, bool]:
-    """Return the range around a value, within what is allowed."""
+    """Return the range around a value, within the allowed limits."""
     least = card.minimum if card is not None and card.minimum is not None else -1e300
     most = card.maximum if card is not None and card.maximum is not None else 1e300
     is_log = value > 0.0 and any(word in leaf for word in WIDER)

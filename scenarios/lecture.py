@@ -1,4 +1,4 @@
-"""A lecture: cues to go through, each an exact state of a bench, what is shown of it, and notes to speak from."""
+"""A lecture: cues in order, each an exact state of a bench, its panels, and notes to speak from."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class Question(Table):
 
 
 class Cue(Table):
-    """A cue: with ``scenario`` it begins an experiment, without it goes on with that of the cue before."""
+    """A cue: with ``scenario`` it begins an experiment, without it continues the experiment of the cue before."""
 
     title: Words = Field(min_length=1, max_length=100)
     minutes: float = Field(gt=0, le=60, description="planned")
@@ -95,16 +95,18 @@ class Cue(Table):
     scenario: str | None = Field(None, max_length=64, description="id of the library; begins an experiment at tick 0")
     seed: int | None = Field(None, ge=0, le=2**63 - 1)
     set: dict[str, Any] = Field({}, description="dotted paths of the scenario and their values")
-    events: list[dict[str, Any]] = Field([], max_length=100, description="what is done, in the notation of a scenario")
+    events: list[dict[str, Any]] = Field([], max_length=100, description="its commands, in the notation of a scenario")
     from_ms: float | None = Field(None, ge=0, le=LONGEST_MS, description="where it begins; where the cue before ends")
-    until_ms: float | None = Field(None, ge=0, le=LONGEST_MS, description="where it ends; it stands still without one")
+    until_ms: float | None = Field(
+        None, ge=0, le=LONGEST_MS, description="where it ends; without it the bench is paused"
+    )
     pace_ms_per_s: float | None = Field(None, ge=1e-3, le=1000, description="device time for each second of the room")
-    layout: Literal["lecture", "lab", "research"] | None = Field(None, description="that of the cue before")
+    layout: Literal["lecture", "lab", "research"] | None = Field(None, description="the layout of the cue before")
     panels: list[Panel] = Field([], max_length=6, description="views of panels brought to the front")
     signals: list[str] = Field([], max_length=6, description="on the first scope")
     window_ms: float | None = Field(None, gt=0, le=LONGEST_MS, description="of the first scope")
     metrics: Stretch | None = Field(None, description="the part of the run that the expectations speak of")
-    expect: list[Expectation] = Field([], max_length=20, description="what the notes claim, at the end of the cue")
+    expect: list[Expectation] = Field([], max_length=20, description="claims of the notes, at the end of the cue")
     vote: Question | None = None
 
     @model_validator(mode="after")
@@ -146,7 +148,7 @@ class Lecture:
     id : str
         The name of its file.
     document : dict
-        What is in the file.
+        Content of the file.
     """
 
     def __init__(self, id: str, document: dict[str, Any]) -> None:
@@ -197,7 +199,7 @@ class Lecture:
         return found
 
     def check(self) -> dict[str, Any]:
-        """Run every cue headless; return what the notes claim beside what was measured, JSON-ready."""
+        """Run every cue headless; return the claims of the notes with the measured values, JSON-ready."""
         cues = []
         for cue, state in zip(self.head.cues, self.states, strict=True):
             summary = run(state.scenario, figures_only=True).summary()
@@ -207,7 +209,7 @@ class Lecture:
 
 
 def _state(cue: Cue, before: State | None) -> State:
-    """Return the state of a cue, which may go on with the experiment of the one before."""
+    """Return the state of a cue, which may continue the experiment of the cue before."""
     if cue.scenario is not None or before is None:
         library = get(cue.scenario or "")
         document = written(library.document, cue.set)
@@ -221,7 +223,7 @@ def _state(cue: Cue, before: State | None) -> State:
     dt_ms = before.scenario.spec.dt_ms if cue.scenario is None and before else Scenario.load(_bare(document)).spec.dt_ms
     first = begins if cue.from_ms is None else round(cue.from_ms / dt_ms)
     if first < begins:
-        raise InputError(f"lies before {begins * dt_ms:g} ms, where the cue before ends", "from_ms")
+        raise InputError(f"is before {begins * dt_ms:g} ms, where the cue before ends", "from_ms")
     last = first if cue.until_ms is None else round(cue.until_ms / dt_ms)
     if not first <= last <= LONGEST_TICKS:
         raise InputError(f"must be from {first * dt_ms:g} ms to {LONGEST_TICKS * dt_ms:g} ms", "until_ms")
@@ -244,7 +246,7 @@ def _state(cue: Cue, before: State | None) -> State:
         tick = commands[0].tick(dt_ms)
         if tick is not None and not first <= tick <= last:
             span = f"{first * dt_ms:g} ms to {last * dt_ms:g} ms"
-            raise InputError(f"lies at {tick * dt_ms:g} ms, outside the cue, {span}", f"events.{position}")
+            raise InputError(f"is at {tick * dt_ms:g} ms, outside the cue, {span}", f"events.{position}")
     for position, name in enumerate(cue.signals):
         if name not in known:
             raise InputError(f"this bench has no signal {name}", f"signals.{position}")
@@ -254,12 +256,12 @@ def _state(cue: Cue, before: State | None) -> State:
 
 
 def _bare(document: dict[str, Any]) -> dict[str, Any]:
-    """Return a scenario without what is done and expected."""
+    """Return a scenario without its events and expectations."""
     return {key: value for key, value in document.items() if key not in ("events", "expect", "printed")}
 
 
 def _of_cue(field: str, done: int) -> str:
-    """Return the field of a cue for one of its scenario: its events come after those of the cues before."""
+    """Return the field of a cue for a field of its scenario: its events come after the events of the cues before."""
     parts = field.split(".")
     if parts[0] == "events" and len(parts) > 1:
         return ".".join(["events", str(int(parts[1]) - done), *parts[2:]])

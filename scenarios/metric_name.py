@@ -19,7 +19,7 @@ NAMES: dict[str, Any] = json.loads((Path(__file__).parent / "metric_names.json")
 
 
 class MetricScale(NamedTuple):
-    """How figures of one metric are shown beside each other: its words, the unit, the factor to it."""
+    """Display of figures of one metric next to each other: words, unit, factor to the unit."""
 
     name: str
     unit: str
@@ -79,7 +79,7 @@ def _parts(metric: str) -> tuple[str, str]:
         pieces = pieces[1:]
     unit, said = "", list[str]()
     for piece in pieces:
-        if piece.isdigit() and said:  # the number of a step belongs to what is counted
+        if piece.isdigit() and said:  # the number of a step belongs to the counted noun
             said[-1] += f" {piece}"
             continue
         words, found = _without_unit(piece)

@@ -1,4 +1,4 @@
-"""Units of one's own, from files; each is compiled in a process of its own, with limits of time and memory.
+"""User units, from files; each is compiled in a process of its own, with limits of time and memory.
 
 ``python -m scenarios.own`` reads a name and a text from standard input, checks and compiles the unit, and ends.
 """
@@ -79,7 +79,7 @@ def beside(units: Document, document: Document) -> Document:
 
 @cache
 def copies() -> tuple[Unit, ...]:
-    """Return the units of the library whose file is a unit of one's own as it stands: what one may begin with."""
+    """Return the units of the library whose file is a valid user unit without change: texts for a start."""
     found = []
     for family in registry.FAMILIES:
         for name, block in registry.blocks(family).items():

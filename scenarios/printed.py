@@ -1,4 +1,4 @@
-"""A printed mark: what the dissertation says of a figure in numbers, as a band, a value or a moment of a signal."""
+"""A printed mark: a number that the dissertation gives for a figure, as a band, a value or a moment of a signal."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ Kind = Literal["band", "value", "moment"]
 
 
 class Printed(Table):
-    """What the text says of a figure, drawn over a signal in time.
+    """A number of the text about a figure, drawn over a signal in time.
 
     It is one of three: a band from ``low`` to ``high``, lines at ``values``, or a moment ``at_sample`` or ``at_ms``.
-    Times count from an event of the scenario, or from its start. Every number that is drawn stands in ``words``, which
-    are quoted; where one follows from them or is chosen by us, ``reading`` says how.
+    Times count from an event of the scenario, or from its start. Every number that is drawn is in ``words``, which are
+    quoted; where a number follows from them or is chosen by us, ``reading`` explains it.
     """
 
     figure: str = Field("", max_length=40, description="number of the figure; empty for a sentence without one")
@@ -26,7 +26,7 @@ class Printed(Table):
     words: Words = Field(min_length=1, max_length=300, description="as printed")
     number: Words = Field(min_length=1, max_length=40, description="the part of the words that is the number")
     signal: str = Field(min_length=1, max_length=200)
-    unit: str = Field(max_length=20, description="of the numbers here, which is that of the signal")
+    unit: str = Field(max_length=20, description="of the numbers here, the unit of the signal")
     low: float | None = None
     high: float | None = None
     values: list[float] = Field([], max_length=8)
@@ -64,7 +64,7 @@ class Printed(Table):
 
     @property
     def kind(self) -> Kind:
-        """What it is drawn as."""
+        """The shape of its drawing."""
         if self.low is not None:
             return "band"
         return "value" if self.values else "moment"

@@ -36,7 +36,7 @@ DEFAULT_SAMPLES = 10_000
 
 @dataclass
 class Result:
-    """The result of a run; ``trace`` has the signals that were kept, those of a long run in a temporary file."""
+    """The result of a run; ``trace`` has the signals that were kept, the signals of a long run in a temporary file."""
 
     scenario: Scenario
     seed: int
@@ -165,7 +165,7 @@ def run(
 ) -> Result:
     """Run a scenario from start to end, or until the board trips for good.
 
-    The memory it takes does not depend on its length: the samples of a long run lie in a temporary file.
+    The memory it takes does not depend on its length: the samples of a long run are in a temporary file.
 
     Parameters
     ----------
@@ -176,29 +176,29 @@ def run(
     taps : bool
         Keep the inner signals as well.
     figures_only : bool
-        Keep only the outputs that figures are made of.
+        Keep only the outputs that figures need.
     everything : bool
-        Run and keep the blocks that only look on as well, as a live bench does; no figure and no digest depends on it.
+        Run and keep the blocks in shadow as well, as a live bench does; no figure and no digest depends on it.
     compiled : bool
         Run compiled blocks.
     trace : Trace, optional
-        What takes the signals to be kept as they come; of taps, the result has only those that reports show then.
+        Receives the signals to be kept during the run; of taps, the result then has only the taps that reports show.
     on_tick : callable, optional
         Called with the tick reached after every chunk; it may raise to end the run.
     law : callable, optional
         Drives in place of the controller of the scenario: called with each `core.board.outside.Sample`, it answers with
         a voltage.
     diagnosers, identifiers : mapping
-        Callables by id, in place of those of the scenario or beside them: called with each
+        Callables by id, in place of the callables of the scenario or in addition to them: called with each
         `core.board.outside.Observation`, they answer with the probability of each hypothesis, or with mass, stiffness
         and damping over nominal.
     narrate : bool
-        Let the narrator say what happens.
+        Run the narrator.
 
     Raises
     ------
     OSError
-        When samples have no room in the folder of temporary files, or for what ``trace`` raises.
+        When samples have no room in the folder of temporary files, or an error of ``trace``.
     """
     if law or diagnosers or identifiers:
         board: Board = build_hosted(
@@ -254,7 +254,7 @@ def run(
 
 
 def all_figures(board: Board, trace: dict[str, FloatArray], scenario: Scenario) -> dict[str, float]:
-    """Return the figures of a board and of its twins from the trace of what has run."""
+    """Return the figures of a board and of its twins from the trace of a run."""
     metrics = figures(board, trace, scenario)
     if isinstance(board, Ensemble):
         for name, twin in board.twins.items():
@@ -264,7 +264,7 @@ def all_figures(board: Board, trace: dict[str, FloatArray], scenario: Scenario) 
 
 
 def figures(board: Board, trace: dict[str, FloatArray], scenario: Scenario, prefix: str = "") -> dict[str, float]:
-    """Return the figures of a board from its trace, or those of a twin from the trace of all boards."""
+    """Return the figures of a board from its trace, or the figures of a twin from the trace of all boards."""
     names = [name for name in figure_signals(board) if prefix + name in trace]
     return measure(board, {name: trace[prefix + name][: board.tick] for name in names}, scenario.head.metrics)
 

@@ -21,7 +21,7 @@ PIECE = 4096
 
 
 class Trace(Protocol):
-    """What takes the samples of a run as they come."""
+    """Receives the samples of a run during the run."""
 
     def begin(self, board: Board, signals: list[Signal]) -> None:
         """Make room for these signals of a board that is at its first tick."""
@@ -36,7 +36,7 @@ def temporary_folder() -> str:
 
 
 class Samples:
-    """Columns that grow together, in a context in which they are added and asked for.
+    """Columns that grow together, in a context in which they are added and read.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class Samples:
 
     def __exit__(self, *_: object) -> None:
         if self._file is not None:
-            self._file.close()  # what has been asked for stays until nobody holds it
+            self._file.close()  # samples that were returned stay until they are unused
 
     def add(self, rows: FloatArray) -> None:
         """Add rows, each with a number for every column."""
@@ -76,7 +76,7 @@ class Samples:
         self._pending, self._count = at + len(rows), self._count + len(rows)
 
     def _write(self) -> None:
-        """Write what waits to its place behind the rest of each column."""
+        """Write the waiting samples to their place after the rest of each column."""
         assert self._file is not None
         for number, column in enumerate(self._array[:, : self._pending]):
             self._file.seek(8 * (number * self._shape[1] + self._count - self._pending))

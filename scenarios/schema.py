@@ -151,7 +151,8 @@ class Scenario:
         text : str or dict
             The scenario.
         like : Scenario, optional
-            One that may be alike, such as another point of a campaign: parts that both have are taken from there.
+            A scenario that may be alike, such as another point of a campaign: parts that both have are taken from
+            there.
 
         Raises
         ------
@@ -179,7 +180,7 @@ class Scenario:
 
     @property
     def warnings(self) -> list[str]:
-        """What of its claims is not read, or cannot be judged."""
+        """Warnings about claims that are not read, or cannot be judged."""
         rows = self.head.expect
         said = [UNREAD] if self.head.verdict is not None or any(entry.verdict is not None for entry in rows) else []
         return said + [
@@ -211,7 +212,7 @@ def _closed(row: Any) -> Any:
 
 
 def _commands(event: Document) -> list[Command]:
-    """Return the commands of an event; unlike what is done by hand it must say when."""
+    """Return the commands of an event; unlike a command by hand it must have a time."""
     commands = parse_event(event)
     if all(moment is None for moment in (commands[0].at_sample, commands[0].at_ms, commands[0].when)):
         raise InputError("needs one of at_sample, at_ms, when")

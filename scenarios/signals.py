@@ -1,4 +1,4 @@
-"""The signals of a board that a run keeps: all of what runs, or those that figures are made of."""
+"""The signals of a board that a run keeps: of all running blocks, or only the signals of figures."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def traced(board: Board, *, taps: bool = True, figures_only: bool = False, every
     taps, figures_only : bool
         As for `run`.
     everything : bool
-        Also those of blocks that only look on.
+        Also signals of blocks in shadow.
     """
     wanted = {*watched(board)} if figures_only else {signal.name for signal in board.signals}
     aside = set() if everything else looking_on(board)
@@ -38,13 +38,13 @@ def traced(board: Board, *, taps: bool = True, figures_only: bool = False, every
         signal
         for signal in board.signals
         if (taps or signal.kind == "output") and signal.name in wanted
-        # what is seen of a twin is what it is there for
+        # the signals of a twin are its purpose
         if signal.block not in aside or ":" in signal.name
     ]
 
 
 def watched(board: Board) -> list[str]:
-    """Return the outputs that the figures of a run are made of, those of twins with their prefix."""
+    """Return the outputs that the figures of a run need, outputs of twins with their prefix."""
     wanted = {*figure_signals(board), *evidence_signals(board)}
     wanted |= {f"{name}.{port}" for name in board.spec.controllers for port in rate.READ if board.spec.axes}
     if isinstance(board, Ensemble):
@@ -59,7 +59,7 @@ def evidence_signals(board: Board) -> list[str]:
 
 
 def figure_signals(board: Board) -> list[str]:
-    """Return the signals that the figures of a board are made of."""
+    """Return the signals that the figures of a board need."""
     moved = rate.traced(board) if board.spec.axes else TRACED_FIGURES
     names = [*moved, *(f"{name}.{port}" for name in board.spec.diagnosers for port in TRACED_VERDICTS)]
     names += [f"{name}.error_pct" for name in board.spec.identifiers]

@@ -1,4 +1,4 @@
-"""Summary of a run, as ``run --json`` prints it: what was expected beside what was measured."""
+"""Summary of a run, as ``run --json`` prints it: the expected and the measured figures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Builds the wall around units of one's own, and shows that it stands: a unit behind it gives the same bits."""
+"""Builds the wall around user units, and shows that it works: a unit behind it gives the same bits."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TICKS = 200
 
 
 def build() -> None:
-    """Let units run behind the wall in this process, and in those that work for it, from now on.
+    """Let units run behind the wall in this process, and in its worker processes, from now on.
 
     Raises
     ------
@@ -38,7 +38,7 @@ def build() -> None:
 
 
 def with_unit() -> dict[str, Any]:
-    """Return the bench with a copy of its controller as a unit of one's own."""
+    """Return the bench with a copy of its controller as a user unit."""
     return {**BENCH, "units": {"pid": {"source": inspect.getsource(pid)}}}
 
 

@@ -19,12 +19,12 @@ ASK_S = 300.0
 
 
 def said(*command: str | Path) -> str:
-    """Return what a command says, whatever its exit code means."""
+    """Return the output of a command, whatever its exit code means."""
     return subprocess.run(command, cwd=ROOT, text=True, stdout=subprocess.PIPE, timeout=ASK_S, check=False).stdout
 
 
 def answered(text: str) -> dict[str, Any]:
-    """Return an answer in JSON; one that is none is empty."""
+    """Return an answer in JSON; an invalid answer is empty."""
     try:
         found = json.loads(text)
     except json.JSONDecodeError:
@@ -58,7 +58,7 @@ def packages(python: Path, folder: Path) -> tuple[list[str], int, int]:
 
 
 def page(folder: Path) -> tuple[list[str], int, int]:
-    """List and check what the page is built from; return weaknesses, packages known to the index, and all."""
+    """List and check the packages of the page; return weaknesses, packages known to the index, and all."""
     npm: list[str | Path] = [ROOT / "scripts" / "npm", "--silent", "--prefix", "web"]
     text = said(*npm, "sbom", "--sbom-format", "cyclonedx", "--omit", "dev", "--package-lock-only")
     (folder / "page.cdx.json").write_text(text)

@@ -1,6 +1,6 @@
 """Put a class on a server of our own, and say whether it kept its promises.
 
-Students join one after another as fast as they are let in, each opens the stream of the bench of one's own and commands
+Students join one after another as fast as the server admits them, each opens the stream of the own bench and commands
 it now and then; a teacher's grid asks for all of them every second; further pages watch one more bench.
 """
 
@@ -47,7 +47,7 @@ async def browse(server: Server, code: str, count: int, seconds: float) -> async
     """Let browsers join as students and stay; each draws its bench in software.
 
     Browsers of students have machines of their own. Here they yield to the server; started by root, Chromium would
-    raise its own priority above that of the server.
+    raise its own priority above the server's.
     """
     if not count:
         return None

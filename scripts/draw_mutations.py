@@ -2,7 +2,7 @@
 
 ``draw_mutations.py --seed N --layer core --number K FOLDER`` writes ``core-1.patch`` and on into the folder, each for
 ``git apply``, and prints a line for each with seed, number, operator and place. Whoever draws more of a seed draws the
-same ones first. Left alone are docstrings, comments, types, and what stands in a string.
+same ones first. Docstrings, comments, types and strings are not changed.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ OTHER: dict[type[ast.AST], tuple[str, str, str]] = {
     **{ast.Mult: ("product", "*", "/"), ast.Div: ("product", "/", "*")},
     **{ast.And: ("and/or", "and", "or"), ast.Or: ("and/or", "or", "and")},
 }
-"""The name of an operator, how it is written, and what is written in its place."""
+"""The name of an operator, its text, and the replacement."""
 TYPES = {"annotation", "returns", "decorator_list"}
 SCRIPT = [
     *(("comparison", rf" ({a}) ", b) for a, b in [("<", "<="), ("<=", "<"), (">", ">="), (">=", ">")]),
@@ -49,7 +49,7 @@ HIDDEN = re.compile(r"""//.*|/\*.*?\*/|"[^"]*"|'[^']*'|`[^`]*`""")
 
 
 class Place(NamedTuple):
-    """A span of the text of a file, what is written there instead, and the operator that says so."""
+    """A span of the text of a file, its replacement, and the name of the operator."""
 
     operator: str
     start: int
@@ -105,7 +105,7 @@ def places_in_python(source: str) -> Iterator[Place]:
 
 
 def code_of(node: ast.AST) -> Iterator[ast.AST]:
-    """Go through the nodes that do something; those in an f-string have no sure place."""
+    """Go through the executable nodes; nodes in an f-string have no sure place."""
     yield node
     for name, value in ast.iter_fields(node):
         if name not in TYPES:
@@ -148,7 +148,7 @@ def patch(path: Path, place: Place) -> str:
 
 
 def main() -> None:
-    """Draw, write and say what the command line asks for."""
+    """Draw, write and print as the command line requests."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--layer", choices=LAYERS, required=True)

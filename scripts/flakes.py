@@ -1,4 +1,4 @@
-"""Run tests again and again beside busy processes, and list those that did not pass every time.
+"""Run tests again and again on a busy machine, and list the tests that did not pass every time.
 
 ``make flakes ARGS="browser --times 20 --busy 2"``: a part of the suite, how often, and beside how many busy processes.
 """

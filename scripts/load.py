@@ -1,7 +1,7 @@
 """Put a server of our own under load on loopback, measure, and say whether it kept its promises.
 
 Every watcher is a WebSocket client that acknowledges each frame and commands now and then; one more subscribes and
-never reads. All of them live in this process, whose share of a processor is told beside that of the server.
+never reads. All of them run in this process, whose share of a processor is printed with the server's share.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ import uvloop
 from watcher import Watcher
 
 SETTLE_S = 1.5
-"""Not measured: connections open, and what is built at first use is built."""
+"""Not measured: opening connections, and building at first use."""
 
 
 def percentile(values: list[float], share: float) -> float:
-    """Return the value below which ``share`` of the values lie; NaN of none."""
+    """Return the value below which ``share`` of the values are; NaN without values."""
     return sorted(values)[min(len(values) - 1, int(share * len(values)))] if values else float("nan")
 
 
@@ -41,7 +41,7 @@ COMMANDS: dict[str, dict[str, object] | None] = {
     "time_scale": None,
     "set": {"set": {"controllers.mrac.adaptation_gain": 1.0}},
 }
-"""Commands of watchers by kind; they leave the bench as it is. The time scale is that of the bench."""
+"""Commands of watchers by kind; they leave the bench as it is. The time scale is the scale of the bench."""
 
 
 class Server:
@@ -84,7 +84,7 @@ class Server:
         return found
 
     def count(self) -> Counts:
-        """Return what the server has counted so far."""
+        """Return the counts of the server so far."""
         text = self.http.get("/metrics").text
         ticks = re.search(r"^combbench_ticks_total (\S+)", text, re.MULTILINE)
         overruns = re.search(r"^combbench_overruns_total (\S+)", text, re.MULTILINE)
@@ -143,7 +143,7 @@ class Counts:
 
 
 def _histogram(text: str, name: str) -> dict[float, float]:
-    """Return how many values of a metric lie at or below each edge."""
+    """Return how many values of a metric are at or below each edge."""
     edges = re.findall(rf'combbench_{name}_bucket\{{le="([^"]+)"\}} (\S+)', text)
     return {float(edge): float(count) for edge, count in edges}
 

@@ -32,7 +32,7 @@ class Mutation:
     layer, kind : str
         Where it is and of what sort.
     breaks : str
-        What a user would meet.
+        The symptom for a user.
     caught_by : tuple of str
         The tests that fail with it: ids of pytest, or files of the page with ``::title``.
     """

@@ -47,7 +47,7 @@ MEASURED = ("achieved_scale", "loop_lag_ms", "wake_late_ms", "let_go_in_s", "ela
 
 
 class Recorder:
-    """A service to record, and the names that stand for ids of this recording.
+    """A service to record, and the names that replace ids of this recording.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Recorder:
         self._names: dict[str, str] = {address: "http://127.0.0.1:8000"}
 
     def name(self, found: str, name: str) -> str:
-        """Let a name stand for an id, and return the id."""
+        """Replace an id by a name, and return the id."""
         self._names[found] = name
         return found
 

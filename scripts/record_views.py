@@ -1,4 +1,4 @@
-"""What the pages around the bench and its exercises show, as a service answers: parts of `record_answers`."""
+"""Pages around the bench and its exercises, as a service answers: parts of `record_answers`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ROWS = 4
 
 
 def record_design(recorder: Recorder, folder: Path) -> None:
-    """Record what the designer shows: a device with its response, its process, and a gyroscope."""
+    """Record the answers for the designer: a device with its response, its process, and a gyroscope."""
     device = {"device": {"id": "lcr-350"}, "environment": {}}
     found = {
         "evaluation": recorder.post("/devices/evaluate", **device),
@@ -37,7 +37,7 @@ def record_theory(recorder: Recorder, folder: Path) -> None:
 
 
 def record_campaign(recorder: Recorder, folder: Path, run: str, sweep: str) -> None:
-    """Record what is read of a campaign, and two runs side by side."""
+    """Record the answers about a campaign, and two runs side by side."""
     second = recorder.post("/runs", scenario="first-look", set={"samples": 500}, seed=2)
     recorder.name(second["id"], "run-2")
     recorder.until(f"/runs/{second['id']}", lambda now: now["state"] == "done")
@@ -54,7 +54,7 @@ def record_campaign(recorder: Recorder, folder: Path, run: str, sweep: str) -> N
 
 
 def record_exercises(recorder: Recorder, folder: Path) -> None:
-    """Record a hidden fault and what was said of it, two games, the sheets, a vote and a lecture."""
+    """Record a hidden fault with its answer, two games, the sheets, a vote and a lecture."""
     bench = recorder.name(recorder.post("/benches", scenario="ch5-seven-step", paused=True)["id"], "bench-of-blind")
     recorder.post(f"/benches/{bench}/blind", seed=1, shows=False)
     question = recorder.get(f"/benches/{bench}")
@@ -76,7 +76,7 @@ def record_exercises(recorder: Recorder, folder: Path) -> None:
 
 
 def _play(recorder: Recorder, game: str) -> dict[str, Any]:
-    """Play a game once at a seed: return it as it is before, and after what is handed in."""
+    """Play a game once at a seed: return it before and after the answer."""
     before = recorder.get(f"/games/{game}", seed=1)
     begun = recorder.post(f"/games/{game}/begin", seed=1, hand_in={})
     recorder.name(begun["bench"], f"bench-of-{game}")

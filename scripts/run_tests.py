@@ -28,7 +28,7 @@ REPORT = Path(tempfile.gettempdir()) / f"combbench-tests-{os.getpid()}"
 
 @dataclass
 class Step:
-    """A command; one that runs tests writes ``report``, and one that runs ``aside`` shows its output at its end."""
+    """A command; a step with tests writes ``report``, and a step ``aside`` shows its output at its end."""
 
     name: str
     command: list[str]
@@ -94,7 +94,7 @@ def checks() -> list[Step]:
 
 
 def tests(suite: str, only: str = "") -> list[Step]:
-    """List the steps that run tests; all of those that have the word ``only``, if one is given."""
+    """List the steps that run tests; all steps with the word ``only``, if one is given."""
     page, python, browser = (REPORT / f"{name}.xml" for name in ("page", "python", "browser"))
     long = suite == "all"
     return [

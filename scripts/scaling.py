@@ -1,7 +1,7 @@
-"""Measure campaigns on this machine: runs per second over workers, what a batch costs, what a table of results takes.
+"""Measure campaigns on this machine: runs per second over workers, the cost of a batch, the size of a table of results.
 
 A cluster is a scheduler and workers of their own, which are reached by TCP on loopback and have a folder each. Figures
-are medians; the load of the machine is told beside them, because others on it slow everything down.
+are medians; the load of the machine is printed with them, because other work on it slows everything down.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def say(title: str, **values: object) -> None:
 
 
 def carry_out(sweep: Sweep, width: int, **where: Any) -> dict[str, float]:
-    """Carry a campaign out; return its pace after the first result, and what a batch costs beside its runs."""
+    """Carry a campaign out; return its pace after the first result, and the cost of a batch besides its runs."""
     folder = Path(tempfile.mkdtemp(prefix="combbench-scaling-"))
     database = Database(folder / "results.sqlite3")
     database.migrate()
@@ -92,7 +92,7 @@ def repeated(title: str, times: int, measure: Callable[[], dict[str, float]]) ->
 
 
 def free_port() -> int:
-    """Return a port of loopback that nobody listens on."""
+    """Return a free port of loopback."""
     with socket.create_server(("127.0.0.1", 0)) as listener:
         return int(listener.getsockname()[1])
 
@@ -212,7 +212,7 @@ def _postgres_size(database: Database) -> int:
 
 
 def measure_reading(sweep: Sweep, parts: Parts) -> None:
-    """Measure what the page asks for, three times each."""
+    """Measure the requests of the page, three times each."""
     figure = "control.rms_error_um"
     asked: dict[str, Callable[[], object]] = {
         "first page": lambda: (lambda survey: survey.page(survey.order()[:200]))(Survey(sweep, parts)),
@@ -227,14 +227,14 @@ def measure_reading(sweep: Sweep, parts: Parts) -> None:
 
 
 def timed(ask: Callable[[], object]) -> tuple[float, object]:
-    """Call something; return how long it took, and what it returned."""
+    """Call a function; return its time, and its result."""
     began = time.perf_counter()
     answer = ask()
     return time.perf_counter() - began, answer
 
 
 def measure_memory(count: int, kind: str) -> None:
-    """Measure what the expansion of a campaign takes: time to the first run, then memory and time of all keys."""
+    """Measure the expansion of a campaign: time to the first run, then memory and time of all keys."""
     from scenarios.campaign.campaign import MAX_BATCH
     from scenarios.campaign.check import check
     from scenarios.campaign.remaining import Remaining

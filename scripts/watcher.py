@@ -62,7 +62,7 @@ class Watcher(asyncio.Protocol):
         self._flush()
 
     def data_received(self, data: bytes) -> None:
-        """Take what has come."""
+        """Take the received data."""
         now = time.monotonic()
         self._lines.receive_data(data)
         for event in self._lines.events_received():
@@ -117,6 +117,6 @@ class Watcher(asyncio.Protocol):
             self.replies_ms.append(1e3 * (now - float(json.loads(bytes(frame.data))["id"])))
 
     def _flush(self) -> None:
-        """Send what the protocol has to say."""
+        """Send the data of the protocol."""
         if self._transport is not None and not self._transport.is_closing():
             self._transport.writelines([part for part in self._lines.data_to_send() if part])

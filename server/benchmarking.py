@@ -1,4 +1,4 @@
-"""The command for the benchmark of fault diagnosis: measures, prints the table, recomputes what others hand in."""
+"""The command for the benchmark of fault diagnosis: measures, prints the table, recomputes submissions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The classroom way to serve: the address students open, and what it opens to the network."""
+"""The classroom way to serve: the address that students open, and its exposure to the network."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import segno
 from server.settings import ANY_IPV4, ANY_IPV6, Settings
 
 FAR_AWAY = {socket.AF_INET: "198.51.100.1", socket.AF_INET6: "2001:db8::1"}
-"""Addresses that belong to nobody, to learn which way packets leave; nothing is sent to them."""
+"""Unassigned addresses, to learn which way packets leave; nothing is sent to them."""
 
 EXPOSED = """\
 This address is the teacher's. It works on this machine alone.
@@ -50,9 +50,9 @@ def _join_address(host: str, port: int) -> str:
 
 
 def network_addresses() -> list[IPv4Address | IPv6Address]:
-    """List the addresses this machine has on its networks; those of IPv6 only where there is none of IPv4.
+    """List the addresses of this machine on its networks; IPv6 addresses only without any IPv4 address.
 
-    The one from which packets leave comes first, those of tunnels, which no student shares, come last.
+    The address of outgoing packets comes first, addresses of tunnels, which no student shares, come last.
     """
     leaving = {_leaving_address(family) for family in FAR_AWAY}
     links = psutil.net_if_stats()
@@ -91,7 +91,7 @@ def qr_text(address: str) -> str:
 
 
 def notice(settings: Settings, port: int) -> str:
-    """Say what the class can reach, who can read it, and where students go.
+    """Return a text about the reach of the class, its readers, and the address for students.
 
     Parameters
     ----------

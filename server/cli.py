@@ -99,7 +99,7 @@ def run(
         typer.Option(
             "--all",
             help="Also run the controllers that never drive, and write all signals to the trace, "
-            "those of sensors that are never in use as well. No figure and no digest depends on it.",
+            "also of sensors that are never in use. No figure and no digest depends on it.",
         ),
     ] = False,
     narrate: Annotated[bool, typer.Option("--narrate", help="Also say in plain sentences what happens.")] = False,
@@ -153,7 +153,7 @@ def run(
                     if law is None:
                         summary = beside(result)
                         keep(result, summary, [result.seed], stem)
-                    else:  # no report and no script: they would tell of the scenario's own controller
+                    else:  # no report and no script: they would describe the scenario's own controller
                         summary = result.summary()
                         write_json(stem.with_suffix(".json"), summary)
             if narrate:
@@ -169,7 +169,7 @@ def run(
 
 
 def _find(scenario: Scenario, threshold: str | None, over: str | None, as_json: bool) -> None:
-    """Find where a claim holds, say it and end: 0 somewhere in the range, 1 nowhere."""
+    """Find where a claim holds, print it and end: 0 somewhere in the range, 1 nowhere."""
     from server.finding import find, threshold_text
 
     if threshold is None or over is None:
@@ -189,7 +189,7 @@ def gallery(
     only: Annotated[str, typer.Option(metavar="GLOB", help="Only ids that match.")] = "*",
     as_json: JsonOption = False,
 ) -> None:
-    """Run every library scenario: published claim, expectation, measured, verdict, and what the open loop gives."""
+    """Run every library scenario: published claim, expectation, measured, verdict, and the figure of the open loop."""
     from scenarios.campaign.single import beside
 
     chosen = [get(name) for name in ids() if fnmatch.fnmatch(name, only)]
@@ -214,7 +214,7 @@ def sweep(
         str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler instead, such as tcp://host:8786.")
     ] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Where results go; sweeps/<id> if not given.")] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with what is in the folder.")] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue the campaign in the folder.")] = False,
     units: UnitOption = None,
 ) -> None:
     """Run a campaign: 0 every run was carried out, 1 some could not be, 2 invalid input."""
@@ -232,7 +232,7 @@ def sweep(
     folder = out or Path("sweeps") / campaign.head.id
     address = load_settings().database_url
     given = "".join(f" --unit {one}" for one in units or ())
-    again = f"; go on with: combbench sweep {file} --out {folder} --resume{given}"
+    again = f"; continue with: combbench sweep {file} --out {folder} --resume{given}"
     try:
         with ExitStack() as stack:
             bars: list[Any] = []  # no progress bar before the first run: a refusal is one line

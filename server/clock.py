@@ -24,7 +24,7 @@ class Clock:
         condition.wait(seconds)
 
     async def every(self, seconds: float) -> AsyncIterator[None]:
-        """Yield again and again, each time after so many seconds."""
+        """Yield again and again, each time after an interval."""
         while True:
             await asyncio.sleep(seconds)
             yield
@@ -66,7 +66,7 @@ class ManualClock(Clock):
         condition.wait()
 
     async def every(self, seconds: float) -> AsyncIterator[None]:
-        """Yield again and again, each time that the clock has been advanced by so many seconds."""
+        """Yield again and again, each time that the clock has been advanced by an interval."""
         while True:
             sleeper = Sleeper(self._now + seconds)
             self._sleepers.append(sleeper)

@@ -1,4 +1,4 @@
-"""Whether a caller takes what is compressed."""
+"""Whether a caller accepts compressed answers."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ MOST_WAITING = 16
 
 
 class Connection(HttpToolsProtocol):
-    """Closes connections that wait too long; when there is no room left, the one that has waited longest."""
+    """Closes connections that wait too long; without free room, the connection that has waited longest."""
 
     def __init__(self, *arguments: Any, **named: Any) -> None:
         super().__init__(*arguments, **named)

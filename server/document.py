@@ -25,7 +25,7 @@ BEARER = {
     "description": "The access token printed at the start; of a student, the session that joining a class gives",
 }
 PARAMETERS = {
-    "after": "Number of the last one that is known",
+    "after": "Number of the last known one",
     "bench_id": "Id of a bench",
     "benchmark_id": "Id of a benchmark",
     "class_id": "Id of a class",
@@ -57,7 +57,7 @@ PARAMETERS = {
     "vote_id": "Id of a vote",
     "watcher_id": "Id of a link to watch",
 }
-"""The meaning of parameters whose route does not say it."""
+"""The meaning of parameters whose route does not give it."""
 
 
 def install(app: FastAPI) -> None:
@@ -100,7 +100,7 @@ def build(app: FastAPI) -> dict[str, Any]:
 
 
 def _complete(operation: dict[str, Any], is_open: bool) -> None:
-    """Say who may call, what parameters mean, what bodies look like, and the one shape of all failures."""
+    """Add the permitted callers, the meaning of parameters, the shape of bodies, and the one shape of all failures."""
     operation["security"] = [] if is_open else [{"token": []}]
     for parameter in operation.get("parameters", []):
         parameter.setdefault("description", PARAMETERS.get(parameter["name"], ""))

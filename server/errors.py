@@ -172,7 +172,7 @@ def _given(error: Any) -> str:
 
 
 REFUSED = (InputError, ApiError, DBAPIError)
-"""What refuses something for one of several people; nothing has changed for that person then."""
+"""Errors of one of several people; nothing has changed for that person then."""
 
 
 def why(error: Exception) -> str:
@@ -255,7 +255,7 @@ def unreadable(error: Exception) -> JSONResponse:
 
 
 def allowed(request: Request) -> list[str]:
-    """Return the methods that a path allows over all its routes; the framework knows those of one route only."""
+    """Return the methods that a path allows over all its routes; the framework reports only one route."""
     routes = request.app.routes
 
     def leads(method: str) -> bool:

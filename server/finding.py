@@ -47,7 +47,7 @@ def find(scenario: Scenario, metric: str, over: str) -> Threshold:
 
 
 def threshold_text(found: Threshold) -> str:
-    """Write what was found as lines: the figure at each value, then where the claim holds."""
+    """Write the result as lines: the figure at each value, then the range where the claim holds."""
     rows = [
         f"{'ok  ' if one.holds else 'MISS'} {found.path} = {one.value:<12.6g} {found.metric} = "
         + ("not measured" if one.measured is None else f"{one.measured:.6g}")

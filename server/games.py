@@ -1,4 +1,4 @@
-"""The command for games: lists them, judges what somebody would hand in, and tells what a seed hides."""
+"""The command for games: lists them, judges an answer, and shows the hidden values of a seed."""
 
 from __future__ import annotations
 
@@ -15,12 +15,14 @@ from server.terminal import JsonOption, plainly, say, say_json
 @plainly
 def game(
     name: Annotated[str | None, typer.Argument(metavar="GAME", help="Which game; without one, all there are.")] = None,
-    seed: Annotated[int, typer.Option(help="The same one is the same game for everybody who is in no class.")] = 1,
-    assign: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="What is handed in.")] = None,
-    hidden: Annotated[bool, typer.Option("--hidden", help="Tell what the seed hides instead.")] = False,
+    seed: Annotated[int, typer.Option(help="The same seed is the same game for every user outside a class.")] = 1,
+    assign: Annotated[
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="The values of the answer.")
+    ] = None,
+    hidden: Annotated[bool, typer.Option("--hidden", help="Show the hidden values of the seed instead.")] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Play a game headless: the points of what is handed in, the same bits as on the page; 2 invalid input."""
+    """Play a game headless: the points of an answer, the same bits as on the page; 2 invalid input."""
     from scenarios.games import GAMES, game_of
     from scenarios.games.game import check_seed
 
@@ -49,7 +51,7 @@ def game(
 
 
 def _explain(document: dict[str, Any]) -> None:
-    """Print what is to be done, and what may be handed in."""
+    """Print the task, and the values of an answer."""
     say(document["task"])
     say()
     say(document["rule"])

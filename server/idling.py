@@ -1,4 +1,4 @@
-"""Who has been at each bench, and when: finds idle benches."""
+"""The users of each bench and their times: finds idle benches."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ EVERY_S = 5.0
 
 
 class Idling:
-    """Notes when each bench was last watched or asked for.
+    """Notes when each bench was last watched or requested.
 
     Parameters
     ----------
     watchers : callable
         Counts the pages that watch a bench.
     idle_minutes : float
-        How long a bench stays without anybody; 0 is for ever.
+        How long an unused bench stays; 0 is without limit.
     clock : callable
         Monotonic seconds.
     """
@@ -31,7 +31,7 @@ class Idling:
         self._seen: dict[str, float] = {}
 
     def saw(self, bench_id: str) -> None:
-        """Note that somebody is at a bench now."""
+        """Note that a bench is in use now."""
         self._seen[bench_id] = self.clock()
 
     def forget(self, bench_id: str) -> None:
@@ -39,14 +39,14 @@ class Idling:
         self._seen.pop(bench_id, None)
 
     def left_s(self, session: Session) -> float | None:
-        """Return how long a bench still stays if nobody comes; none if it is needed."""
+        """Return how long an unused bench still stays; None if it is needed."""
         if not self._patience_s or self._is_needed(session):
             return None
         seen = self._seen.setdefault(session.id, self.clock())
         return max(0.0, seen + self._patience_s - self.clock())
 
     def due(self, sessions: list[Session]) -> list[Session]:
-        """Return the benches that may go now; of those that are needed, note that they are."""
+        """Return the benches that may be closed now; note that the needed benches are needed."""
         for session in sessions:
             if self._is_needed(session):
                 self.saw(session.id)
@@ -55,8 +55,8 @@ class Idling:
     def _is_needed(self, session: Session) -> bool:
         """Say whether a bench has a watcher, is to be kept, hides a fault, or has something to come or to lose.
 
-        Commands that wait on a bench that stands still are kept with it; on one that runs their moment comes.
-        Moments that were kept of a bench would be lost.
+        Waiting commands of a paused bench are kept with it; on a running bench their moment comes. Moments that were
+        kept of a bench would be lost.
         """
         recordings = session.recordings
         return (

@@ -1,4 +1,4 @@
-"""The commands for what is taught: lectures and lab sheets, listed and checked."""
+"""The commands for teaching: lectures and lab sheets, listed and checked."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from server.terminal import JsonOption, plainly, say, say_json
 @plainly
 def lectures(
     files: Annotated[
-        list[Path] | None, typer.Argument(help="Lectures of one's own; without one, those of the library.")
+        list[Path] | None, typer.Argument(help="Your own lectures; without one, the lectures of the library.")
     ] = None,
     as_json: JsonOption = False,
 ) -> None:

@@ -79,7 +79,7 @@ class Page:
         return self.shown(scope, 404)
 
     async def _file(self, path: str, scope: Scope) -> Response:
-        """Return a file of the build; a caller who takes that gets what the build has compressed."""
+        """Return a file of the build; a caller that accepts compression gets the compressed file of the build."""
         name, response = path.lstrip("/"), None
         if takes_gzip(Headers(scope=scope)):
             with suppress(HTTPException):  # there is no such file

@@ -16,8 +16,8 @@ class Platform(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     issuer: str = Field(min_length=1, description="As the platform names itself, such as https://moodle.example.")
-    client_id: str = Field(min_length=1, description="What the platform calls this tool.")
-    auth_login_url: str = Field(description="Where browsers are sent to be told who they are.")
+    client_id: str = Field(min_length=1, description="Name of this tool on the platform.")
+    auth_login_url: str = Field(description="Address at which browsers learn their user.")
     auth_token_url: str = Field(description="Where this server asks for the right to send scores.")
     key_set_url: str = Field(description="Where the platform's public keys are.")
     deployment_ids: list[str] = Field(min_length=1, description="Places in the platform where the tool is installed.")
@@ -28,7 +28,7 @@ class Platform(BaseModel):
     @field_validator("auth_login_url", "auth_token_url", "key_set_url")
     @classmethod
     def _is_address(cls, given: str) -> str:
-        """Refuse what is no address of the web."""
+        """Refuse a text that is no address of the web."""
         parts = urlsplit(given)
         if parts.scheme not in ("http", "https") or not parts.hostname:
             raise ValueError("must be an address such as https://moodle.example/mod/lti/auth.php")

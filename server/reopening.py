@@ -1,4 +1,4 @@
-"""Experiments that are opened again: those of links, and those of benches that nobody needed and that were let go."""
+"""Experiments that are opened again: experiments of links, and unused benches that were closed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class CloseBench(Protocol):
     """Closes a bench and its streams."""
 
     def __call__(self, session: Session, *, comes_back: bool = False) -> Awaitable[None]:
-        """Close a bench; what others see of it ends too unless it comes back."""
+        """Close a bench; sharing of it ends too unless it comes back."""
 
 
 class Reopening:
@@ -39,7 +39,7 @@ class Reopening:
     links : Links
         Where experiments are kept.
     idling : Idling
-        Finds the benches that nobody needs.
+        Finds the unused benches.
     close_bench : callable
         Closes a bench and its streams.
     turn : Semaphore
@@ -81,7 +81,7 @@ class Reopening:
             return await self._benches.repeat(experiment, opened, bench_id)
 
     async def bring_back(self, bench_id: str) -> Session:
-        """Return a bench; one that was let go is opened again as it was, by the same id."""
+        """Return a bench; a closed idle bench is opened again as it was, under the same id."""
         async with self._coming_back:  # two pages may come back at once
             if found := self._benches.find(bench_id):
                 return found
@@ -97,20 +97,20 @@ class Reopening:
             return session
 
     async def run(self, clock: Clock) -> None:
-        """Let benches go that nobody needs, again and again."""
+        """Close unused benches, again and again."""
         async for _ in clock.every(EVERY_S):
             await self.let_go()
 
     async def let_go(self) -> None:
-        """Keep what was done on the benches that nobody needs any more, and close them."""
+        """Store the experiments of unused benches, and close them."""
         for session in self._idling.due(self._benches.all()):
             try:
                 await self._let_go(session)
             except Exception:
-                log.exception("bench %s could not be let go", session.id)
+                log.exception("bench %s could not be closed", session.id)
 
     async def _let_go(self, session: Session) -> None:
-        """Keep what was done on a bench, and close it unless somebody has come meanwhile."""
+        """Store the experiment of a bench, and close it unless it is in use again meanwhile."""
         is_kept = False
         if not session.replay_of:  # a recording is kept already
             experiment = await self._engine.call(experiment_of, session)
@@ -119,8 +119,8 @@ class Reopening:
                 await self._links.keep(Content(experiment=experiment), title[:200], bench_id=session.id)
                 is_kept = True
             except ApiError as error:
-                log.warning("bench %s is let go for good: %s", session.id, error.body.message)
+                log.warning("bench %s is closed for good: %s", session.id, error.body.message)
         if not self._idling.due([session]):
             return await self._links.delete(session.id)
         await self._close_bench(session, comes_back=is_kept)
-        log.info("bench %s was let go: nobody had been there for a while", session.id)
+        log.info("bench %s was closed after a while without users", session.id)

@@ -81,12 +81,12 @@ class Server(uvicorn.Server):
 
 
 def check_binding(settings: Settings) -> None:
-    """Refuse an address that other machines can reach without a token from the settings, but for a class.
+    """Refuse an address that other machines can reach without a token from the settings, except for a class.
 
     Raises
     ------
     InputError
-        Saying what to set.
+        With the necessary setting.
     """
     token = settings.token.get_secret_value() if settings.token else ""
     if token and len(token) < MIN_TOKEN:
@@ -122,7 +122,7 @@ def bind(settings: Settings) -> socket.socket:
     family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
     listener = socket.socket(family, socket.SOCK_STREAM)
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    # A frame waits in the one slot of its client; in a buffer of the kernel it would grow old.
+    # A frame waits in the one slot of its client, because in a buffer of the kernel it would grow old.
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 256 << 10)
     try:
         listener.bind((settings.host, settings.port))

@@ -233,7 +233,7 @@ class Service:
             await self._shut(session)
 
     def _leaving(self, session: Session, comes_back: bool = False) -> list[Change]:
-        """Return what changes as a bench closes."""
+        """Return the changes as a bench closes."""
         changes = self.blinds.closing(session)
         if not comes_back:
             watchers = self.people.watchers(session.id)
@@ -252,18 +252,18 @@ class Service:
             await self.viewers.drop(session.id)
 
     async def _turn_pages(self, session: Session) -> None:
-        """Let the pages of a bench come back to what may be seen of it now."""
+        """Let the pages of a bench come back to its present view."""
         self.hub.turn_bench(session.id)
         if self.viewers is not None:
             await self.viewers.drop(session.id)
 
     def _kept(self) -> list[Session]:
-        """List the benches that survive a crash: those of students, and those that students are shown or lent."""
+        """List the benches that survive a crash: benches of students, and shown or lent benches."""
         seen = self.people.seen_by_students()
         return [one for one in self.benches.all() if one.class_id or (one.id in seen and not one.replay_of)]
 
     async def _bring_back_seen(self) -> None:
-        """Bring the benches back that students were shown or lent, before anybody asks; end that of what is gone."""
+        """Bring shown or lent benches back before the first request; end the sharing of deleted benches."""
         self.driving.recover()
         for bench_id in self.people.seen_by_students():
             if not await self.student_benches.bring_back(bench_id):
@@ -288,7 +288,7 @@ class Service:
         return self.hub.watchers(bench_id) + (self.viewers.watchers(bench_id) if self.viewers is not None else 0)
 
     def _note(self, bench_id: str, person: Person, text: str) -> None:
-        """Keep what somebody did about driving or watching a bench."""
+        """Keep an action of a user about driving or watching a bench."""
         bench = self.benches.find(bench_id)
         if bench is not None:
             name = "a link to watch" if person.role == "watcher" else person.name
@@ -296,7 +296,7 @@ class Service:
             self.audit.add(name, "driving", text, class_id, bench_id, bench.status.tick)
 
     def _go_without_driver(self, bench_id: str, why: str) -> None:
-        """Let a bench do what its scenario says when its driver is gone."""
+        """Make a bench act as its scenario defines for a lost driver."""
         bench = self.benches.find(bench_id)
         if bench is not None:
             self.engine.submit(go_without_driver, bench, why)
@@ -314,7 +314,7 @@ class Service:
 
 
 def _viewers() -> Viewers | None:
-    """Return the 3D views, if their folder is there."""
+    """Return the 3D views, if their folder exists."""
     if importlib.util.find_spec("server.view3d") is None:
         return None
     from server.view3d.viewers import Viewers

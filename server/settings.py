@@ -60,9 +60,9 @@ class Settings(BaseSettings):
     lti: list[Platform] = Field([], description="Learning platforms that may launch the bench by LTI 1.3.")
     units: Literal["off", "teacher", "everyone"] = Field(
         "teacher",
-        description="Whose scenarios may carry units of their own: nobody's, those of the teacher, or everyone's.",
+        description="Persons whose scenarios may carry their own units: none, the teacher, or everyone.",
     )
-    unit_files: list[Path] = Field([], description="Units of one's own, a file each, that every new bench has.")
+    unit_files: list[Path] = Field([], description="User units, a file each, that every new bench has.")
     metrics_open: bool = Field(False, description="Serve /metrics without a token.")
     open_page: bool = Field(False, description="Open the page in a browser once the service answers.")
 
@@ -70,7 +70,7 @@ class Settings(BaseSettings):
     idle_minutes: float = Field(
         15.0,
         ge=0,
-        description="Minutes until a bench that nobody watches and no script asks for is let go; 0 lets none go.",
+        description="Minutes until an unused bench is closed; 0 closes none.",
     )
     max_students: int = Field(60, ge=1, le=500, description="Students of all classes, each with a bench beside those.")
     student_history_mb: int = Field(16, ge=1, le=10_000, description="Memory of the history of a student's bench.")
@@ -98,7 +98,9 @@ class Settings(BaseSettings):
     disk_reserve_bytes: int = Field(
         100_000_000, ge=0, description="Free space that is never used: recordings end, runs are refused."
     )
-    retention_days: float = Field(0.0, ge=0, description="Days recordings and runs are kept; 0 keeps them for ever.")
+    retention_days: float = Field(
+        0.0, ge=0, description="Days recordings and runs are kept; 0 keeps them without limit."
+    )
     max_trace_ticks: int = Field(200_000, ge=1, description="Ticks of one full-rate trace download.")
     history_ticks: int = Field(200_000, ge=2_000, le=5_000_000, description="Ticks every signal is kept for, at most.")
     history_mb: int = Field(72, ge=1, le=10_000, description="Memory the history of one bench may take.")

@@ -44,7 +44,7 @@ PARTS = "runs"
 MOST_LISTED = 20_000
 """Points whose tallies are written as JSON, each up to 10 kB; the tables have more."""
 FEW_LISTED, PIECES = 750, 8
-"""Points that are listed at once; more are listed in so many pieces, none smaller, by the processes."""
+"""Points that are listed at once; more are listed in pieces, none smaller, by the processes."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Ended:
 
 
 def read_sweep(path: Path, units: Iterable[Path] = ()) -> Sweep:
-    """Read a campaign file; a scenario named by a path is looked for beside it, and gets units from files.
+    """Read a campaign file; a scenario named by a path is relative to it, and gets units from files.
 
     Raises
     ------
@@ -96,8 +96,8 @@ def carry_out(
     Raises
     ------
     InputError
-        When the folder holds another campaign, or one that is not to be gone on with, or cannot be written; and when
-        the address of the scheduler is none. Nothing is written then.
+        When the folder holds another campaign, or a campaign that must not be continued, or cannot be written; and when
+        the address of the scheduler is invalid. Nothing is written then.
     Stopped
         When no worker computes any more, or nothing can be written; the table has the runs that are done.
     """
@@ -106,7 +106,7 @@ def carry_out(
     place, named = folder / TABLE, folder / CAMPAIGN
     if any(path.exists() for path in (place, named, folder / REPORT)) and not resume:
         text = f"{folder} holds a campaign already"
-        raise InputError(text, "--out", "--resume goes on with it; or choose another folder")
+        raise InputError(text, "--out", "--resume continues it; or choose another folder")
     held = _toml(named, "--out").get("id") if named.exists() else sweep.head.id
     if held != sweep.head.id:
         raise InputError(f"{folder} holds the campaign {held}, not {sweep.head.id}", "--out", "choose another folder")
@@ -154,7 +154,7 @@ def write(sweep: Sweep, parts: Parts, folder: Path, processes: Processes) -> tup
     int
         How many runs could not be carried out.
     list of str
-        What the others warn of, once each.
+        The warnings of the others, once each.
     """
     survey, count = Survey(sweep, parts), len(sweep.points)
     size = max(FEW_LISTED, -(-count // PIECES))

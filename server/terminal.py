@@ -1,4 +1,4 @@
-"""What commands share: lines and documents printed, scenarios found, bad input in one line."""
+"""Shared functions of commands: lines and documents printed, scenarios found, bad input in one line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The command that checks units of one's own."""
+"""The command that checks user units."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from server.terminal import JsonOption, plainly, say, say_json
 
 UnitOption = Annotated[
     list[Path] | None,
-    typer.Option("--unit", metavar="FILE", help="A unit of your own; its name is that of the file. May be repeated."),
+    typer.Option("--unit", metavar="FILE", help="A unit of your own, named after its file. May be repeated."),
 ]
 
 
@@ -44,7 +44,7 @@ def check(
 
 
 def _line(row: dict[str, Any]) -> str:
-    """Return what is said of one unit."""
+    """Return the text about one unit."""
     if "error" in row:
         error = row["error"]
         return f"{row['file']}: {error['message']}" + (f" ({error['hint']})" if error["hint"] else "")

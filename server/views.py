@@ -27,7 +27,7 @@ class Views:
     people : People
         Knows which bench is whose.
     hub : Hub
-        Knows who has a bench open.
+        Holds the users with an open page of each bench.
     idling : Idling
         Knows how long a bench stays.
     has_3d : bool
@@ -49,29 +49,29 @@ class Views:
         self._has_3d, self._close_bench = has_3d, close_bench
 
     def seen(self, session: Session, person: Person) -> Seen:
-        """Return a bench as somebody may see it: all of it, or what is shown while a fault is hidden there."""
+        """Return a bench as a person may see it: all of it, or the view while a fault is hidden."""
         view = session.hiding.view
         return view if view is not None and session.hiding.hides_from(person) else session
 
     def is_blind(self, person: Person, bench_id: str) -> bool:
-        """Whether a fault is hidden from somebody, on the bench in the path or on that of a student."""
+        """Whether a fault is hidden from a person, on the bench in the path or on the bench of a student."""
         session = self._benches.find(bench_id or self._people.bench_of(person))
         return session is not None and session.hiding.hides_from(person)
 
     def whole(self, bench_id: str, person: Person) -> Session:
-        """Return a bench that somebody may see all of, or refuse."""
+        """Return a bench that a person may see completely, or refuse."""
         if self.is_blind(person, bench_id):
             raise refusal()
         return self._benches.get(bench_id)
 
     def of(self, session: Session, person: Person) -> Bench:
-        """Describe a bench as somebody may see it."""
+        """Describe a bench as a person may see it."""
         view3d = f"/benches/{session.id}/3d/" if self._has_3d else None
         bench = self.seen(session, person).describe(self._hub.around(session), view3d)
         return bench.model_copy(update={"let_go_in_s": self._idling.left_s(session)})
 
     def all(self, person: Person) -> list[Bench]:
-        """Describe the benches that are no students', oldest first; one that cannot be described hides no others."""
+        """Describe the benches outside classes, oldest first; a bench that cannot be described hides no others."""
         descriptions = []
         for session in self._benches.all():
             if session.class_id:
@@ -83,7 +83,7 @@ class Views:
         return descriptions
 
     async def opened(self, session: Session, person: Person) -> Bench:
-        """Describe a bench just made; one that cannot be described is closed again."""
+        """Describe a bench just made; a bench that cannot be described is closed again."""
         try:
             return self.of(session, person)
         except Exception:

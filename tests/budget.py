@@ -27,7 +27,7 @@ USED = pytest.StashKey[float]()
 
 
 def used_s() -> float:
-    """Return the processor time of this process and of those that it has waited for, s."""
+    """Return the processor time of this process and of its finished child processes, s."""
     parts = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     return sum(part.ru_utime + part.ru_stime for part in parts)
 
@@ -69,7 +69,7 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
-    """Note the processor time of the body of a test; that of fixtures is shared by many."""
+    """Note the processor time of the body of a test; the time of fixtures is shared by many."""
     before = used_s()
     try:
         return (yield)

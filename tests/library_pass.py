@@ -27,12 +27,12 @@ SAME_EVERYWHERE = {
     "OPENBLAS_CORETYPE": "HASWELL",
     "NPY_DISABLE_CPU_FEATURES": "AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AVX512_SPR",
 }
-"""numpy and scipy choose their routines by the processor; told this, every processor since 2013 gives the same bits."""
+"""numpy and scipy choose their routines by the processor; with this, every processor since 2013 gives the same bits."""
 
 
 @cache
 def result(name: str) -> dict[str, Any]:
-    """Return what a scenario gave: digest, last tick, trip, gallery row, and the figures of its counterparts."""
+    """Return the result of a scenario: digest, last tick, trip, gallery row, and the figures of its counterparts."""
     path = _place(name)
     if not path.exists():
         _told(name)
@@ -41,7 +41,7 @@ def result(name: str) -> dict[str, Any]:
 
 
 def results() -> dict[str, dict[str, Any]]:
-    """Return what every scenario gave, by its id; what is missing is computed on all processors."""
+    """Return the result of every scenario, by its id; missing results are computed on all processors."""
     from scenarios.library import ids
 
     missing = [name for name in ids() if not _place(name).exists()]
@@ -103,7 +103,7 @@ def _benches() -> dict[str, Any]:
 
 
 def _told(*arguments: str) -> None:
-    """Make the pass in a process whose libraries are told what machine they are on."""
+    """Make the pass in a process whose libraries assume a fixed machine."""
     command = [sys.executable, "-W", "ignore", "-m", "tests.library_pass", *arguments]
     ended = subprocess.run(command, cwd=ROOT, env=os.environ | SAME_EVERYWHERE, capture_output=True, text=True)
     assert ended.returncode == 0, ended.stderr

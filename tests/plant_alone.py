@@ -49,7 +49,7 @@ class PlantAlone:
         self.w[self.place(name)] = value
 
     def tick(self) -> None:
-        """Run one tick, and go on to the next."""
+        """Run one tick, and move to the next."""
         self._run()
         self.w[0] += 1.0
 

@@ -14,7 +14,7 @@ from core.ports import RESERVED
 
 NONE = Oscillator(mass=1.0, damping=1.0, stiffness=1.0, force=1.0)
 OPEN = "estimate"
-"""The signal a read-out listens to where no generator stands before it."""
+"""The signal that a read-out uses without a generator."""
 
 
 def context(dt_ms: float, seed: int = 1, every: int = 1) -> Context:

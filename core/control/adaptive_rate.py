@@ -1,4 +1,4 @@
-"""Adaptive control with an estimate of the rate: both axes follow sines, and what that takes tells all parameters."""
+"""Adaptive control with an estimate of the rate: both axes follow sines; their forces show all parameters."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from core.control.two_axis_estimates import EstimatePorts, Estimates, PackedLaw
 from core.units import hz_of_rad_ms
 
 USUAL_SHARE = 0.2213
-"""Frequency of the motion asked for along x over the frequency of the axis, unless given: well below the resonances."""
+"""Frequency of the desired motion along x over the frequency of the axis, unless given: well below the resonances."""
 USUAL_RATIO = 1.2247
-"""Frequency along y over that along x, unless given: that of the axes of set A. Axes alike would hardly beat."""
+"""Frequency along y over the frequency along x, unless given: the ratio of the axes of set A. Equal axes would hardly
+beat."""
 USUAL_FORCE_UN, USUAL_UM, USUAL_SIZES = 400.0, 1.0, 1.2
 """Most elastic force of the usual amplitude along x, this amplitude, and that along y over it."""
 PACE = 0.4
@@ -41,20 +42,20 @@ class AdaptiveRate(Block):
     .. math:: \tau=(\hat K+\hat nS-K_m)q_m+\hat D\dot q_m+2\hat\Omega S\dot q_m-\gamma\dot e,\quad e=q-q_m,\quad
         q_m=(A_1\sin\omega_1t,\;A_2\sin\omega_2t),\quad K_m=\mathrm{diag}(\omega_1^2,\omega_2^2)
 
-    The laws multiply by the motion asked for, not by the measured one, so that noise does not bias them. Velocities
+    The laws multiply by the desired motion, not by the measured motion, so that noise does not bias them. Velocities
     are measured. With :math:`\omega_1=\omega_2` the motion is not persistently exciting: it is followed all the same,
-    but the rate is not told from the damping, and the estimate is not trusted. Leland (2006) holds one axis to a sine
-    and the other at rest: that is ``drive_tracking`` with ``sense_axis_sync`` at rest.
+    but rate and damping are indistinguishable, and the estimate is not trusted. Leland (2006) holds one axis to a sine
+    and the other at zero: this is ``drive_tracking`` with ``sense_axis_sync`` at zero.
 
     A held force is late by half a sample and weaker than its sine, and makes the measured velocity ripple; the law
-    makes up for all three, and :math:`\hat n` takes what is left in step with the motion. The bound of the rate says
-    what is left of it there, what the rate still has to learn, and how it swings; it is trusted while that is at most a
-    quarter of it.
+    compensates all three, and :math:`\hat n` takes the remaining part in step with the motion. The bound of the rate
+    contains this remaining part, the rest of the learning, and the swing of the estimate; the estimate is trusted while
+    the bound is at most a quarter of it.
 
-    The usual gains go with the frequency of x, :math:`\omega_x`, or with 0.4 a sample where that is slower: a velocity
-    error is damped at :math:`1.061\,\omega_x`, and the estimates follow ten times slower. Ten times the gain of the
-    velocity error diverges on set A at 100 kHz, and so do a hundred times that of the stiffness and four hundred times
-    those of damping and rate; the bench then stops with a trip.
+    The usual gains are proportional to the frequency of x, :math:`\omega_x`, or to 0.4 a sample where that is slower:
+    a velocity error is damped at :math:`1.061\,\omega_x`, and the estimates follow ten times slower. Ten times the gain
+    of the velocity error diverges on set A at 100 kHz, and so do a hundred times the gain of the stiffness and four
+    hundred times the gains of damping and rate; the bench then stops with a trip.
     """
 
     title = "Adaptive control with rate estimate"
@@ -87,7 +88,7 @@ class AdaptiveRate(Block):
     )
 
     class Params(BlockParams):
-        """The motion asked for and the gains; times in ms."""
+        """The desired motion and the gains; times in ms."""
 
         amplitude_x_um: float | None = parameter(
             None, "amplitude along x; 1 um, or what 400 uN bend the spring by, unless given", "um", gt=0, le=100
@@ -96,7 +97,7 @@ class AdaptiveRate(Block):
             None, "amplitude along y; 1.2 of that along x unless given", "um", gt=0, le=100
         )
         frequency_x_hz: float | None = parameter(
-            None, "frequency along x; 0.2213 of that of the axis unless given", "Hz", gt=0, le=1e6
+            None, "frequency along x; 0.2213 of the axis frequency unless given", "Hz", gt=0, le=1e6
         )
         frequency_y_hz: float | None = parameter(
             None, "frequency along y; 1.2247 of that along x unless given", "Hz", gt=0, le=1e6
@@ -122,7 +123,7 @@ class AdaptiveRate(Block):
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
-        """Pack the motion asked for and the gains."""
+        """Pack the desired motion and the gains."""
         p = cls.Packed.blank()
         device = two_axis(context)
         natural = device.natural_frequency
@@ -145,7 +146,7 @@ class AdaptiveRate(Block):
 
     @staticmethod
     def step(p: Packed, s: State, x: AdaptiveRate.Ports) -> None:
-        """Follow the motion asked for, and adapt while it drives: another motion says nothing of it."""
+        """Follow the desired motion, and adapt while it drives: another motion carries no information about it."""
         q1, q2, v1, v2 = asked(p.asked, x.time_ms)
         x.error_x = x.x_measured - q1
         x.error_y = x.y_measured - q2 / p.stretch

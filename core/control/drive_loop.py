@@ -13,7 +13,7 @@ from core.ports import tap
 from core.record import Record
 
 LEAST = 1e-3
-"""Share of the amplitude asked for below which there is no phase to lock to."""
+"""Share of the desired amplitude below which there is no phase to lock to."""
 
 
 class DriveLoop(Block):
@@ -60,7 +60,7 @@ class DriveLoop(Block):
         """Amplitude and bandwidths."""
 
         amplitude_um: float | None = parameter(
-            None, "amplitude to hold; that of the device unless given", "um", gt=0, le=100
+            None, "amplitude to hold; the device's own unless given", "um", gt=0, le=100
         )
         phase_bandwidth_hz: float = parameter(100.0, "bandwidth of the phase-locked loop", "Hz", gt=0, le=1e5)
         amplitude_bandwidth_hz: float = parameter(50.0, "bandwidth of the amplitude loop", "Hz", gt=0, le=1e5)
@@ -90,7 +90,7 @@ class DriveLoop(Block):
         partner: Phasor
 
     class Ports(DrivePorts, PartnerPorts):
-        """Ports of the drive slot, a partner, and what the loops do."""
+        """Ports of the drive slot, a partner, and the outputs of the loops."""
 
         force: float = tap("uN", "amplitude of the force")
         phase_error: float = tap("rad", "phase of x against the carrier")

@@ -18,8 +18,8 @@ from core.units import hz_of_rad_ms
 class DriveTracking(Block):
     r"""Holds x to :math:`x_m=A\sin\omega t`, the same sine for both devices of a pair.
 
-    The force is that of ``core.control.tracking``. Two devices that are to be compared, or kept in step, need drive
-    axes that are held: a force along y of the one pulls its x off the frequency of the other.
+    The force is computed by ``core.control.tracking``. Two devices in a comparison, or in synchronism, need drive axes
+    that are held: a force along y of one device pulls its x off the frequency of the other.
     """
 
     title = "Drive tracking"
@@ -46,10 +46,10 @@ class DriveTracking(Block):
         """The sine, and how fast x comes to it."""
 
         amplitude_um: float | None = parameter(
-            None, "amplitude to hold; that of the device unless given", "um", gt=0, le=100
+            None, "amplitude to hold; the device's own unless given", "um", gt=0, le=100
         )
         frequency_hz: float | None = parameter(
-            None, "frequency; that of the mode nearest to x unless given", "Hz", gt=0, le=1e6
+            None, "frequency; the mode nearest to x unless given", "Hz", gt=0, le=1e6
         )
         damping_per_ms: float = parameter(1.0, "rate with which an error dies away", "1/ms", gt=0, le=100)
 

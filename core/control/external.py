@@ -11,8 +11,8 @@ from core.record import Record
 class External(Block):
     r"""The voltage comes from outside, :math:`u_i=f(r_i,y_{m,i},y_i,\dots)`: from a function, or from another program.
 
-    It is asked once the sample has been measured and answers before the voltage is held, so that its delay is that of
-    every other controller. `core.board.hosted` asks; on any other board there is nobody to ask.
+    It is called once the sample has been measured and answers before the voltage is held, so that its delay equals the
+    delay of every other controller. `core.board.hosted` calls it; any other board has no program to call.
     """
 
     title = "External"
@@ -20,19 +20,19 @@ class External(Block):
     equations = (Equation("law", r"u_i=f(r_i,y_{m,i},y_i,u_{i-1})"),)
 
     class Params(BlockParams):
-        """What it does is decided outside."""
+        """Its law is outside."""
 
     class State(Record):
-        """The voltage that was asked for, V."""
+        """The requested voltage, V."""
 
         asked: float
 
     class Ports(ReferencePorts, EngagedPorts):
-        """All that a controller may read, and the voltage it asks for."""
+        """All inputs of a controller, and the voltage it requests."""
 
         applied: float = reads("drive.voltage", "V", "voltage applied over the sample that ends now")
 
     @staticmethod
     def step(p: Record, s: State, x: Ports) -> None:
-        """Pass on what was asked for."""
+        """Pass on the requested voltage."""
         x.voltage = s.asked

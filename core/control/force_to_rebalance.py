@@ -1,4 +1,4 @@
-"""Force to rebalance: y is held at rest, and the force that does it is the rate."""
+"""Force to rebalance: y is held at zero, and the necessary force is the rate."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ USUAL_SHARE = 0.436
 
 
 class ForceToRebalance(Block):
-    r"""Holds y at rest with a force in step with the velocity of x, the rate, and one in step with x, the quadrature.
+    r"""Holds y at zero with a force in step with the velocity of x, the rate, and one with x, the quadrature.
 
     .. math:: F_y=u_c\cos\theta'+u_s\sin\theta',\quad\dot u_s+j\dot u_c=-gm_ye^{j\psi}(Y_s+jY_c)
 
     .. math:: \hat\Omega=\frac{u_c}{2m_c\omega A},\quad\hat\Omega_q=\frac{u_s}{2m_c\omega A}
 
-    :math:`\omega` is the frequency of the carrier: with y at rest x rings at :math:`\sqrt{k_{xx}/m_x}`, 3.7 % above
-    the mode of set A. :math:`\psi` is the phase of :math:`k_{yy}-m_y\omega^2+j\omega d_{yy}`, nominal. A held force is
-    late by half a sample, :math:`\omega h/2`, so without ``advance`` a part :math:`\Omega_q\sin(\omega h/2)` of the
-    quadrature reads as a rate; :math:`\theta'=\theta+\omega h/2` makes up for it. The loop is stable below the gain
+    :math:`\omega` is the frequency of the carrier: with y at zero x rings at :math:`\sqrt{k_{xx}/m_x}`, 3.7 % above the
+    mode of set A. :math:`\psi` is the phase of :math:`k_{yy}-m_y\omega^2+j\omega d_{yy}`, nominal. A held force is late
+    by half a sample, :math:`\omega h/2`, so without ``advance`` a part :math:`\Omega_q\sin(\omega h/2)` of the
+    quadrature reads as a rate; :math:`\theta'=\theta+\omega h/2` compensates it. The loop is stable below the gain
     :math:`g<|k_{yy}/m_y-\omega^2|\,d_{yy}/2m_y`, the damping of y against the split of the modes.
     """
 
@@ -54,7 +54,7 @@ class ForceToRebalance(Block):
         """The loop and its phase."""
 
         integral_gain_per_ms3: float | None = parameter(
-            None, "integral gain g; 0.436 of what the damping of y allows unless given", "1/ms^3", ge=0, le=1e6
+            None, "integral gain g; 0.436 of the limit by the damping of y unless given", "1/ms^3", ge=0, le=1e6
         )
         advance: bool = parameter(True, "advance the force by half a sample, by which a held one is late")
         phase_error_deg: float = parameter(0.0, "error of the phase of the force", "deg", ge=-180, le=180)
@@ -79,12 +79,12 @@ class ForceToRebalance(Block):
         quadrature: float
 
     class Ports(RatePorts):
-        """Ports of the sense slot, the force along y and what is left of y."""
+        """Ports of the sense slot, the force along y and the rest of y."""
 
         y: float = output("uN", "force along y this controller asks for")
         quadrature: float = output("deg/s", "cross stiffness, read as a rate")
-        rest_in_step: float = tap("um", "what is left of y in step with x")
-        rest_with_velocity: float = tap("um", "what is left of y in step with the velocity of x")
+        rest_in_step: float = tap("um", "residual of y in step with x")
+        rest_with_velocity: float = tap("um", "residual of y in step with the velocity of x")
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:

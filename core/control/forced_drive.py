@@ -16,7 +16,7 @@ from core.units import hz_of_rad_ms
 class ForcedDrive(Block):
     r"""A sine force, :math:`F_x=F\sin(2\pi ft+\varphi)`; held by a converter, or analogue.
 
-    The carrier is what x would do at its resonance: its velocity is in step with the force.
+    The carrier is the motion of x at its resonance: its velocity is in step with the force.
     """
 
     title = "Forced drive"
@@ -33,10 +33,10 @@ class ForcedDrive(Block):
         """The force."""
 
         force_un: float | None = parameter(
-            None, "amplitude; what the device needs for its amplitude at resonance unless given", "uN", ge=0, le=1e6
+            None, "amplitude; the force for the device's amplitude at resonance unless given", "uN", ge=0, le=1e6
         )
         frequency_hz: float | None = parameter(
-            None, "frequency; that of the mode nearest to x unless given", "Hz", ge=0, le=1e6
+            None, "frequency; the mode nearest to x unless given", "Hz", ge=0, le=1e6
         )
         phase_deg: float = parameter(0.0, "phase at t = 0", "deg")
 

@@ -172,7 +172,7 @@ class GainAdaptation(Block):
             gain = slope
         u = gain * r
         if rule == MONOPOLI:
-            # the slope of the gain, that of e y over the sample before
+            # the slope of the gain: e y over the sample before
             product = e * s.filtered
             growth = slope + p.adaptation_gain * p.proportional * (product - s.last_product) / p.h
             u += p.filter_time * growth * s.filtered

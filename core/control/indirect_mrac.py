@@ -75,7 +75,7 @@ class IndirectMrac(Block):
             r"-\lambda a_{m1}-a_{m0}\right),\;B_0=\tfrac{1}{K_p}\left(a_{p0}(\lambda-\alpha_1)-\lambda a_{m0}\right)",
             "3.3.2.16",
             printed=r"K=\frac{K_p}{K_m}",
-            why="equating the transfer functions gives K_m/K_p; the printed ratio multiplies the displacement at rest "
+            why="equating the transfer functions gives K_m/K_p; the printed ratio multiplies the static displacement "
             "by (K_p/K_m)^2",
         ),
     )
@@ -138,9 +138,9 @@ class IndirectMrac(Block):
         gain: Vector = tap("mixed", "gains on r, w1, w2 and y computed from the estimates", labels=REGRESSORS)
         gain_ideal: Vector = tap("mixed", "gains that would match the model exactly", labels=REGRESSORS)
         error: float = tap("um", "measured minus model displacement")
-        prediction_error: float = tap("um", "what the estimate missed, in um w0^2")
+        prediction_error: float = tap("um", "error of the estimate, in um w0^2")
         trace: float = tap("mixed", "trace of the covariance")
-        excitation: float = tap("1", "what the regressor of this sample tells beside what is known")
+        excitation: float = tap("1", "new information in the regressor of this sample")
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
@@ -163,7 +163,7 @@ class IndirectMrac(Block):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Parameters of the nominal device, the covariance, everything else at rest."""
+        """Parameters of the nominal device, the covariance, everything else zero."""
         a1, a2, gain = coefficients(context)[0]
         s = cls.State.zeros()
         s.theta[:] = gain, a1, a2

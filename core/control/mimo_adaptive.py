@@ -13,7 +13,8 @@ from core.control.two_axis_estimates import EstimatePorts, Estimates, PackedLaw
 from core.units import hz_of_rad_ms
 
 SLOWEST = 0.2
-"""Most rad in a sample that the motion asked for along x turns, unless its frequency is given, and the unit of time."""
+"""Largest angle, rad, that the desired motion along x turns in a sample, unless its frequency is given, and the unit of
+time."""
 USUAL_RATIO = 1.3
 """Frequency along y over that along x, unless given."""
 
@@ -25,15 +26,14 @@ class MimoAdaptive(Block):
         \dot{\hat K}=-g_K\,\mathrm{sym}(\dot e\,q^T),\;\dot{\hat D}=-g_D\,\mathrm{sym}(\dot e\,\dot q^T),\;
         \dot{\hat\Omega}=-2g_\Omega\,\dot e^TS\dot q
 
-    with :math:`e=q-q_m` and :math:`K_m=\mathrm{diag}(\omega_1^2,\omega_2^2)`. With
-    :math:`V=\tfrac12|\dot e|^2+\tfrac12 e^TK_me+\dots` its derivative is :math:`-\gamma|\dot e|^2`. The motion asked
-    for has two frequencies; with one it is not persistently exciting, and the rate is not trusted. The text proposes
-    the extension and derives nothing.
+    with :math:`e=q-q_m` and :math:`K_m=\mathrm{diag}(\omega_1^2,\omega_2^2)`. With :math:`V=\tfrac12|\dot e|^2+\tfrac12
+    e^TK_me+\dots` its derivative is :math:`-\gamma|\dot e|^2`. The desired motion has two frequencies; with one it is
+    not persistently exciting, and the rate is not trusted. The text proposes the extension and derives nothing.
 
     A held force is late by half a sample and weaker than its sine, and makes the measured velocity ripple; the law
-    makes up for all three as ``adaptive_rate`` does, and takes the deviation from the motion asked for half a sample on
-    as it went. Times are in 1/w of x, :math:`\omega` being the frequency of x, or 0.2 rad a sample where that is
-    slower; the gains are for a device that swings with about 1 um.
+    compensates all three as ``adaptive_rate`` does, and extrapolates the deviation from the desired motion by half a
+    sample. Times are in 1/w of x, :math:`\omega` being the frequency of x, or 0.2 rad a sample where that is slower;
+    the gains are for a device that swings with about 1 um.
     """
 
     title = "Many-input adaptive control"
@@ -46,7 +46,7 @@ class MimoAdaptive(Block):
             r"\tau=(\hat K-K_m)q+\hat D\dot q+2\hat\Omega S\dot q-\gamma(\dot q-\dot q_m)",
             "6.2",
             printed=r"\text{a multiple input multiple output expansion is more practical}",
-            why="the text gives no law; this is the one that its single-input controller becomes",
+            why="the text gives no law; this law extends its single-input controller",
         ),
         Equation(
             "adaptation",
@@ -78,12 +78,12 @@ class MimoAdaptive(Block):
     )
 
     class Params(BlockParams):
-        """The motion asked for and the gains; times in 1/w0 of x, or in samples of 0.2 rad where that is slower."""
+        """The desired motion and the gains; times in 1/w0 of x, or in samples of 0.2 rad where that is slower."""
 
         amplitude_x_um: float = parameter(1.0, "amplitude along x", "um", gt=0, le=100)
         amplitude_y_um: float = parameter(1.0, "amplitude along y", "um", gt=0, le=100)
         frequency_x_hz: float | None = parameter(
-            None, "frequency along x; that of the axis, or 0.2 rad a sample, unless given", "Hz", gt=0, le=1e6
+            None, "frequency along x; the axis frequency, or 0.2 rad a sample, unless given", "Hz", gt=0, le=1e6
         )
         frequency_y_hz: float | None = parameter(
             None, "frequency along y; 1.3 of that along x unless given", "Hz", gt=0, le=1e6
@@ -98,7 +98,7 @@ class MimoAdaptive(Block):
         """The law."""
 
     class State(Estimates):
-        """The estimates, and the last deviation of both axes from the motion asked for."""
+        """The estimates, and the last deviation of both axes from the desired motion."""
 
         last_x: float
         last_y: float
@@ -108,7 +108,7 @@ class MimoAdaptive(Block):
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
-        """Pack the motion asked for and the gains."""
+        """Pack the desired motion and the gains."""
         p = cls.Packed.blank()
         pace = min(two_axis(context).natural_frequency, SLOWEST / context.dt_ms)
         along_x = params.frequency_x_hz or hz_of_rad_ms(pace)

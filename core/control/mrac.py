@@ -140,7 +140,7 @@ class Mrac(Block):
     class Ports(ControllerPorts, TruthPorts):
         """Ports of a controller, the truth, and the adaptation."""
 
-        drive_offset: float = reads("effects.drive_offset", "V", "voltage at the comb that nobody applied")
+        drive_offset: float = reads("effects.drive_offset", "V", "stray voltage at the comb")
         gain: Vector = tap("mixed", "adapted gains on r, w1, w2, y and a constant", labels=LABELS)
         gain_ideal: Vector = tap("mixed", "gains that would match the model exactly", labels=LABELS)
         alpha: float = tap("1", "adapted gain of the auxiliary error")
@@ -170,7 +170,7 @@ class Mrac(Block):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Gains that match the nominal device, everything else at rest."""
+        """Gains that match the nominal device, everything else zero."""
         p, s = cls.pack(params, context), cls.State.zeros()
         s.theta[:CONSTANT] = matching(*coefficients(context)[0], p.model, params.filter_pole)
         s.alpha = 1.0 / s.theta[0]

@@ -58,8 +58,8 @@ class MracVelocity(Block):
     .. math:: u=\theta^Tw,\quad w=[r,w_1,w_2,y_c],\;y_c=y+\dot y/c,\quad \dot\theta=-\mathrm{sgn}(k_p)\,g\,\Gamma e_cw
 
     With :math:`c<a_{m1}` the model from r to :math:`y_{c}` is strictly positive real, which the plain law needs; on y
-    alone it is not. A plant of first order is so by itself. The error is the one under this law's own voltage: a copy
-    of the model takes out the effect of another controller's voltage, so the law learns in shadow and in saturation.
+    alone it is not. A plant of first order is so by itself. The error belongs to this law's own voltage: a copy of the
+    model takes out the effect of another controller's voltage, so the law learns in shadow and in saturation.
     """
 
     title = "Direct MRAC with velocity"
@@ -109,7 +109,7 @@ class MracVelocity(Block):
             None, "weight of w2 and y in Gamma; 1/kp^2 unless given, so that y counts in volts", "V^2/um^2", gt=0
         )
         start: Literal["nominal", "zero"] = parameter(
-            "nominal", "gains at the start: those that match the nominal device, or none", live=False
+            "nominal", "gains at the start: matched to the nominal device, or zero", live=False
         )
         leakage: float = parameter(0.0, "leakage of the gains, per 1/w0", ge=0, le=1)
         gain_bound: float = parameter(30.0, "bound of the gains (projection), 0 for none", ge=0)
@@ -130,7 +130,7 @@ class MracVelocity(Block):
         velocity: PackedVelocity
 
     class State(Record):
-        """Gains, filters, last regressor, last voltage of this law, its effect beyond the one applied, the velocity."""
+        """Gains, filters, last regressor, last voltage of this law, effect of its excess voltage, the velocity."""
 
         theta: Vector = vector(4)
         w1: float
@@ -182,7 +182,7 @@ class MracVelocity(Block):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Gains that match the nominal device, everything else at rest."""
+        """Gains that match the nominal device, everything else zero."""
         p, s = cls.pack(params, context), cls.State.zeros()
         if params.start == "nominal":
             plant, first_order = coefficients(context)[0], context.device.mass == 0.0
@@ -215,8 +215,8 @@ class MracVelocity(Block):
             a1, a2, gain, p.model, p.filter_pole, p.lead, first_order
         )
         # The step of an implicit method: a sample changes the error by ``reach`` times the change of the voltage. The
-        # law adapts along the last regressor, which is the one in the error. Along the present one, a voltage that
-        # turns at every sample, as in chatter, would turn the sign of the law.
+        # law adapts along the last regressor, which appears in the error. Along the present one, a voltage that turns
+        # at every sample, as in chatter, would turn the sign of the law.
         size = s.last[0] * s.last[0] + s.last[1] * s.last[1]
         size += p.weight * (s.last[2] * s.last[2] + s.last[3] * s.last[3])
         rate = p.h * p.adaptation_gain * own_error / (1.0 + p.h * p.adaptation_gain * p.reach * size)

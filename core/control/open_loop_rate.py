@@ -42,7 +42,7 @@ class ReadOut(Record):
 
 @inlined
 def read(p: ReadOut, s: Filtered, x: ReadPorts) -> None:
-    """Demodulate y and write what it says of the rate."""
+    """Demodulate y and write the rate that follows from it."""
     omega = x.frequency * 6.283185307179586e-3
     sine = x.sine * p.turn_cosine + x.cosine * p.turn_sine
     cosine = x.cosine * p.turn_cosine - x.sine * p.turn_sine
@@ -80,11 +80,11 @@ class OpenLoopRate(Block):
         \hat\Omega_q=-\frac{\mathrm{Re}\,G\,Y_s}{2m_c\omega A},\quad
         G=k_{yy}-m_y\omega^2+j\omega d_{yy}
 
-    The part in step with the velocity of x is taken for the rate, that in step with x for the quadrature. The damping
-    of y turns a little of the quadrature into the rate: with nobody turning it reads
-    :math:`[d_{xy}-k_{xy}d_{yy}/(k_{yy}-m_y\omega^2)]/2m_c`. ``correct_phase`` turns it back by the phase of the
-    nominal sense axis; what is left is the cross damping, which nothing tells from a rate. An error :math:`\varphi`
-    of the phase reads :math:`\Omega\cos\varphi-\Omega_q\sin\varphi`.
+    The part in step with the velocity of x is taken for the rate, the part in step with x for the quadrature. The
+    damping of y turns a little of the quadrature into the rate: without rotation it reads
+    :math:`[d_{xy}-k_{xy}d_{yy}/(k_{yy}-m_y\omega^2)]/2m_c`. ``correct_phase`` turns it back by the phase of the nominal
+    sense axis; the rest is the cross damping, which is indistinguishable from a rate. An error :math:`\varphi` of the
+    phase reads :math:`\Omega\cos\varphi-\Omega_q\sin\varphi`.
     """
 
     title = "Open-loop read-out"
@@ -110,7 +110,7 @@ class OpenLoopRate(Block):
         ),
     )
     weaknesses = (
-        "With nobody turning it reads the zero rate of the nominal device as a rate, -43 deg/s on set A and 1710 on "
+        "Without rotation it reads the zero rate of the nominal device as a rate, -43 deg/s on set A and 1710 on "
         "set B, and nothing says by how much the rate is off.",
         "A drift of the sense frequency is a drift of the scale factor: 1 % of stiffness is 37 % of it at a split of "
         "53 Hz.",

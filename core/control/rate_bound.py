@@ -2,20 +2,19 @@ r"""The bound on the error of a constant rate, from the estimates of an adaptive
 
 .. math:: B=2\Delta_\Omega+2\,|\tilde\Omega|+s\,|\hat\Omega|+2\,(\Omega_D+\Omega_n)
 
-- :math:`\Delta_\Omega`: what the rate swung by in the last whole beats, 50 ms at least.
-- :math:`\tilde\Omega`: what is still to be learned. The changes of
-  :math:`\hat k_{xy},\hat n,\hat d_{xy},\hat\Omega` over these beats, over their gains, are the means of the products
-  :math:`\dot e^Tq_r,\;\dot e^T\dot q_r`, and so the part of each velocity error that has the frequency of the other
-  axis, as phasor :math:`E`. The force that would take it away is :math:`E_i\,(\gamma-j(k_i-\omega^2)/\omega)`, with the
-  :math:`k_i` of the axis, or of the model put in its place. A force along y and x that goes with :math:`\pm2\omega A`
-  of the other axis is a rate.
-- :math:`s,\Omega_D`: what holding the force leaves. Beyond what the law makes up for, a held force acts as
-  :math:`Z+\epsilon ZPZ` on the device :math:`Z(j\omega)=K-\omega^2+j\omega(D+2\Omega S)`, with
+- :math:`\Delta_\Omega`: the swing of the rate in the last whole beats, 50 ms at least.
+- :math:`\tilde\Omega`: the part that is not learned yet. The changes of :math:`\hat k_{xy},\hat n,\hat
+  d_{xy},\hat\Omega` over these beats, over their gains, are the means of the products :math:`\dot e^Tq_r,\;\dot e^T\dot
+  q_r`, and so the part of each velocity error that has the frequency of the other axis, as phasor :math:`E`. The force
+  that would remove it is :math:`E_i\,(\gamma-j(k_i-\omega^2)/\omega)`, with the :math:`k_i` of the axis, or of the
+  model put in its place. A force along y and x proportional to :math:`\pm2\omega A` of the other axis is a rate.
+- :math:`s,\Omega_D`: the remaining errors of holding the force. Beyond the compensation of the law, a held force acts
+  as :math:`Z+\epsilon ZPZ` on the device :math:`Z(j\omega)=K-\omega^2+j\omega(D+2\Omega S)`, with
   :math:`\epsilon=h^4/720,\;P=K+3\omega^2-3j\omega(D+2\Omega S)`. Of that a share of the rate is at most
   :math:`s=\epsilon(k_{xx}+k_{yy}+\omega_x^2+\omega_y^2)^2`, and the damping reads as
   :math:`\Omega_D=\tfrac54\epsilon\,|\omega_y^2-\omega_x^2|\,|KD+DK|_{xy}`.
-- :math:`\Omega_n=\tfrac14h^2\sqrt{\omega_x\omega_y}\,|\hat n|`, for a law that multiplies by the measured motion: what
-  repeats of the deviation is measured at a sample and acts half a sample later. The factor is measured on set B.
+- :math:`\Omega_n=\tfrac14h^2\sqrt{\omega_x\omega_y}\,|\hat n|`, for a law that multiplies by the measured motion: the
+  periodic part of the deviation is measured at a sample and acts half a sample later. The factor is measured on set B.
 
 The swing and the learning hold the thermal noise as well. Masses, forces and sensors count as nominal: an error of
 theirs is an error of the scale, and the bound does not hold it. The claim is withdrawn as soon as the rate has gone
@@ -35,13 +34,13 @@ SHARE = 0.25
 SHORTEST_MS = 50.0
 """The least time over which changes are looked at, in whole beats."""
 SLOW_MS = 100.0
-"""A beat that takes longer tells too little."""
+"""A beat that takes longer contains too little information."""
 UNKNOWN_DPS = 1e6
 """Bound while nothing can be said, deg/s: 2800 turns a second."""
 
 
 def fill_basis(p: Basis, a: Asked, g: Gains, dt_ms: float, cancels: bool) -> None:
-    """Pack what bounds the rate; ``cancels``: the law multiplies by the measured motion, and puts a model in place."""
+    """Pack the bounds of the rate; ``cancels``: the law multiplies by the measured motion, with a model in place."""
     p.exciting = a.beat_ms <= SLOW_MS and min(g.stiffness, g.damping, g.rate) > 0.0
     p.beats_ms, p.of_stiffness, p.of_damping, p.of_rate = math.inf, 0.0, 0.0, 0.0
     if p.exciting:
@@ -64,7 +63,7 @@ def unlearned(p: PackedLaw, s: Estimates) -> float:
     if p.basis.cancelled != 0.0:
         kxx, kyy = square_x, square_y
     speed_x, speed_y = a.amplitude_x * a.omega_x, a.amplitude_y * a.omega_y
-    # the velocity error of x at the frequency of y, and that of y at the frequency of x
+    # the velocity error of x at the frequency of y, and the velocity error of y at the frequency of x
     along = 2.0 * (p.gains.velocity * (damping - rate) - (kxx - square_y) * (stiffness - skew)) / (speed_y * speed_y)
     across = 2.0 * (p.gains.velocity * (damping + rate) - (kyy - square_x) * (stiffness + skew)) / (speed_x * speed_x)
     return 0.25 * abs(across - along)
@@ -72,7 +71,7 @@ def unlearned(p: PackedLaw, s: Estimates) -> float:
 
 @inlined
 def misread(p: PackedLaw, s: Estimates) -> float:
-    """Return what holding the force makes of the rate, as far as the law does not make up for it."""
+    """Return the rate error of holding the force, as far as the law does not compensate it."""
     a = p.asked
     square_x, square_y = a.omega_x * a.omega_x, a.omega_y * a.omega_y
     stiff = abs(s.kxx) + abs(s.kyy)
@@ -84,7 +83,7 @@ def misread(p: PackedLaw, s: Estimates) -> float:
 
 @inlined
 def judge(p: PackedLaw, s: Estimates, x: EstimatePorts) -> None:
-    """Claim a bound after whole beats, withdraw it when the rate leaves it, and say whether the rate is trusted."""
+    """Claim a bound after whole beats, withdraw it when the rate leaves it, and decide whether the rate is trusted."""
     c = s.claim
     over = x.time_ms - c.begun_ms >= p.basis.beats_ms
     if over and p.basis.exciting != 0.0:

@@ -92,7 +92,7 @@ class SelfSliding(Block):
         surface_slope: float = parameter(2.0, "c of the surface with velocity, over w0", gt=0, le=100)
         layer_um: float = parameter(0.0, "boundary layer of the sign, 0 for none", "um", ge=0, le=100)
         start: Literal["nominal", "zero"] = parameter(
-            "nominal", "gains at the start: those that match the nominal device, or none", live=False
+            "nominal", "gains at the start: matched to the nominal device, or zero", live=False
         )
         leakage: float = parameter(0.0, "leakage of the gains, per 1/w0", ge=0, le=1)
         gain_bound: float = parameter(0.0, "bound of the gains, 0 for none", ge=0)
@@ -116,8 +116,8 @@ class SelfSliding(Block):
     class State(Record):
         """Gains and alpha, the last regressor and the filtered one, the last voltage of this law, the velocity source.
 
-        With an augmented error the filtered voltage is the one applied; without it, the law's own voltage less the
-        applied one.
+        With an augmented error the filtered voltage is the applied voltage; without it, the law's own voltage less the
+        applied voltage.
         """
 
         theta: Vector = vector(4)
@@ -165,7 +165,7 @@ class SelfSliding(Block):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Gains at the start, everything else at rest."""
+        """Gains at the start, everything else zero."""
         plant, model = coefficients(context)
         s = cls.State.zeros()
         s.alpha = plant[2] / model[2]
@@ -195,8 +195,7 @@ class SelfSliding(Block):
             surface = flush_tiny(e + s.alpha * eta)
             s.alpha -= p.h * p.alpha_gain * surface * eta / size
         else:
-            # The error is the one under this law's own voltage; while the law drives, there is no difference to take
-            # out.
+            # The error belongs to this law's own voltage; while the law drives, there is no difference to take out.
             advance_motion(p.copy, s.filtered_voltage, s.voltage - u)
             add_moves(p.copy, s.filtered_voltage, -middle, -end)
             missing = p.orientation * p.ratio

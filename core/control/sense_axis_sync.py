@@ -15,27 +15,26 @@ from core.units import DEG_PER_RAD
 
 
 class SenseAxisSync(Block):
-    r"""Makes y follow that of the partner, :math:`e=y-y_m\to0`; or rest, :math:`y_m=0`, which is drift reduction.
+    r"""Makes y follow the y of the partner, :math:`e=y-y_m\to0`; or zero, :math:`y_m=0`, which is drift reduction.
 
     .. math:: F_y=-c_d\dot e-\hat\theta_1x-\hat\theta_2\dot x/\omega,\quad
         \dot{\hat\theta}_1=g\,\dot e\,x,\quad\dot{\hat\theta}_2=g\,\dot e\,\dot x/\omega
 
-    What differs between the two goes with x and its velocity, so both forces are learned. With
+    The differences between the two are proportional to x and its velocity, so both forces are learned. With
     :math:`V=\tfrac12m\dot e^2+\tfrac12ke^2+\tfrac1{2g}|\tilde\theta|^2`, :math:`\dot V=-(d+c_d)\dot e^2`. The gain is
     :math:`g=4m\sigma\lambda\,(1+\Delta^2/\sigma^2)/A^2` with :math:`c_d=2m\sigma` and the split :math:`\Delta` of the
     modes, so that the error dies away with the rate :math:`\lambda`.
 
-    A partner with errors of its own hands them on: what is read then is its zero-rate output. With y at rest the rate
-    is in the force, :math:`\hat\Omega=u_c/2m_c\omega A`, and what is left of the zero rate is the cross damping.
+    A partner with errors of its own hands them on: the reading is then its zero-rate output. With y at zero the rate is
+    in the force, :math:`\hat\Omega=u_c/2m_c\omega A`, and the rest of the zero rate is the cross damping.
 
-    At rest, with ``drive_tracking`` in the drive slot, this is the adaptive law of Leland (2006, recalled and checked
-    for consistency only): x follows a sine of a given frequency, y is driven to rest, and what multiplies x and its
-    velocity is adapted by the velocity error. Over a period the products average to
+    At zero, with ``drive_tracking`` in the drive slot, this is the adaptive law of Leland (2006, recalled and checked
+    for consistency only): x follows a sine of a given frequency, y is driven to zero, and the factors of x and its
+    velocity are adapted by the velocity error. Over a period the products average to
     :math:`\dot{\hat\theta}_1=-\tfrac12g\omega Y_c,\;\dot{\hat\theta}_2=\tfrac12g\omega Y_s`. That is the integral of
     ``force_to_rebalance``, :math:`\dot u_s+j\dot u_c=-g_Fm_ye^{j\psi}(Y_s+jY_c)`, with :math:`u_s=-\hat\theta_1,
-    u_c=-\hat\theta_2,\psi=90^\circ` and :math:`g_F=g\omega/2m_y`, on an axis with the damping
-    :math:`d_{yy}+c_d`. One frequency does not tell the rate from the cross damping: what is read is
-    :math:`\Omega+d_{xy}/2m_c`.
+    u_c=-\hat\theta_2,\psi=90^\circ` and :math:`g_F=g\omega/2m_y`, on an axis with the damping :math:`d_{yy}+c_d`. One
+    frequency does not separate the rate from the cross damping: the reading is :math:`\Omega+d_{xy}/2m_c`.
     """
 
     title = "Sense-axis synchronisation"
@@ -62,7 +61,7 @@ class SenseAxisSync(Block):
             r"\Omega_0\to\Omega_{0,m}",
             "6.1.5",
             printed=r"\text{synchronisation reduces the drift}",
-            why="a model with errors of 2 degrees hands on its own 10.0 deg/s; only a y at rest, or a model without "
+            why="a model with errors of 2 degrees hands on its own 10.0 deg/s; only y held at zero, or a model without "
             "errors, takes the quadrature out of the rate",
         ),
     )
@@ -89,7 +88,7 @@ class SenseAxisSync(Block):
     )
 
     class Params(BlockParams):
-        """What y follows, and how fast."""
+        """The target of y, and the speed of the adaptation."""
 
         follow: Literal["partner", "rest"] = parameter("partner", "y of the partner, or no swing at all")
         rate_per_ms: float = parameter(0.25, "rate with which the forces are learned", "1/ms", gt=0, le=10)
@@ -101,7 +100,7 @@ class SenseAxisSync(Block):
         correct_phase: bool = parameter(False, "turn y back by the phase of the nominal sense axis")
 
     class Packed(Record):
-        """Read-out, what is followed, damping, gain per sample, amplitude, low-pass of the force, half a sample."""
+        """Read-out, target of y, damping, gain per sample, amplitude, low-pass of the force, half a sample."""
 
         read_out: ReadOut
         rest: float
@@ -128,9 +127,9 @@ class SenseAxisSync(Block):
         partner_y: float = reads("sensor.partner_y.displacement?", "um", "measured displacement of the partner along y")
         partner_y_velocity: float = reads("sensor.partner_y.velocity?", "um/ms", "measured velocity of the partner")
         y: float = output("uN", "force along y this controller asks for")
-        error: float = tap("um", "y minus what it follows")
+        error: float = tap("um", "y minus its target")
         learned: float = tap("uN", "part of the force that has been learned")
-        phase_difference: float = tap("deg", "phase of y against that of the partner")
+        phase_difference: float = tap("deg", "phase of y against the partner's y")
         partner_rate: float = tap("deg/s", "rate read from the swing of the partner")
 
     @classmethod

@@ -54,7 +54,7 @@ class Stvsc(Block):
             SURFACE_EQUATION.latex,
             SURFACE_EQUATION.source,
             printed=r"s=Ge_1",
-            why="e_1 is the error of the estimate: at rest it is zero whatever the model does, and so is the voltage. "
+            why="e_1 is the error of the estimate: without motion it is always zero, and so is the voltage. "
             "The surface needs the tracking error",
         ),
         GAINS_EQUATION,
@@ -144,7 +144,7 @@ class Stvsc(Block):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Estimates of the nominal device, everything else at rest."""
+        """Estimates of the nominal device, everything else zero."""
         a1, a2, gain = coefficients(context)[0]
         s = cls.State.zeros()
         s.theta[:] = gain, a2, a1

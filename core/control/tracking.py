@@ -1,4 +1,4 @@
-r"""A force that makes a drive axis follow the carrier, :math:`x_m=A\sin\theta`, and learns what that takes.
+r"""A force that makes a drive axis follow the carrier, :math:`x_m=A\sin\theta`, and learns the necessary force.
 
 .. math:: F=f_s\sin\theta'+f_c\cos\theta'-c_d\dot e,\quad e=x-x_m,\quad\theta'=\theta+\omega h/2,\quad
     \dot f_s=\lambda c_d\omega E_c,\;\dot f_c=-\lambda c_d\omega E_s
@@ -16,7 +16,7 @@ from core.record import Record
 
 
 class Tracking(Record):
-    """Amplitude asked for, damping added, gain of the adaptation per sample."""
+    """Desired amplitude, damping added, gain of the adaptation per sample."""
 
     target: float
     added_damping: float
@@ -24,7 +24,7 @@ class Tracking(Record):
 
 
 class Phasor(Record):
-    """Amplitudes of a force in step with the displacement asked for and with its velocity, uN."""
+    """Amplitudes of a force in step with the desired displacement and with its velocity, uN."""
 
     sine: float
     cosine: float

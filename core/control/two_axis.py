@@ -1,4 +1,4 @@
-r"""What controllers of two axes share: ports, the components of a motion along the carrier, the nominal sense axis.
+r"""Shared parts of controllers of two axes: ports, components of a motion along the carrier, nominal sense axis.
 
 The drive slot swings x as :math:`x=A\sin\theta`; its controllers put out the carrier, :math:`\sin\theta` and
 :math:`\cos\theta`. A motion along y has a part in step with x and a part in step with its velocity,
@@ -20,7 +20,7 @@ from core.units import rate_deg_s
 
 
 class MeasuredPorts(BlockPorts):
-    """What is measured of both axes, and whether the controller drives."""
+    """The measurements of both axes, and whether the controller drives."""
 
     x_measured: float = reads("sensor.x.displacement", "um", "measured displacement along x")
     y_measured: float = reads("sensor.y.displacement", "um", "measured displacement along y")
@@ -63,8 +63,9 @@ class RatePorts(MeasuredPorts):
 class Sense(Record):
     r"""The nominal sense axis at the drive frequency.
 
-    Its dynamic stiffness :math:`k_{yy}-m_y\omega^2+j\omega d_{yy}`, uN/um, and what turns a force per amplitude into a
-    rate: :math:`1/2m_c\omega` at that frequency, deg/s per uN/um, and :math:`1/2m_c` per speed, deg/s per uN ms/um.
+    Its dynamic stiffness :math:`k_{yy}-m_y\omega^2+j\omega d_{yy}`, uN/um, and the factors that turn a force per
+    amplitude into a rate: :math:`1/2m_c\omega` at that frequency, deg/s per uN/um, and :math:`1/2m_c` per speed, deg/s
+    per uN ms/um.
     """
 
     spring: float
@@ -74,7 +75,7 @@ class Sense(Record):
 
 
 def two_axis(context: Context) -> TwoAxis:
-    """Return the nominal device, which has two axes wherever such a controller may stand."""
+    """Return the nominal device, which has two axes wherever such a controller is allowed."""
     return cast(TwoAxis, context.device)
 
 

@@ -4,20 +4,20 @@ r"""The estimates that adaptive controllers of two axes share, and the law that 
     \dot{\hat\Omega}=-g_\Omega\,\dot e^TS\dot q_r,\quad\dot{\hat n}=-\tfrac12g_K\,\dot e^TSq_r,\quad
     S=\begin{bmatrix}0&-1\\1&0\end{bmatrix}
 
-:math:`q_r` is what the law multiplies the estimates with: the motion asked for, or the motion. Everything is per unit
-of mass, with time in a unit that each controller names, and y is stretched by :math:`\sqrt{m_y/m_x}`, so that both axes
-have one mass and turning pushes them alike, by :math:`m_c/\sqrt{m_xm_y}` of the rate. The estimates begin with 0:
-nothing of the device is known.
+:math:`q_r` is the factor of the estimates in the law: the desired motion, or the motion. Everything is per unit of
+mass, with time in a unit that each controller names, and y is stretched by :math:`\sqrt{m_y/m_x}`, so that both axes
+have one mass and turning pushes them alike, by :math:`m_c/\sqrt{m_xm_y}` of the rate. The estimates begin with 0: the
+device is unknown.
 
-A force is held for a sample h. The motion sees it half a sample late and weaker by
-:math:`\mathrm{sinc}(\omega h/2)`, so the law takes the motion asked for half a sample later, and larger by as much. The
-velocity ripples within a sample, and where it is measured, at the edges, the ripple is :math:`-\tfrac1{12}h^2\dot F/m`;
-the law knows its force, and takes that off the velocity error. Without both, set A at 100 kHz reads 12 to 39 deg/s too
-much at every rate. What is left goes with the fourth power of the sample, see `rate_bound`.
+A force is held for a sample h. The motion sees it half a sample late and weaker by :math:`\mathrm{sinc}(\omega h/2)`,
+so the law takes the desired motion half a sample later, and larger by as much. The velocity ripples within a sample,
+and where it is measured, at the edges, the ripple is :math:`-\tfrac1{12}h^2\dot F/m`; the law knows its force, and
+takes that off the velocity error. Without both, set A at 100 kHz reads 12 to 39 deg/s too much at every rate. The
+remaining error is proportional to the fourth power of the sample, see `rate_bound`.
 
 With two frequencies the cross forces have eight components, and a device has seven parameters. The eighth is
-:math:`nS`, an antisymmetric stiffness that no device has. It takes what the model of the sample still leaves over;
-without it the rate swings with the beat by as much.
+:math:`nS`, an antisymmetric stiffness that no device has. It takes the rest of the model of the sample; without it the
+rate swings with the beat by as much.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def fill_law(
     velocity_gain: float,
     stiffness_gain: float,
 ) -> None:
-    """Pack the motion asked for, with amplitudes in um and frequencies in Hz, gains in a unit of time, and forces."""
+    """Pack the desired motion, with amplitudes in um and frequencies in Hz, gains in a unit of time, and forces."""
     device = two_axis(context)
     p.mass_x, p.mass_y, p.mean_mass = device.mass, device.mass_y, math.sqrt(device.mass * device.mass_y)
     p.stretch, p.angular_gain = p.mean_mass / device.mass, device.coriolis_mass / p.mean_mass
@@ -70,7 +70,7 @@ def larger(half: float) -> float:
 
 @inlined
 def asked(p: Asked, t: float) -> tuple[float, float, float, float]:
-    """Return displacements asked for at a time in ms, and velocities per unit of time."""
+    """Return desired displacements at a time in ms, and velocities per unit of time."""
     x = p.cycles_x * t
     y = p.cycles_y * t
     return (
@@ -83,7 +83,7 @@ def asked(p: Asked, t: float) -> tuple[float, float, float, float]:
 
 @inlined
 def held(p: Asked, t: float) -> tuple[float, float, float, float]:
-    """Return the motion asked for as a held force needs it: half a sample later, and larger."""
+    """Return the desired motion as a held force needs it: half a sample later, and larger."""
     q1, q2, v1, v2 = asked(p, t + p.ahead_ms)
     return p.larger_x * q1, p.larger_y * q2, p.larger_x * v1, p.larger_y * v2
 
@@ -92,7 +92,7 @@ def held(p: Asked, t: float) -> tuple[float, float, float, float]:
 def velocity_errors(
     p: PackedLaw, s: Estimates, x: EstimatePorts, q1: float, q2: float, v1: float, v2: float
 ) -> tuple[float, float]:
-    """Return the errors of both velocities against those asked for, without the ripple of the held force."""
+    """Return the errors of both velocities against the desired velocities, without the ripple of the held force."""
     a = p.asked
     square_x, square_y = a.omega_x * a.omega_x, a.omega_y * a.omega_y
     along, across = push(s, v1, v2, -square_x * q1, -square_y * q2)
@@ -126,7 +126,7 @@ def push(s: Estimates, q1: float, q2: float, v1: float, v2: float) -> tuple[floa
 
 @inlined
 def write(p: PackedLaw, s: Estimates, x: EstimatePorts) -> None:
-    """Write the estimates, and what they are worth."""
+    """Write the estimates, and their trust."""
     unit = p.asked.unit_ms
     s.rate += (1.0 - p.kept) * (s.omega - s.rate)
     judge(p, s, x)

@@ -1,4 +1,4 @@
-"""What adaptive controllers of two axes know: the motion asked for, gains, estimates, and the claim on the rate."""
+"""Data of adaptive controllers of two axes: the desired motion, gains, estimates, and the claim on the rate."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Basis(Record):
 
 
 class Claim(Record):
-    """Begin of these beats; the estimates then; least and most rate; whether a bound is claimed, of which rate."""
+    """Begin of these beats; the estimates then; least and most rate; whether a bound is claimed, and its rate."""
 
     begun_ms: float
     kxy: float
@@ -85,9 +85,9 @@ class Estimates(Record):
 
 
 class PackedLaw(Record):
-    """The motion asked for, gains, what bounds the rate, forces per unit of acceleration, masses, y.
+    """The desired motion, gains, bounds of the rate, forces per unit of acceleration, masses, y.
 
-    The rate that turning makes of the rate, and the share that the low-pass keeps.
+    Factor of the rotation in the law's rate, and the share that the low-pass keeps.
     """
 
     asked: Asked

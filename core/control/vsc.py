@@ -26,8 +26,8 @@ from core.voltage import moves
 class Vsc(Block):
     r"""Variable structure control with fixed gains, :math:`u=u_{eq}+\rho M\,\mathrm{sat}(s/\Phi)`.
 
-    The gains are those of the nominal device. If the true device asks for more than they allow for, the law does not
-    reach the surface; the self-tuning law exists for that case.
+    The gains belong to the nominal device. If the true device needs more than they allow for, the law does not reach
+    the surface; the self-tuning law exists for that case.
     """
 
     title = "Variable structure control"

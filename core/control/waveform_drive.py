@@ -19,9 +19,9 @@ class WaveformDrive(Block):
     r"""A force along one axis from the waveform of the bench, :math:`F=gr(t)`; held by a converter, or analogue.
 
     Any reference may be the waveform: a swept sine, tones, steps, a binary sequence. The carrier is the swing of x
-    itself, :math:`\sin\theta=x/A,\;\cos\theta=\dot x/\omega A`, with the frequency of the mode nearest to x, because
-    a waveform need not have any one frequency. A force along y is heard where no controller of the sense slot asks for
-    one.
+    itself, :math:`\sin\theta=x/A,\;\cos\theta=\dot x/\omega A`, with the frequency of the mode nearest to x, because a
+    waveform need not have any one frequency. A force along y is applied where no controller of the sense slot sets a
+    force.
     """
 
     title = "Waveform drive"

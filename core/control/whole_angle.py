@@ -28,11 +28,11 @@ class WholeAngle(Block):
         \hat\Omega=-\dot\psi/\kappa_m
 
     Nominal stiffness and damping are tuned away, so that both axes are alike. Energy control holds the amplitude, and
-    the force along :math:`Sq` keeps the orbit a line, of area 0. What stiffness is left, as after a fault, opens the
-    orbit; the mode tuning learns it, :math:`\dot{\hat b}=-\rho P(x^2-y^2),\;\dot{\hat a}=2\rho Pxy` with
+    the force along :math:`Sq` keeps the orbit a line, of area 0. A remaining stiffness difference, as after a fault,
+    opens the orbit; the mode tuning learns it, :math:`\dot{\hat b}=-\rho P(x^2-y^2),\;\dot{\hat a}=2\rho Pxy` with
     :math:`\hat R=\begin{bmatrix}a&b\\b&-a\end{bmatrix}`. Unequal damping that is left makes the line drift. All forces
-    are taken half a sample later, by which a held one is late, and made up for what holding takes off them. With two
-    masses the line is straight, and turns evenly, in :math:`q=(x,y\sqrt{m_y/m_x})`; the angular gain is
+    are computed for half a sample later, because a held force is late by this time, and raised by the loss of holding.
+    With two masses the line is straight, and turns evenly, in :math:`q=(x,y\sqrt{m_y/m_x})`; the angular gain is
     :math:`\kappa_m=m_c/\sqrt{m_xm_y}`, 1 for one mass.
     """
 
@@ -57,7 +57,7 @@ class WholeAngle(Block):
     )
     weaknesses = (
         "A damping that a fault makes unequal turns the line as a rate does, up to half the difference.",
-        "A held force tunes modes that lie far apart only roughly: with 674 Hz between them 100 deg/s reads 4 % high "
+        "A held force tunes modes that are far apart only roughly: with 674 Hz between them 100 deg/s reads 4 % high "
         "at 100 kHz, 0.24 % at 200 kHz and 0.01 % at 500 kHz.",
         "Modes of 18 kHz are too fast to be tuned at 100 kHz: set B reads almost nothing of any rate, and nothing says "
         "so; at 1 MHz it reads within 3 deg/s.",
@@ -67,7 +67,7 @@ class WholeAngle(Block):
         """Amplitude and gains."""
 
         amplitude_um: float | None = parameter(
-            None, "amplitude to hold; that of the device unless given", "um", gt=0, le=100
+            None, "amplitude to hold; the device's own unless given", "um", gt=0, le=100
         )
         energy_gain_per_ms: float = parameter(0.2, "gain gamma of the energy", "1/ms", ge=0, le=100)
         area_gain_per_ms: float = parameter(0.2, "gain kappa of the area", "1/ms", ge=0, le=100)
@@ -75,7 +75,7 @@ class WholeAngle(Block):
         bandwidth_hz: float = parameter(20.0, "bandwidth of the low-pass behind the rate", "Hz", gt=0, le=1e5)
 
     class Packed(Record):
-        """Device per mass, target, gains, half a sample, masses, what y is stretched by, low-pass, angular gain."""
+        """Device per mass, target, gains, half a sample, masses, stretch of y, low-pass, angular gain."""
 
         kxx: float
         kxy: float
@@ -122,7 +122,7 @@ class WholeAngle(Block):
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
-        """Pack what is tuned away, and the gains."""
+        """Pack the compensation, and the gains."""
         device = two_axis(context)
         p = cls.Packed.blank()
         mean = math.sqrt(device.mass * device.mass_y)

@@ -20,7 +20,7 @@ from core.units import BOLTZMANN, EPSILON_0, damping_un_ms_um, force_un_per_v, m
 
 
 class Printed(BlockParams):
-    """Figures that the dissertation prints and that differ from those of the device's parameters."""
+    """Figures that the dissertation prints and that differ from the figures of the device's parameters."""
 
     mass_kg: float | None = parameter(None, "mass", "kg", gt=0, live=False)
     one_side_stiffness_n_m: float | None = parameter(None, "spring constant of one side", "N/m", gt=0, live=False)
@@ -65,10 +65,10 @@ class Device(BlockParams):
     so a positive voltage pulls towards -x. Equation 5.2.1 puts *identical* voltages on both stators, which
     gives no force at all.
 
-    Either mass, damping and stiffness are given, or ``geometry``; a value given beside a geometry wins. A
-    ``transfer_function`` stands for a plant that is no resonator, and has none of these. A gyroscope moves along two
-    axes and is driven by forces: all its numbers stand in the table ``gyroscope``, or follow from ``geometry`` and what
-    ``drawn_gyroscope`` adds.
+    Either mass, damping and stiffness are given, or ``geometry``; a value given in addition to a geometry wins. A
+    ``transfer_function`` describes a plant that is no resonator, and has none of these. A gyroscope moves along two
+    axes and is driven by forces: all its numbers are in the table ``gyroscope``, or follow from ``geometry`` and
+    ``drawn_gyroscope``.
     """
 
     id: str = parameter("custom", "name in the catalogue", live=False)
@@ -93,9 +93,9 @@ class Device(BlockParams):
     transfer_function: TransferFunction | None = parameter(None, "of a plant that is no resonator", live=False)
     gyroscope: GyroscopeTable | None = parameter(None, "of a device with two axes", live=False)
     drawn_gyroscope: DrawnGyroscope | None = parameter(
-        None, "what a device with two axes has beside the drawing", live=False
+        None, "data of a device with two axes in addition to the drawing", live=False
     )
-    printed: Printed | None = parameter(None, "what the dissertation prints of it", live=False)
+    printed: Printed | None = parameter(None, "printed figures of the dissertation", live=False)
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
@@ -104,7 +104,7 @@ class Device(BlockParams):
             besides = [name for name in (*OF_RESONATOR, other) if getattr(self, name) is not None]
             if besides:
                 where = "its table" if self.drawn_gyroscope is None else "its drawing"
-                raise ValueError(f"all numbers of a gyroscope stand in {where}; leave out {', '.join(besides)}")
+                raise ValueError(f"all numbers of a gyroscope belong in {where}; leave out {', '.join(besides)}")
             if self.drawn_gyroscope is not None and self.geometry is None:
                 raise ValueError("drawn_gyroscope needs a geometry, the drawing of its parts")
             self.oscillator()
@@ -149,7 +149,7 @@ class Device(BlockParams):
 
     @property
     def resolved(self) -> dict[str, float]:
-        """Mass, damping and stiffness in SI units; of a gyroscope those of the driven axis.
+        """Mass, damping and stiffness in SI units; for a gyroscope the values of the driven axis.
 
         Raises
         ------
@@ -175,9 +175,9 @@ class Device(BlockParams):
 
     @property
     def drawing(self) -> Geometry:
-        """Drawing with the device's own thickness and gap; that of LCR-350 when the device has none.
+        """Drawing with the device's own thickness and gap; the drawing of LCR-350 when the device has none.
 
-        Fingers given beside the drawing change the force alone: mass and damping are those of the drawn comb.
+        Fingers given in addition to the drawing change the force alone: mass and damping belong to the drawn comb.
         """
         drawn = self.geometry or LCR_350
         stated: dict[str, float] = {}

@@ -10,7 +10,7 @@ from core.errors import InputError
 def device_of(device: Device, seed: int) -> dict[str, float]:
     """Return the values of one device from the process of a resonator, by their paths in a scenario.
 
-    What its drawing gives varies as that of one device of a wafer does; values that are given vary by the same factors.
+    Parameters from its drawing vary like one device of a wafer; given values vary by the same factors.
 
     Raises
     ------

@@ -26,28 +26,28 @@ FLEXURES = 2
 
 
 class DrawnGyroscope(BlockParams):
-    r"""What a gyroscope has beside the drawing of a comb resonator, which gives it all the rest.
+    r"""Data of a gyroscope in addition to the drawing of a comb resonator, which gives all the rest.
 
-    The folded flexure of a comb resonator yields along x alone: along y that of LCR-350 has 205 N/m, against 0.054.
-    A comb that moves across its fingers closes their gaps besides. So there are two frames. The plate is the proof
-    mass, and moves along both axes. The arms and fingers of the drawing are the drive frame, which moves along x; a
-    second set of arms and fingers is the sense frame, which moves along y. A flexure like that of the drawing holds the
-    drive frame to the ground, a second one lets the proof mass move along x in the sense frame; two flexures with beams
-    of their own do the same along y:
+    The folded flexure of a comb resonator yields along x alone: along y the flexure of LCR-350 has 205 N/m, against
+    0.054. A comb that moves across its fingers closes their gaps besides. So there are two frames. The plate is the
+    proof mass, and moves along both axes. The arms and fingers of the drawing are the drive frame, which moves along x;
+    a second set of arms and fingers is the sense frame, which moves along y. A flexure like the drawn flexure holds the
+    drive frame to the ground, a second flexure lets the proof mass move along x in the sense frame; two flexures with
+    beams of their own do the same along y:
 
     .. math:: k_x=2k(L,w),\quad k_y=2k(L_y,w_y)\qquad\text{with }k\text{ of 1.3.4}
 
     .. math:: m_x=m_p+m_{fx}+2\left(\tfrac{12}{35}m_{bx}+\tfrac14m_{tx}\right)+m_{by}+m_{ty},\quad
         m_c=m_p+\tfrac12(m_{bx}+m_{tx}+m_{by}+m_{ty})
 
-    and :math:`m_y` with x and y exchanged. Shares of a flexure that bends are those of 1.3.3; the flexure between a
-    frame that moves and the proof mass is carried along whole. The rate acts on what moves along both axes,
+    and :math:`m_y` with x and y exchanged. Shares of a flexure that bends are given by 1.3.3; the flexure between a
+    frame that moves and the proof mass is carried along whole. The rate acts on the mass that moves along both axes,
     :math:`m_c=\int\phi_x\phi_y\,dm`, where the mean motion of a flexure that bends is one half.
 
-    Gas: 1.3.7 along each axis, scaled to the pressure of the package like that of a resonator, structural loss
+    Gas: 1.3.7 along each axis, scaled to the pressure of the package like the gas of a resonator, structural loss
     included. The package is sealed: pressure and temperature around it do not change the damping.
 
-    A drawing says nothing of how far it is missed: the angles are parameters, and so is the pressure.
+    A drawing does not contain the fabrication errors: the angles are parameters, and so is the pressure.
     """
 
     sense_beam_length_um: LengthUm = parameter(340.0, "length of the beams that bend along y", "um", live=False)
@@ -125,7 +125,7 @@ class DrawnGyroscope(BlockParams):
             raise ValueError(f"the drawing gives a gyroscope that cannot be: {from_validation(error)}") from None
 
     def metrics(self, drawing: Geometry, stiffness_scale: float, scale_pm_per_dps: float) -> dict[str, float]:
-        r"""Return what the drawing says beyond the figures of every gyroscope.
+        r"""Return the figures of the drawing beyond the figures of every gyroscope.
 
         A comb pulls with :math:`F=4n\varepsilon_0\frac tgV_bv` (1.3.2), and the difference of its two sides changes by
         :math:`\frac{dC}{dy}=4n\varepsilon_0\frac tg`: nN/V^2 and fF/um are the same number.

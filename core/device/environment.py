@@ -1,8 +1,8 @@
 r"""Effects of air, temperature, humidity and age on a resonator.
 
-Numbers marked *recalled* are standard literature values quoted from memory, not from the dissertation, which gives
-no law for them: it says that "operating conditions" change damping (3.1.3.1), that humidity increases stiction
-(1.4.4, 1.5) and that four weeks took 42.8 % of the displacement (3.1.3.2).
+Numbers marked *recalled* are standard literature values quoted from memory, not from the dissertation, which gives no
+law for them: it states that "operating conditions" change damping (3.1.3.1), that humidity increases stiction (1.4.4,
+1.5) and that four weeks took 42.8 % of the displacement (3.1.3.2).
 """
 
 from __future__ import annotations
@@ -131,12 +131,12 @@ def damping_scale(
 
 @kernel
 def squeezed_share(pressure_pa: float, temperature_k: float, gap_um: float) -> float:
-    r"""Squeeze film over that of a continuous gas at 300 K.
+    r"""Squeeze film over the squeeze film of a continuous gas at 300 K.
 
     .. math:: \frac{\mu}{\mu_0}\,\frac1{1+9.638\,K_n^{1.159}},\quad K_n=\lambda/g
 
     (Veijola et al. 1995, recalled.) It is 0.85 between fingers in open air: there a gap of 2.1 um is 31 mean free
-    paths. The gap is taken at rest; the gas in a gap that closes is rarefied a little more.
+    paths. The gap is the undeflected gap; the gas in a gap that closes is rarefied a little more.
     """
     knudsen = mean_free_path_um(pressure_pa, temperature_k) / gap_um
     rarefied = 1.0 + 9.638 * exp(1.159 * log(knudsen))
@@ -159,7 +159,7 @@ def adhesion_j_m2(humidity_pct: float) -> float:
 
     .. math:: W=W_d\,(W_w/W_d)^{s},\quad s=\frac1{1+e^{-(H-60)/8}}
 
-    The ends are recalled, the shape between them is assumed; the text says only that humidity increases stiction.
+    The ends are recalled, the shape between them is assumed; the text states only that humidity increases stiction.
     """
     wet = 1.0 / (1.0 + exp(-(humidity_pct - CONDENSES_PCT) / CONDENSES_OVER_PCT))
     return DRY_J_M2 * exp(wet * log(WET_J_M2 / DRY_J_M2))
@@ -169,7 +169,7 @@ def friction_scale(humidity_pct: float) -> float:
     r"""Friction of touching surfaces over that at 40 %, :math:`F_s(H)/F_s(40)=W(H)/W(40)`.
 
     Adhesion presses the surfaces together, so friction is proportional to its energy. This is an assumption: the text
-    says only that humidity increases stiction (1.4.4, 1.5).
+    states only that humidity increases stiction (1.4.4, 1.5).
     """
     return adhesion_j_m2(humidity_pct) / adhesion_j_m2(ROOM_PCT)
 
@@ -194,11 +194,11 @@ def critical_adhesion_j_m2(vertical_n_m: float, film_um: float, contact_um2: flo
 
 @kernel
 def ageing_ratio(weeks: float) -> float:
-    r"""Displacement of an aged device over that of a new one.
+    r"""Displacement of an aged device over the displacement of a new device.
 
     .. math:: r(t)=1-0.428\,\frac{1-e^{-t/\tau}}{1-e^{-t_4/\tau}},\quad t_4=4\ \text{weeks},\ \tau=2\ \text{weeks}
 
     The text gives the 42.8 % after four weeks (3.1.3.2); the exponential and its time constant are assumed. As the
-    displacement at rest is F/k, ageing is modelled as a stiffness k/r.
+    static displacement is F/k, ageing is modelled as a stiffness k/r.
     """
     return 1.0 - AGED_SHARE * (1.0 - exp(-weeks / AGEING_WEEKS)) / (1.0 - exp(-AGED_WEEKS / AGEING_WEEKS))

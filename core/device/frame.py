@@ -31,7 +31,7 @@ class Damage:
     ----------
     adhesion : tuple, optional
         Beam, and share of its length from its root (0) to the truss (1), at which a point sticks to the ground; the
-        beam is the one at +x on the side at +y.
+        beam is the +x beam on the +y side.
     lost_ends : tuple of int
         Truss segments that are gone on the side at +y: 2 is the end at +x, 1 the middle; (0, 1, 2) is the whole truss.
     side_scale : float
@@ -50,7 +50,7 @@ class Shape:
     Parameters
     ----------
     points : ndarray, shape (nodes, 2)
-        Positions of the nodes at rest, um.
+        Undeformed positions of the nodes, um.
     elements : list of (int, int)
         The nodes at both ends of each beam, or part of a beam or truss.
     response : ndarray, shape (nodes, 3, 3)
@@ -163,7 +163,7 @@ def along_x(stiffness: FloatArray) -> float:
 
 
 def stiffness_ratio(geometry: Geometry, damage: Damage) -> float:
-    """Return the stiffness along x over that of the whole suspension."""
+    """Return the stiffness along x over the stiffness of the whole suspension."""
     return along_x(stiffness(geometry, damage)) / along_x(stiffness(geometry))
 
 

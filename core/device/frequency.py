@@ -49,8 +49,8 @@ def figures(mass_kg: float, damping_ns_m: float, stiffness_n_m: float) -> dict[s
         \omega_p=\omega_0\sqrt{1-2\zeta^2},\; \frac{|H_p|}{|H_0|}=\frac1{2\zeta\sqrt{1-\zeta^2}},\;
         \left(\frac{\omega_{3dB}}{\omega_0}\right)^2=1-2\zeta^2\pm2\zeta\sqrt{1-\zeta^2}
 
-    Without a peak (:math:`\zeta\ge1/\sqrt2`) the figures of the peak are those at rest, and half power is relative to
-    rest.
+    Without a peak (:math:`\zeta\ge1/\sqrt2`) the figures of the peak are the static figures, and half power is relative
+    to them.
     """
     f0 = math.sqrt(stiffness_n_m / mass_kg) / (2.0 * math.pi)
     zeta = damping_ns_m / (2.0 * math.sqrt(stiffness_n_m * mass_kg))
@@ -75,7 +75,7 @@ def figures(mass_kg: float, damping_ns_m: float, stiffness_n_m: float) -> dict[s
 
 @dataclass(frozen=True)
 class Band:
-    """Ranges of magnitude (dB re the nominal displacement at rest) and phase (degrees) at each frequency."""
+    """Ranges of magnitude (dB re the nominal static displacement) and phase (degrees) at each frequency."""
 
     frequency_hz: FloatArray
     low_db: FloatArray
@@ -92,7 +92,7 @@ def tolerance_band(
     stiffness_n_m: tuple[float, float, float],
     frequency_hz: FloatArray,
 ) -> Band:
-    r"""Return the exact envelope over all devices whose parameters lie between their limits (figure 1.3.4).
+    r"""Return the exact envelope over all devices with parameters between their limits (figure 1.3.4).
 
     With :math:`D=k-m\omega^2` in :math:`[k_1-m_2\omega^2,\,k_2-m_1\omega^2]` and :math:`B=\beta\omega`, the magnitude
     is least at the largest :math:`D^2+B^2` and the phase :math:`-\mathrm{atan2}(B,D)` has its ends at the corners.

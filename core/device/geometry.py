@@ -20,7 +20,7 @@ from core.units import EPSILON_0
 
 
 class Geometry(BlockParams):
-    """A drawing: lengths in um, widths as drawn with the etch bias per edge beside them.
+    """A drawing: lengths in um, widths as drawn, with the etch bias per edge as a field of its own.
 
     The formulas hold for arrays too: ``core.device.spread`` puts whole wafers through them.
     """
@@ -37,7 +37,7 @@ class Geometry(BlockParams):
     finger_width_um: LengthUm = parameter(2.0, "finger width as drawn", "um", live=False)
     finger_gap_um: LengthUm = parameter(2.0, "gap between fingers as drawn", "um", live=False)
     comb_bias_um: EtchUm = parameter(0.05, "etch bias per edge of fingers", "um", live=False)
-    overlap_um: LengthUm = parameter(40.0, "finger overlap at rest", "um", live=False)
+    overlap_um: LengthUm = parameter(40.0, "undeflected finger overlap", "um", live=False)
     plate_length_um: LengthUm = parameter(190.0, "length of the plate", "um", live=False)
     plate_width_um: LengthUm = parameter(75.0, "width of the plate", "um", live=False)
     arm_width_um: PartUm = parameter(11.132, "width of a comb arm", "um", live=False)
@@ -145,5 +145,5 @@ class Geometry(BlockParams):
 
 
 def drawn(context: Context) -> Geometry:
-    """Return the drawing of the device on the bench; that of LCR-350 if it has none."""
+    """Return the drawing of the device on the bench; the drawing of LCR-350 if it has none."""
     return context.drawing if isinstance(context.drawing, Geometry) else Geometry()

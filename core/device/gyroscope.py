@@ -1,4 +1,4 @@
-r"""A vibrating gyroscope: masses, and stiffness and damping along two axes that are not quite those of the layout."""
+r"""A vibrating gyroscope: masses, stiffness and damping along two axes that differ slightly from the layout's."""
 
 from __future__ import annotations
 
@@ -30,12 +30,14 @@ class GyroscopeTable(BlockParams):
     .. math:: K=R(\alpha)\begin{bmatrix}k_x&k_{xy}\\k_{xy}&k_y\end{bmatrix}R(\alpha)^T,\quad
         D=R(\gamma)\begin{bmatrix}d_x&d_{xy}\\d_{xy}&d_y\end{bmatrix}R(\gamma)^T
 
-    Principal values go with an angle and no cross term, entries with a cross term and no angle.
+    Principal values need an angle and no cross term, entries a cross term and no angle.
     """
 
     mass_x_kg: MassKg = parameter(..., "mass that moves along x, the driven axis", "kg", live=False)
-    mass_y_kg: MassKg | None = parameter(None, "mass that moves along y; that of x unless given", "kg", live=False)
-    coriolis_mass_kg: MassKg | None = parameter(None, "mass the rate acts on; that of y unless given", "kg", live=False)
+    mass_y_kg: MassKg | None = parameter(None, "mass that moves along y; the mass of x unless given", "kg", live=False)
+    coriolis_mass_kg: MassKg | None = parameter(
+        None, "mass the rate acts on; the mass of y unless given", "kg", live=False
+    )
     stiffness_x_n_m: StiffnessNM = parameter(..., "stiffness k_x", "N/m", equation="6.1.3", live=False)
     stiffness_y_n_m: StiffnessNM = parameter(..., "stiffness k_y", "N/m", equation="6.1.3", live=False)
     stiffness_xy_n_m: float = parameter(0.0, "cross stiffness k_xy: quadrature", "N/m", equation="6.1.3", live=False)
@@ -64,7 +66,7 @@ class GyroscopeTable(BlockParams):
 
     @property
     def drive_axis(self) -> dict[str, float]:
-        """Mass, damping and stiffness of x with y at rest, in SI units."""
+        """Mass, damping and stiffness of x with y at zero, in SI units."""
         return {
             "mass_kg": self.mass_x_kg,
             "damping_ns_m": turned(self.damping_x_ns_m, self.damping_xy_ns_m, self.damping_y_ns_m, self.gamma_deg)[0],
@@ -97,13 +99,13 @@ class GyroscopeTable(BlockParams):
     ) -> dict[str, float]:
         r"""Return the figures of a gyroscope that swings with its drive amplitude A.
 
-        Scale, tilt and zero rate are those with y free, driven at the mode nearest to x. Quadrature as a rate and the
-        thermal floor are those with y held at rest, where x rings at :math:`\omega_x=\sqrt{k_{xx}/m_x}`:
+        Scale, tilt and zero rate are the values with y free, driven at the mode nearest to x. Quadrature as a rate and
+        the thermal floor are the values with y held at zero, where x rings at :math:`\omega_x=\sqrt{k_{xx}/m_x}`:
 
         .. math:: \Omega_q=\frac{k_{xy}}{2m_c\omega_x},\quad
             \Omega_n=\frac{\sqrt2\sqrt{4k_BTd_{yy}}}{2m_c\omega_xA},\quad N=\frac{\Omega_n}{\sqrt2}
 
-        The floor is the root of a one-sided density, the angle random walk N that of a two-sided one.
+        The floor is the root of a one-sided density, the angle random walk N the root of a two-sided density.
 
         Parameters
         ----------

@@ -65,10 +65,10 @@ def tone(frequency_hz: float, dt_ms: float, voltage: FloatArray, displacement: F
 
 @dataclass(frozen=True)
 class Identified:
-    """What a sweep tells of a device; ``*_error`` are standard errors.
+    """Results of a sweep of a device; ``*_error`` are standard errors.
 
-    The figures of the fit (mass to quality factor) use all tones; those read off the curve (``read_*``) only the
-    tones around what they describe, and are none where the sweep does not show it.
+    The figures of the fit (mass to quality factor) use all tones; the figures read off the curve (``read_*``) use only
+    the tones around their subject, and are none where the sweep does not show it.
     """
 
     mass_kg: float
@@ -178,7 +178,7 @@ def _figure_errors(resonance: dict[str, float], fitted: tuple[float, ...], covar
     f0, quality, peak = resonance["f0_hz"], resonance["quality_factor"], resonance["f_peak_hz"]
     by_f0 = f0 * np.array([-0.5 / mass, 0.0, 0.5 / stiffness])
     by_quality = quality * np.array([0.5 / mass, -1.0 / damping, 0.5 / stiffness])
-    # the square of the peak is f0^2 (1 - 1 / 2Q^2); without a peak it stays at rest
+    # the square of the peak is f0^2 (1 - 1 / 2Q^2); without a peak it stays at zero frequency
     by_peak = (peak / f0) * by_f0 + (f0 * f0 / (2.0 * quality**3 * peak) * by_quality if peak > 0.0 else 0.0 * by_f0)
     rows = {"f0_hz": by_f0, "f_peak_hz": by_peak, "quality_factor": by_quality}
     return {name: float(np.sqrt(slope @ covariance @ slope)) for name, slope in rows.items()}

@@ -13,7 +13,7 @@ from core.device.geometry import Geometry
 
 @dataclass(frozen=True)
 class Lateral:
-    """Mechanics that a plant in the plane needs beyond the motion along x; the names are those of its parameters."""
+    """Mechanics that a plant in the plane needs beyond the motion along x, by the names of its parameters."""
 
     gap_um: float
     stator_tip_um: float
@@ -32,7 +32,7 @@ class Lateral:
 def lateral(geometry: Geometry) -> Lateral:
     r"""Return the lateral mechanics of a drawing.
 
-    Stiffness at rest is that of the frame of beams. With the travel beams bow and give way along their length,
+    The stiffness without load comes from the frame of beams. With the travel beams bow and give way along their length,
 
     .. math:: k_y=\frac{k_{y0}}{1+(x/x_y)^2},\; x_y^2=\frac{200EI}{3Lk_{y0}},\qquad
         k_\theta=\frac{k_{\theta0}}{1+(x/x_\theta)^2},\;
@@ -95,7 +95,7 @@ def comb_square_um2(geometry: Geometry) -> float:
 
 
 def shuttle_moment_um4(geometry: Geometry) -> float:
-    """Return the polar moment of area of plate, arms and fingers about the centre; openings lie close to it."""
+    """Return the polar moment of area of plate, arms and fingers about the centre; openings are close to it."""
 
     def box(width: float, height: float, away_square: float = 0.0) -> float:
         return width * height * ((width * width + height * height) / 12.0 + away_square)

@@ -29,7 +29,7 @@ QUANTITIES = (
             r"\quad\alpha=\left(\frac{w_t}{w}\right)^3",
             "1.3.4",
             printed="the stiffness of one side, with the length of the truss",
-            why="it is that of all eight beams, k = 2 k_s, and the length is that between adjacent beams",
+            why="it belongs to all eight beams, k = 2 k_s, and the length is the distance between adjacent beams",
         ),
     ),
     Quantity(
@@ -64,7 +64,7 @@ QUANTITIES = (
         "static_gain_um_per_v",
         "Static gain",
         "um/V",
-        Equation("displacement at rest per volt", r"x/v=F/k", "1.3.1"),
+        Equation("static displacement per volt", r"x/v=F/k", "1.3.1"),
     ),
     Quantity(
         "force_n_per_v",
@@ -75,7 +75,7 @@ QUANTITIES = (
             r"F=4n\varepsilon_0\frac tgV_b",
             "1.3.2",
             printed="identical voltages on both stators, t the length of a finger (5.2.1)",
-            why="identical stators pull alike and the forces cancel; they stand at plus and minus the bias, and t is "
+            why="identical stators pull alike and the forces cancel; they are at plus and minus the bias, and t is "
             "the structural thickness",
         ),
     ),
@@ -88,7 +88,7 @@ QUANTITIES = (
             r"V_b=\sqrt{\frac{k_\theta g^3}{4n\varepsilon_0t\,(X_r^3-X_s^3)/3}}",
             "3.2.2",
             printed="unstable beyond a third of the gap",
-            why="a third holds for a plate with one electrode; a finger stands between two, and the aligned device "
+            why="a third holds for a plate with one electrode; a finger is between two, and the aligned device "
             "turns at a bias without any travel",
         ),
     ),
@@ -145,7 +145,7 @@ QUANTITIES = (
         "gyro.quadrature_dps",
         "Quadrature as a rate",
         "deg/s",
-        Equation("cross stiffness, y at rest", r"\Omega_q=\frac{k_{xy}}{2m_c\omega_x}", "6.1.3"),
+        Equation("cross stiffness, y held at zero", r"\Omega_q=\frac{k_{xy}}{2m_c\omega_x}", "6.1.3"),
     ),
     Quantity(
         "gyro.damping_rate_dps",

@@ -28,11 +28,11 @@ PRINTED: dict[str, tuple[str, ...]] = {
     "damping": ("lithography", "etching", "surface roughness"),
     "force": ("etching", "surface roughness", "stiction"),
 }
-"""Table 2.1 as printed (it stands in chapter 1): the steps that each parameter depends on."""
+"""Table 2.1 as printed (in chapter 1): the steps that each parameter depends on."""
 MISSING: dict[str, dict[str, str]] = {
     "mass": {
         "lithography": "line widths set the area of the shuttle",
-        "etching": "so does what is etched from each edge",
+        "etching": "so does the etch bias of each edge",
     },
     "damping": {"material growth": "the sacrificial layer is the gas film, and thickness the facing area of the combs"},
     "force": {

@@ -17,7 +17,7 @@ class TwoAxis(Oscillator):
 
     .. math:: M\ddot q+(D+2m_c\Omega S)\dot q+Kq=F,\quad q=(x,y),\quad S=\begin{bmatrix}0&-1\\1&0\end{bmatrix}
 
-    The inherited fields are those of x with y at rest; ``force`` is 1, because the drive is a force.
+    The inherited fields describe x with y at zero; ``force`` is 1, because the drive is a force.
 
     Parameters
     ----------
@@ -80,8 +80,8 @@ class TwoAxis(Oscillator):
         r"""Return frequency (rad/ms) and quality factor of the damped modes that ring, the lowest first.
 
         They are :math:`|\lambda|` and :math:`-|\lambda|/2\,\mathrm{Re}\,\lambda` of the eigenvalues of
-        :math:`\begin{bmatrix}0&1\\-M^{-1}K&-M^{-1}D\end{bmatrix}` at rest; a mode beyond critical damping has none, and
-        the quality factor of one without damping is infinite.
+        :math:`\begin{bmatrix}0&1\\-M^{-1}K&-M^{-1}D\end{bmatrix}` without rotation; a mode beyond critical damping has
+        none, and the quality factor of a mode without damping is infinite.
         """
         inverse = 1.0 / np.diag(self.masses)[:, None]
         system = np.block([[np.zeros((2, 2)), np.eye(2)], [-inverse * self.stiffnesses, -inverse * self.dampings]])
@@ -97,7 +97,7 @@ class TwoAxis(Oscillator):
     def drive_frequency(self) -> float:
         r"""Frequency of the undamped mode nearest to x, rad/ms, at which a device with y free is driven.
 
-        With y held at rest x rings at ``natural_frequency`` instead, :math:`\sqrt{k_{xx}/m_x}`.
+        With y held at zero x rings at ``natural_frequency`` instead, :math:`\sqrt{k_{xx}/m_x}`.
         """
         low, high = self._squares()
         stiffer_y = self.stiffness_y / self.mass_y >= self.stiffness / self.mass
@@ -126,7 +126,7 @@ class TwoAxis(Oscillator):
         return complex(self.stiffness_y - self.mass_y * omega * omega, omega * self.damping_y)
 
     def coupled(self, omega: float) -> complex:
-        r"""Return y over x at rest, :math:`G=-(k_{xy}+j\omega d_{xy})/(k_{yy}-m_y\omega^2+j\omega d_{yy})`."""
+        r"""Return y over x without rotation, :math:`G=-(k_{xy}+j\omega d_{xy})/(k_{yy}-m_y\omega^2+j\omega d_{yy})`."""
         return -complex(self.stiffness_xy, omega * self.damping_xy) / self.sense(omega)
 
     def tilt(self, omega: float) -> float:
@@ -139,7 +139,7 @@ class TwoAxis(Oscillator):
         return 2.0 * self.coriolis_mass * omega / abs(self.sense(omega))
 
     def zero_rate(self, omega: float) -> float | None:
-        r"""Return the rate that is read with nobody turning, rad/ms, from the part of y in step with the velocity of x.
+        r"""Return the reading without rotation, rad/ms, from the part of y in step with the velocity of x.
 
         .. math:: \Omega_0=\frac1{2m_c}\left[d_{xy}-\frac{k_{xy}d_{yy}}{k_{yy}-m_y\omega^2}\right]
 
@@ -151,9 +151,9 @@ class TwoAxis(Oscillator):
         return (self.damping_xy - self.stiffness_xy * self.damping_y / sense.real) / (2.0 * self.coriolis_mass)
 
     def rate_of_force(self, force_per_um: float) -> float:
-        r"""Return a force along y per amplitude of x as a rate, :math:`f/2m_c\omega_x`, rad/ms, with y held at rest."""
+        r"""Return a force along y per amplitude of x as a rate, :math:`f/2m_c\omega_x`, rad/ms, with y held at zero."""
         return force_per_um / (2.0 * self.coriolis_mass * self.natural_frequency)
 
     def cross_stiffness(self, rate: float) -> float:
-        r"""Return the cross stiffness that reads as a rate with y held at rest, :math:`2m_c\omega_x\Omega_q`, uN/um."""
+        r"""Return the cross stiffness that reads as a rate with y held at zero, :math:`2m_c\omega_x\Omega_q`, uN/um."""
         return 2.0 * self.coriolis_mass * self.natural_frequency * rate

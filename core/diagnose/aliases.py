@@ -2,8 +2,8 @@ r"""Aliases: which hypotheses, and which other changes, have the same response a
 
 .. math:: D=kf_k-mf_m\omega^2+j\beta f_\beta\omega,\qquad Y=\frac{f_gF}{D}V
 
-One tone in steady state tells D and nothing else, two numbers, so mass and stiffness can stand for one another:
-:math:`\Delta k/k=-(\omega/\omega_0)^2\,\Delta m/m`. A second tone parts them.
+One tone in steady state determines D only, two numbers, so mass and stiffness can replace one another: :math:`\Delta
+k/k=-(\omega/\omega_0)^2\,\Delta m/m`. A second tone separates them.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Response(BaseModel):
 
 
 class Pair(BaseModel):
-    """How far two hypotheses lie apart, as rms over the tones; coincident when noise could hide it."""
+    """Distance between two hypotheses, as rms over the tones; coincident when noise could hide it."""
 
     first: str
     second: str
@@ -42,7 +42,7 @@ class Pair(BaseModel):
 
 
 class AliasMap(BaseModel):
-    """Responses of all hypotheses, distances between them, and what mass and stiffness are worth in one another."""
+    """Responses of all hypotheses, distances between them, and the equivalence of mass and stiffness."""
 
     tones_hz: list[float]
     stiffness_per_mass: float
@@ -67,7 +67,7 @@ def alias_map(
     tones : sequence of (float, float)
         Frequency in Hz and amplitude in V of every tone of the drive.
     within_um : float
-        Distance below which two hypotheses count as coincident, beside rounding.
+        Distance below which two hypotheses count as coincident, besides rounding.
     """
     phasors = [[_phasor(item, nominal, f) * volts for f, volts in tones] for item in hypotheses]
     responses = [
@@ -105,7 +105,7 @@ def equivalents(
 
 
 def hidden_um(noise_um: float) -> float:
-    r"""Return the distance below which a tone hardly tells two responses apart.
+    r"""Return the distance below which two responses to a tone are hardly distinguishable.
 
     A sample is worth :math:`|\Delta Y|^2/4\sigma^2` nats; less than ``LEAST_INFORMATION`` does not repay the odds of a
     probability floor within thousands of samples.
@@ -114,7 +114,7 @@ def hidden_um(noise_um: float) -> float:
 
 
 def _stiffness(item: Hypothesis, nominal: Oscillator, hz: float) -> complex:
-    """Return the dynamic stiffness per gain, the only number that one tone tells."""
+    """Return the dynamic stiffness per gain, the only number that one tone determines."""
     omega = 2.0 * math.pi * hz / 1e3
     device = item.oscillator(nominal)
     return complex(device.stiffness - device.mass * omega**2, device.damping * omega) / item.gain

@@ -44,7 +44,7 @@ def solve(d: Vector, right: Vector) -> None:
 
 
 class Anchored(WeighedBank):
-    r"""Each bank estimates, held to its hypothesis as by a spring, and is weighed by what it predicts.
+    r"""Each bank estimates, held to its hypothesis as by a spring, and is weighed by its predictions.
 
     .. math:: \hat\theta_k=\arg\min_\theta\sum_j\lambda^{i-j}(z_j-h_j^T\theta)^2+\rho|\theta-\theta_k|^2
         =(A+\rho I)^{-1}(b+\rho\theta_k)

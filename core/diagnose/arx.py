@@ -136,7 +136,7 @@ class ArxParams(BankParams):
     """Assumptions of every self-tuning bank."""
 
     sensor_noise_um: float | None = parameter(
-        None, "assumed sensor noise; what the sensor has unless given", "um", gt=0, le=100
+        None, "assumed sensor noise; the sensor's own unless given", "um", gt=0, le=100
     )
     assumed_noise_scale: float = parameter(1.0, "factor on the assumed variance", gt=0, le=1e4)
     least_drive_v: float = parameter(
@@ -187,7 +187,7 @@ class ArxBank(Bank):
         """Measurement and voltage, and the residual and probability of each hypothesis."""
 
         probability: Vector = output("1", "probability of the hypothesis", each="hypotheses")
-        residual: Vector = tap("um", "what the difference equation does not explain", each="hypotheses")
+        residual: Vector = tap("um", "residual of the difference equation", each="hypotheses")
         nis: Vector = tap("1", "the same squared over its variance", each="hypotheses")
 
     @classmethod
@@ -234,7 +234,7 @@ class WeighedBank(ArxBank):
         log_floor: float
 
     class State(ArxBank.State):
-        """Logarithms of the probabilities, and those of this sample before they are normalised."""
+        """Logarithms of the probabilities, and the logarithms of this sample before they are normalised."""
 
         log: Vector = vector(LANE)
         likelihood: Vector = vector(LANE)

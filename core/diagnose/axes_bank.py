@@ -32,15 +32,15 @@ class AxesBank(Bank):
     .. math:: x^-=(\Phi+\Omega N)x+\Gamma u,\quad r=z-Hx^-,\quad\psi=\psi_0+SMS^T,\quad
         \ell_k\leftarrow\ell_k-\tfrac12r^T\psi^{-1}r-\tfrac12\ln\det\psi
 
-    Turning pushes y in step with the velocity of x, a spring between the axes in step with its displacement, so the
-    filters tell one from the other within a period. Each hypothesis has a rate of its own. With the rate taken for
-    noise of the force, the verdict is right in 50 to 99 % of the 200 ms after a fault of ``gyro-a`` and a step
-    to 300 deg/s 100 ms later; as a state, in 98 % and more.
+    Rotation pushes y in step with the velocity of x, a spring between the axes in step with its displacement, so the
+    filters separate them within a period. Each hypothesis has a rate of its own. With the rate taken for noise of the
+    force, the verdict is right in 50 to 99 % of the 200 ms after a fault of ``gyro-a`` and a step to 300 deg/s 100 ms
+    later; as a state, in 98 % and more.
 
-    All residuals are weighed by the covariance of the nominal device, so that no model wins by what it assumes of the
-    noise. More noise is assumed than there is, so that a filter soon follows a fault: along x, whose swing lasts long,
-    more than along y. What is assumed wrongly favours some model by thousandths of a nat per sample, which decides
-    where nothing else does, so a rival gains on the winner only by what it tells beyond ``least_evidence_nat``.
+    All residuals are weighed by the covariance of the nominal device, so that no model wins by its assumption about the
+    noise. The assumed noise is larger than the true noise, so that a filter soon follows a fault: along x, whose swing
+    lasts long, more than along y. Wrong assumptions favour some model by thousandths of a nat per sample, which decides
+    where nothing else does, so a rival gains on the winner only by evidence beyond ``least_evidence_nat``.
     """
 
     title = "Kalman bank of two axes"
@@ -48,7 +48,7 @@ class AxesBank(Bank):
     residuals = ("residual_x", "residual_y")
     covariances = ("covariance_x", "covariance_xy", "covariance_y")
     gains = tuple((f"gain_{state}_x", f"gain_{state}_y") for state in ("x", "y", "x_velocity", "y_velocity", "rate"))
-    weighed = "what was believed before, the winner raised by the least evidence that counts"
+    weighed = "the probabilities before, the winner raised by the least evidence that counts"
     lengths = ("hypotheses",)
     weaknesses = (
         "Held at its amplitude, a device with half the drive and one with twice the damping take the same force. Where "
@@ -99,7 +99,7 @@ class AxesBank(Bank):
             0.003, "assumed noise of the force along y, over the same force", "1", ge=0, le=100
         )
         sensor_noise_um: float | None = parameter(
-            None, "assumed sensor noise; what the sensor has unless given", "um", gt=0, le=100
+            None, "assumed sensor noise; the sensor's own unless given", "um", gt=0, le=100
         )
         rate_std_dps: float = parameter(
             300.0, "uncertainty of the rate at the start, 0 to take it for 0", "deg/s", ge=0, le=1e6, live=False
@@ -127,7 +127,7 @@ class AxesBank(Bank):
         models: Records[AxesModel] = tail()
 
     class State(Record):
-        """Logarithms of probabilities, those of a sample, forces of a tick, mean square of x; the filters."""
+        """Logarithms of probabilities, logarithms of a sample, forces of a tick, mean square of x; the filters."""
 
         weight: Vector = vector(LANE)
         likelihood: Vector = vector(LANE)
@@ -136,7 +136,7 @@ class AxesBank(Bank):
         filters: Records[AxesFilter] = tail()
 
     class Ports(BlockPorts):
-        """Displacements and forces in; probabilities and what they come from."""
+        """Displacements and forces in; probabilities and their causes out."""
 
         x_measured: float = reads("sensor.x.displacement", "um", "measured displacement along x")
         y_measured: float = reads("sensor.y.displacement", "um", "measured displacement along y")
@@ -167,7 +167,7 @@ class AxesBank(Bank):
 
     @classmethod
     def prior(cls, params: Any, before: list[float]) -> list[float]:
-        r"""Return the probabilities with that of the winner times :math:`e^\epsilon`, the least evidence."""
+        r"""Return the probabilities, the winner's multiplied by :math:`e^\epsilon`, the least evidence."""
         raised = list(before)
         raised[before.index(max(before))] *= exp(params.least_evidence_nat)
         return [share / sum(raised) for share in raised]
@@ -197,7 +197,7 @@ class AxesBank(Bank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """All filters at rest, all hypotheses alike."""
+        """All filters at zero, all hypotheses alike."""
         s = cls.State.zeros(len(params.hypotheses))
         s.weight[:] = -log(len(params.hypotheses))
         for f in s.filters:
@@ -231,7 +231,7 @@ class AxesBank(Bank):
             if seen:
                 density = correct(p.models[i], f, x.x_measured, x.y_measured)
                 if evidence:
-                    # a rival that tells hardly more than the winner tells nothing
+                    # a rival with hardly more evidence than the winner gets none
                     likelihood += density + (p.least_evidence if i == winner else 0.0)
             s.likelihood[i] = likelihood
             best = max(best, likelihood)

@@ -1,9 +1,9 @@
-r"""Kalman filter of a device with two axes that is turned at a rate nobody knows.
+r"""Kalman filter of a device with two axes that rotates at an unknown rate.
 
 The motion depends on the rate, :math:`x^-=(\Phi+\Omega N)x+\Gamma u`, so the rate is one more state. It is estimated
-beside the motion: the motion has the steady gain of a known rate, and the sensitivity of its error to an error of the
-rate goes along. While the rate does not change this is the filter of all five states, without its covariances
-(Friedland, IEEE Trans. Automatic Control 14, 1969).
+separately from the motion: the motion has the steady gain of a known rate, and the sensitivity of its error to an error
+of the rate is carried along. While the rate does not change this is the filter of all five states, without its
+covariances (Friedland, IEEE Trans. Automatic Control 14, 1969).
 """
 
 from __future__ import annotations
@@ -58,13 +58,13 @@ def predict(m: AxesModel, f: AxesFilter, forces: Vector) -> None:
 
 @kernel
 def correct(m: AxesModel, f: AxesFilter, x: float, y: float) -> float:
-    r"""Correct by both displacements; return the logarithm of the density of the residuals, but for a constant.
+    r"""Correct by both displacements; return the logarithm of the density of the residuals, except for a constant.
 
     .. math:: r=z-Hx^-,\quad S=HV,\quad\psi=\psi_0+SM S^T,\quad\Delta\Omega=MS^T\psi^{-1}r
 
     .. math:: V\leftarrow V-KS,\quad x=x^-+Kr+V\Delta\Omega,\quad M\leftarrow M-M^2S^T\psi^{-1}S
 
-    The gain of the motion is :math:`K+VMS^T\psi^{-1}`, that of the rate :math:`MS^T\psi^{-1}`.
+    The gain of the motion is :math:`K+VMS^T\psi^{-1}`, the gain of the rate :math:`MS^T\psi^{-1}`.
     """
     first = x - f.motion[0]
     second = y - f.motion[1]

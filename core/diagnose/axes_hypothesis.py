@@ -20,7 +20,7 @@ class AxesHypothesis(NamedModel):
     mass: float = parameter(1.0, "mass over nominal", gt=0, le=100, live=False)
     damping: float = parameter(1.0, "damping over nominal", gt=0, le=100, live=False)
     second_stiffness: float = parameter(
-        1.0, "stiffness along y over nominal, besides that of both", gt=0, le=100, live=False
+        1.0, "stiffness along y over nominal, in addition to the change of both", gt=0, le=100, live=False
     )
     quadrature_dps: float = parameter(
         0.0, "added stiffness between the axes, read as a rate", "deg/s", ge=-1e6, le=1e6, live=False

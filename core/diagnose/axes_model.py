@@ -1,4 +1,4 @@
-r"""A device with two axes as a filter takes it: over a tick under its forces, what turning adds, its steady gain."""
+r"""A device with two axes in a filter: over a tick under its forces, the effect of rotation, its steady gain."""
 
 from __future__ import annotations
 
@@ -15,14 +15,15 @@ from core.units import thermal_force_un
 
 STATES, FORCES = 4, 6
 SMALLEST = 1e-12
-"""Added to the noise of every state, over that of a measurement: the Riccati equation then has a solution."""
+"""Added to the noise of every state, relative to the noise of a measurement: the Riccati equation then has a
+solution."""
 
 
 class AxesModel(Record):
     """Transition of (x, y, x', y') over a tick, its change with the rate, effect of the forces, gain, covariance.
 
-    Matrices lie row by row. The forces are those at the start of the tick and how much more they are in its middle and
-    at its end, first along x. The covariance of the residuals is that without any doubt about the rate.
+    Matrices are stored row by row. The forces are the forces at the start of the tick and their changes until its
+    middle and its end, first along x. The covariance of the residuals holds for a known rate.
     """
 
     phi: Vector = vector(STATES * STATES)
@@ -77,14 +78,14 @@ def over_a_tick(device: TwoAxis, h: float) -> Tick:
 
 
 def force_noise(device: TwoAxis, assumed_un: tuple[float, float], context: Context) -> FloatArray:
-    r"""Return the covariance of the forces over a tick, uN^2: thermal, :math:`2k_BTD/h`, and what is assumed."""
+    r"""Return the covariance of the forces over a tick, uN^2: thermal, :math:`2k_BTD/h`, and the assumed noise."""
     per_root = thermal_force_un(context.temperature_k, context.dt_ms / context.every)
     covariance: FloatArray = per_root * per_root * device.dampings + np.diag(np.square(assumed_un))
     return covariance
 
 
 def steady(tick: Tick, forces: FloatArray, noise_um: float, omega: float, ticks: int) -> tuple[FloatArray, FloatArray]:
-    r"""Return gain and residual covariance in the limit, for displacements measured every so many ticks.
+    r"""Return gain and residual covariance in the limit, for displacements measured every ``ticks`` ticks.
 
     The Riccati equation is solved with displacements over the noise of a measurement and velocities over that times
     :math:`\omega`, where all its numbers are of similar size.

@@ -36,19 +36,19 @@ class Bank(Block):
     """Taps of the residual, one for each displacement measured."""
 
     covariances: ClassVar[tuple[str, ...]] = ()
-    """Taps of its covariance, upper triangle row by row; none where a single residual and its nis tell it."""
+    """Taps of its covariance, upper triangle row by row; none where a single residual and its nis determine it."""
 
     gains: ClassVar[tuple[tuple[str, ...], ...]] = ()
     """Taps of the Kalman gain, a row for each state, a column for each residual; none without filters."""
 
-    weighed: ClassVar[str] = "what was believed before"
-    """What the prior of a sample is, in words."""
+    weighed: ClassVar[str] = "the probabilities before"
+    """The prior of a sample, in words."""
 
     evidence: ClassVar[str] = ""
     """LaTeX of `log_likelihood`; empty for the logarithm of the normal density."""
 
     judged_by: ClassVar[str] = "nis"
-    """Tap of what a hypothesis is judged by: a square over its covariance, divided by the number of residuals."""
+    """Tap by which a hypothesis is judged: a square over its covariance, divided by the number of residuals."""
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:

@@ -9,5 +9,5 @@ DIGITS = 12
 
 
 def chi_square(freedom: float, chance: float) -> float:
-    """Return the value that a chi-square variable of so many degrees of freedom exceeds with a probability."""
+    """Return the value that a chi-square variable with these degrees of freedom exceeds with a probability."""
     return float(f"{chdtri(freedom, chance):.{DIGITS}g}")

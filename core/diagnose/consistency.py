@@ -20,14 +20,14 @@ VERDICTS = ("normal", "detected", "isolated", "ambiguous", "unknown fault")
 
 
 class Consistency(KalmanBank):
-    r"""Which hypotheses are consistent with what was applied and measured, (U, Y) in the behaviour of k or not.
+    r"""Finds the hypotheses consistent with input and measurement: (U, Y) in the behaviour of k or not.
 
     .. math:: k\text{ consistent}\iff \sum_W\frac{r_k^2}{\psi_k}\le\chi^2_W(1-\alpha)\;\text{and}\;
         \frac{2}{W}\Bigl|\sum_W\frac{r_k}{\sqrt{\psi_k}}e^{-j\omega t}\Bigr|^2\le\chi^2_2(1-\alpha)
 
     Normal while the first hypothesis is consistent. Otherwise a fault is detected; it is isolated once exactly one
-    other has been consistent for a while, ambiguous while several are, unknown once none has been for a while.
-    Isolated only means not contradicted: hypotheses with the same response at the tone cannot be told apart.
+    other has been consistent for a while, ambiguous while several are, unknown once none has been for a while. Isolated
+    only means not contradicted: hypotheses with the same response at the tone are indistinguishable.
 
     The probability is an equal share among the consistent ones, or among all when none is. The filters must assume
     the noise there is: with pseudo-noise the test is biased.
@@ -67,7 +67,7 @@ class Consistency(KalmanBank):
         )
         window: int = parameter(50, "samples of the window", equation="5.1.6.1", ge=2, le=4096, live=False)
         significance: float = parameter(1e-5, "chance that a test calls a true hypothesis false", gt=0, le=0.5)
-        tone_hz: float | None = parameter(None, "tone; that of the reference unless given", "Hz", gt=0, le=1e6)
+        tone_hz: float | None = parameter(None, "tone; the reference's unless given", "Hz", gt=0, le=1e6)
         isolated_after: int = parameter(50, "samples with the same one left", ge=1, le=1_000_000)
         unknown_after: int = parameter(200, "samples with none left", ge=1, le=1_000_000)
 
@@ -108,7 +108,7 @@ class Consistency(KalmanBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """All filters at rest, no verdict, the window empty."""
+        """All filters at zero, no verdict, the window empty."""
         s = cls.at_rest(cls.State.zeros(params.window), params, context)
         s.alone = -1.0
         return s

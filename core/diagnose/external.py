@@ -15,8 +15,8 @@ from core.record import Record, Vector, vector
 class External(Judge):
     r"""The probabilities come from outside, :math:`P_i=f(y_i,u_{i-1},\dots)`: from a function.
 
-    It is asked once the sample has been measured, as every other diagnoser. `core.board.hosted` asks; on any other
-    board there is nobody to ask.
+    It is called once the sample has been measured, as every other diagnoser. `core.board.hosted` calls it; any other
+    board has no program to call.
     """
 
     title = "External"
@@ -35,6 +35,6 @@ class External(Judge):
 
     @staticmethod
     def step(p: Judge.Packed, s: State, x: Judge.Ports) -> None:
-        """Pass on what was answered."""
+        """Pass on the answer."""
         for k in range(int(p.count)):
             x.probability[k] = s.answered[k]

@@ -82,7 +82,7 @@ def drift(p: PackedFilters, s: Filters, low: int, high: int) -> None:
 
 @inlined
 def between_updates(p: PackedFilters, s: Filters, x: AppliedPorts, low: int, high: int) -> bool:
-    """Take the voltage of a tick; say whether a bank that runs every N of them does not run at this one.
+    """Take the voltage of a tick; return whether a bank that runs every N of them skips this one.
 
     In that case its states follow the voltage, which changes at every tick: a bank that took it for held at its mean
     would be sure of the wrong model. The models from ``low`` to ``high`` run.

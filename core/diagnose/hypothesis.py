@@ -13,7 +13,7 @@ from core.diagnose.lanes import LANE
 
 
 class NamedModel(BlockParams):
-    """One model of a bank: what of the nominal device it takes for changed, and a name for that."""
+    """One model of a bank: the parameters of the nominal device that it takes for changed, and its name."""
 
     name: str = Field(
         min_length=1,
@@ -77,7 +77,7 @@ class ModelList(BlockParams):
     def _distinct(self) -> Self:
         twice = [name for name, count in Counter(item.name for item in self.hypotheses).items() if count > 1]
         if twice:
-            raise ValueError(f"hypothesis names must differ, {twice[0]} is there twice")
+            raise ValueError(f"hypothesis names must differ, {twice[0]} occurs twice")
         return self
 
 
@@ -104,5 +104,5 @@ def hypotheses_of(params: BlockParams) -> list[Hypothesis]:
 
 
 def assumed_noise(context: Context) -> float:
-    """Return the sensor noise a bank assumes: that of the sensor, at least a thousandth of a micrometre."""
+    """Return the sensor noise that a bank assumes: the noise of the sensor, at least a thousandth of a micrometre."""
     return max(context.sensor_noise_um, 1e-3)

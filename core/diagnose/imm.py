@@ -113,7 +113,7 @@ class Imm(KalmanBank):
         information: float = tap("nat", "evidence per sample against the nearest rival of the winner")
         unexcited: float = tap("1", "1 while the drive hardly tells the winner from its nearest rival")
 
-    weighed = "what was believed before, mixed by switching"
+    weighed = "the probabilities before, mixed by switching"
 
     @classmethod
     def prior(cls, params: Any, before: list[float]) -> list[float]:
@@ -130,7 +130,7 @@ class Imm(KalmanBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """All filters at rest, all hypotheses alike."""
+        """All filters at zero, all hypotheses alike."""
         s = cls.at_rest(cls.State.zeros(), params, context)
         s.weight[:] = 1.0 / len(params.hypotheses)
         return s

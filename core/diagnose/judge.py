@@ -28,11 +28,11 @@ class Judge(Block):
         count: Choice
 
     class Ports(ObservedPorts):
-        """What was measured and applied; the probability of every hypothesis."""
+        """The measured displacement and the applied voltage; the probability of every hypothesis."""
 
         probability: Vector = output("1", "probability of the hypothesis", each="hypotheses")
-        residual: Vector = tap("um", "what the hypothesis does not say", each="hypotheses")
-        nis: Vector = tap("1", "square of the residual over what it should be", each="hypotheses")
+        residual: Vector = tap("um", "residual of the hypothesis", each="hypotheses")
+        nis: Vector = tap("1", "square of the residual over its expected value", each="hypotheses")
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:

@@ -27,7 +27,7 @@ FILTERS = Stage(
     "residual nis covariance",
     ("filter", "residual covariance"),
 )
-"""What is before every conclusion of a bank."""
+"""The stages before every conclusion of a bank."""
 
 
 class FilterParams(BlockParams):
@@ -37,7 +37,7 @@ class FilterParams(BlockParams):
         0.3, "assumed noise on the voltage, rms per sample", "V", equation="5.2.3.1.2", ge=0, le=100
     )
     sensor_noise_um: float | None = parameter(
-        None, "assumed sensor noise; what the sensor has unless given", "um", gt=0, le=100
+        None, "assumed sensor noise; the sensor's own unless given", "um", gt=0, le=100
     )
     assumed_noise_scale: float = parameter(1.0, "factor on both assumed variances", gt=0, le=1e4)
     voltage: Literal["parabola", "middle", "start"] = parameter(
@@ -91,12 +91,12 @@ class KalmanBank(Bank):
 
     @classmethod
     def takes_steady_gains(cls, params: Any) -> bool:
-        """Say whether the gains are those in the limit."""
+        """Return whether the gains are the steady gains."""
         return False
 
     @classmethod
     def leaves_sensor_noise_out(cls, params: Any) -> bool:
-        """Say whether the residual covariance is that of the text, without R."""
+        """Return whether the residual covariance is the formula of the text, without R."""
         return False
 
     @classmethod
@@ -106,7 +106,7 @@ class KalmanBank(Bank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """All filters at rest."""
+        """All filters at zero."""
         return cls.at_rest(cls.State.zeros(), params, context)
 
     @classmethod
@@ -148,7 +148,7 @@ class KalmanBank(Bank):
 
     @classmethod
     def at_rest(cls, s: S, params: Any, context: Context) -> S:
-        """Put all filters at rest, with the initial uncertainty of the parameters."""
+        """Put all filters at zero, with the initial uncertainty of the parameters."""
         std, speed = params.initial_std_um, params.initial_std_um * context.device.natural_frequency
         s.p11[:] = std * std
         s.p22[:] = speed * speed

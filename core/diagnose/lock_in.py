@@ -18,7 +18,7 @@ from core.record import Vector, vector
 
 
 class LockIn(KalmanBank):
-    r"""Residual correlation: only what of a residual is at the frequency of the drive is evidence.
+    r"""Residual correlation: only the part of a residual at the frequency of the drive is evidence.
 
     .. math:: T_k=b_k^TG^{-1}b_k,\quad b_k=\sum_W\frac{r_k}{\sqrt{\psi_k}}z,\quad G=\sum_W zz^T,\quad
         z=\binom{\cos\omega t}{\sin\omega t},\qquad\ell_k\leftarrow\ell_k-\frac{T_k}{2W}
@@ -52,7 +52,7 @@ class LockIn(KalmanBank):
         window: int | None = parameter(
             None, "samples of the window; a period of the tone unless given", ge=2, le=4096, live=False
         )
-        tone_hz: float | None = parameter(None, "tone; that of the reference unless given", "Hz", gt=0, le=1e6)
+        tone_hz: float | None = parameter(None, "tone; the reference's unless given", "Hz", gt=0, le=1e6)
 
     class Packed(window.Packed):
         """Parameters of filters and window; floor under probabilities and its logarithm."""
@@ -61,7 +61,7 @@ class LockIn(KalmanBank):
         log_floor: float
 
     class State(window.State):
-        """Filters and window; logarithms of probabilities, and those of this sample."""
+        """Filters and window; logarithms of probabilities, and the logarithms of this sample."""
 
         log: Vector = vector(LANE)
         likelihood: Vector = vector(LANE)
@@ -96,7 +96,7 @@ class LockIn(KalmanBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """All filters at rest, all hypotheses alike, the window empty."""
+        """All filters at zero, all hypotheses alike, the window empty."""
         s = cls.at_rest(cls.State.zeros(window.room(params)), params, context)
         s.log[:] = -log(len(params.hypotheses))
         return s

@@ -52,7 +52,7 @@ class LockInGlr(KalmanBank):
             0.01, "assumed noise on the voltage, rms per sample", "V", equation="5.2.3.1.2", ge=0, le=100
         )
         window: int = parameter(100, "samples of the window", ge=2, le=4096, live=False)
-        tone_hz: float | None = parameter(None, "tone; that of the reference unless given", "Hz", gt=0, le=1e6)
+        tone_hz: float | None = parameter(None, "tone; the reference's unless given", "Hz", gt=0, le=1e6)
         threshold: float = parameter(23.0, "T at which there is an alarm", gt=0, le=1e6)
 
     class Packed(window.Packed):
@@ -80,7 +80,7 @@ class LockInGlr(KalmanBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """All filters at rest, the window empty."""
+        """All filters at zero, the window empty."""
         return cls.at_rest(cls.State.zeros(params.window), params, context)
 
     @staticmethod

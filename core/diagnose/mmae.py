@@ -65,7 +65,7 @@ class Mmae(KalmanBank):
             r"\quad p_k=\max(\mathrm{softmax}_k\,\ell,\;p_{min})",
             "5.2.3.2.6",
             printed=r"p_k(t_i)=\frac{f_k\,p_k(t_{i-1})}{\sum_j f_j\,p_j(t_{i-1})}",
-            why="as printed the probabilities of the faults sink for ever while the device is healthy, and steps "
+            why="as printed the probabilities of the faults sink without limit while the device is healthy, and steps "
             "2 to 6 are never found",
         ),
     )
@@ -98,7 +98,7 @@ class Mmae(KalmanBank):
         log_floor: float
 
     class State(KalmanBank.State):
-        """The filters; logarithms of probabilities (linear: probabilities); those of a sample; separations."""
+        """The filters; logarithms of probabilities (linear: probabilities); probabilities of a sample; separations."""
 
         weight: Vector = vector(LANE)
         likelihood: Vector = vector(LANE)
@@ -117,12 +117,12 @@ class Mmae(KalmanBank):
 
     @classmethod
     def takes_steady_gains(cls, params: Any) -> bool:
-        """Say whether the gains are those in the limit."""
+        """Return whether the gains are the steady gains."""
         return bool(params.form == "steady")
 
     @classmethod
     def leaves_sensor_noise_out(cls, params: Any) -> bool:
-        """Say whether the residual covariance is that of the text, without R."""
+        """Return whether the residual covariance is the formula of the text, without R."""
         return bool(params.residual_covariance == "printed")
 
     @classmethod
@@ -135,7 +135,7 @@ class Mmae(KalmanBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """All filters at rest, all hypotheses alike."""
+        """All filters at zero, all hypotheses alike."""
         s = cls.at_rest(cls.State.zeros(), params, context)
         n = len(params.hypotheses)
         s.weight[:] = 1.0 / n if params.arithmetic == "linear" else -log(n)

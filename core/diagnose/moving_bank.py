@@ -42,7 +42,7 @@ class MovingBank(KalmanBank):
     )
 
     class Params(FilterParams):
-        """What is followed, and how finely."""
+        """The parameter to follow, and the step of the grid."""
 
         follows: Literal["stiffness", "mass", "damping", "gain"] = parameter(
             "stiffness", "parameter that is followed", live=False
@@ -94,7 +94,7 @@ class MovingBank(KalmanBank):
         end2: Vector = tail()
 
     class State(KalmanBank.State):
-        """All filters; the one in the centre; logarithms of probabilities of the three that run, and of this sample."""
+        """All filters; the centre filter; logarithms of probabilities of the three that run, and of this sample."""
 
         centre: float
         log: Vector = vector(LANE)
@@ -139,7 +139,7 @@ class MovingBank(KalmanBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """All filters at rest, the nominal one in the centre."""
+        """All filters at zero, the nominal filter in the centre."""
         s = cls.at_rest(cls.State.zeros(len(params.models)), params, context)
         s.centre = params.reach
         s.log[:] = -log(3.0)

@@ -38,7 +38,7 @@ class Bank(Estimator):
 
 
 class ReferenceBanks(WeighedBank):
-    r"""Each bank identifies a sub-system of its own, which runs beside the device, and is tried on the device.
+    r"""Each bank identifies its own sub-system, which runs in parallel with the device, and is tried on the device.
 
     .. math:: \hat\theta_k\ \text{from}\ (u,z_k),\qquad r_k=z-h^T\hat\theta_k
 
@@ -97,7 +97,7 @@ class ReferenceBanks(WeighedBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Every bank at its hypothesis, every record at rest."""
+        """Every bank at its hypothesis, every record zero."""
         s = cls.State.zeros()
         cls.fill_alike(s, params)
         put_at_hypotheses(s.banks, params, context)

@@ -22,7 +22,7 @@ class Regions(Block):
 
     .. math:: J=\frac{\mathrm{rms}(y-y_0)}{\mathrm{rms}(y_0)}\ \text{over a period of the drive}
 
-    The healthy motion is that of the nominal device under the voltage applied. The text gives the regions and no
+    The healthy motion is the motion of the nominal device under the applied voltage. The text gives the regions and no
     figures; the limits are this bench's own. Beyond the largest safe displacement there is danger at once.
     """
 
@@ -48,7 +48,7 @@ class Regions(Block):
         window: int | None = parameter(
             None, "samples of a comparison; a period of the tone unless given", ge=2, le=1_000_000
         )
-        tone_hz: float | None = parameter(None, "tone; that of the reference unless given", "Hz", gt=0, le=1e6)
+        tone_hz: float | None = parameter(None, "tone; the reference's unless given", "Hz", gt=0, le=1e6)
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
@@ -56,7 +56,7 @@ class Regions(Block):
         return lacking(device)
 
     class Packed(Record):
-        """The healthy device over a tick and at rest, ticks between two samples, samples of a window, and limits."""
+        """The healthy device over a tick, its static gain, ticks between two samples, samples of a window, limits."""
 
         tick: Tick
         static_gain: float
@@ -97,7 +97,7 @@ class Regions(Block):
 
     @staticmethod
     def step(p: Packed, s: State, x: Ports) -> None:
-        """Advance the healthy device over a tick, compare over a period, tell the region."""
+        """Advance the healthy device over a tick, compare over a period, decide the region."""
         y = x.measured
         if s.started != 0.0:
             u, middle, end = moves(x)

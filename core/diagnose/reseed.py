@@ -66,7 +66,7 @@ class Reseed(KalmanBank):
         hopeless: float
 
     class State(KalmanBank.State):
-        """The filters; logarithms of probabilities, those of this sample, samples since the last seeding."""
+        """The filters; logarithms of probabilities, logarithms of this sample, samples since the last seeding."""
 
         log: Vector = vector(LANE)
         likelihood: Vector = vector(LANE)
@@ -86,7 +86,7 @@ class Reseed(KalmanBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """All filters at rest, all hypotheses alike; the samples since the last seeding."""
+        """All filters at zero, all hypotheses alike; the samples since the last seeding."""
         s = cls.at_rest(cls.State.zeros(), params, context)
         s.log[:] = -log(len(params.hypotheses))
         return s

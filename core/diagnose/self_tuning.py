@@ -83,8 +83,8 @@ class SelfTuning(ArxBank):
     Without that filter the method works at 10 to 20 kHz.
 
     The forgetting factor is fixed, or follows the innovations. ``direct`` solves :math:`1+h^T\eta h/\lambda=R` for it
-    if R, taken over a few samples, is beyond a gate; ``stepped`` is 5.4 corrected; ``printed`` is 5.4 as it stands,
-    a ramp that ignores the data. ``R`` of the printed recursion ends at 1e300, where it would be infinite.
+    if R, taken over a few samples, is beyond a gate; ``stepped`` is 5.4 corrected; ``printed`` is 5.4 unchanged, a ramp
+    that ignores the data. ``R`` of the printed recursion ends at 1e300, where it would be infinite.
     """
 
     sample_by_sample = False
@@ -117,7 +117,7 @@ class SelfTuning(ArxBank):
             r"\tilde\lambda=\frac{h^T\eta h}{R-1}",
             "5.4.6-7",
             printed=r"\lambda_i=\lambda_{i-1}+\mu\,\mathrm{sgn}(\lambda_i-\lambda_{i-1})",
-            why="the same symbol stands on both sides, and steps of 1e-4 make it the slowest of all; the sign does "
+            why="the same symbol is on both sides, and steps of 1e-4 make it the slowest of all; the sign does "
             "not bound it either",
         ),
     )
@@ -185,7 +185,7 @@ class SelfTuning(ArxBank):
 
         estimate: Vector = tap("1", "estimated coefficients", labels=("b0", "b1", "a1", "a2"))
         forgetting: float = tap("1", "forgetting factor")
-        innovation_ratio: float = tap("1", "R: power of the innovations over that of the noise")
+        innovation_ratio: float = tap("1", "R: power of the innovations over the power of the noise")
         trace: float = tap("1", "trace of the covariance")
 
     @classmethod

@@ -69,7 +69,7 @@ class TwoOutput(KalmanBank):
 
         probability_floor: float = parameter(1e-3, "smallest probability", equation="5.2.3.2.6", ge=0, le=0.05)
         velocity_noise_um_ms: float | None = parameter(
-            None, "assumed noise of the velocity; what the velocimeter has unless given", "um/ms", gt=0, le=1e4
+            None, "assumed noise of the velocity; the velocimeter's own unless given", "um/ms", gt=0, le=1e4
         )
 
     class Packed(KalmanBank.Packed):
@@ -80,7 +80,7 @@ class TwoOutput(KalmanBank):
         velocity_noise: float
 
     class State(KalmanBank.State):
-        """The filters; logarithms of probabilities, and those of this sample."""
+        """The filters; logarithms of probabilities, and the logarithms of this sample."""
 
         log: Vector = vector(LANE)
         likelihood: Vector = vector(LANE)
@@ -114,7 +114,7 @@ class TwoOutput(KalmanBank):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """All filters at rest, all hypotheses alike."""
+        """All filters at zero, all hypotheses alike."""
         s = cls.at_rest(cls.State.zeros(), params, context)
         s.log[:] = -log(len(params.hypotheses))
         return s

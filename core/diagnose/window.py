@@ -69,7 +69,7 @@ class State(KalmanBank.State):
 
 
 def tone_hz(params: Any, context: Context) -> float:
-    """Return the given tone, or that of the reference, or the resonance."""
+    """Return the given tone, or the tone of the reference, or the resonance."""
     return float(params.tone_hz or context.tone_hz or 1e3 * context.device.natural_frequency / (2.0 * math.pi))
 
 
@@ -149,7 +149,7 @@ def clear_tone(s: State, capacity: int) -> None:
 
 @inlined
 def push(s: State, n: int, place: int, cosine: float, sine: float) -> None:
-    """Add the normalised residuals of all models, subtract the oldest ones, and go on to the next place.
+    """Add the normalised residuals of all models, subtract the oldest residuals, and move to the next place.
 
     At the end of the window the sums are replaced by those formed anew.
     """

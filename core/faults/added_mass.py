@@ -13,7 +13,7 @@ class AddedMass(ScaleFault):
     title = "Added mass"
     group, place = "The usual", 1
     shows = "plate"
-    changes = "mass of the shuttle; the resonance falls, the displacement at rest stays"
+    changes = "mass of the shuttle; the resonance falls, the static displacement stays"
     suggested = 0.05
     axes = None
     equations = (Equation("effect", r"m\to m\,(1+s)", "5.2.4"),)

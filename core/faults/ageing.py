@@ -10,11 +10,11 @@ from core.record import Record
 
 
 class Ageing(Fault):
-    r"""Weeks of ageing, :math:`k\to k/r(t)`: 42.8 % less displacement at rest after four (3.1.3.2).
+    r"""Weeks of ageing, :math:`k\to k/r(t)`: 42.8 % less static displacement after four (3.1.3.2).
 
-    A ramp lets the weeks pass within the run; a device that is older already goes on from its age. The text gives only
-    the end; the exponential and its time constant of two weeks are assumed. It is also assumed that age changes the
-    material of all beams alike, as a modulus :math:`E\to E/r(t)`: the text measured along x alone. The stiffnesses
+    A ramp lets the weeks pass within the run; a device that is older already continues from its age. The text gives
+    only the end; the exponential and its time constant of two weeks are assumed. It is also assumed that age changes
+    the material of all beams alike, as a modulus :math:`E\to E/r(t)`: the text measured along x alone. The stiffnesses
     sideways, in rotation and cubic change with it, and pull-in by the bias with :math:`1/\sqrt r`.
     """
 

@@ -11,7 +11,7 @@ from core.record import Record
 
 
 class DriveGain(Fault):
-    r"""The voltage at the comb is not the one applied, :math:`v\to v(1+s)`, or stays where it was when it stuck.
+    r"""The voltage at the comb differs from the applied voltage, :math:`v\to v(1+s)`, or is stuck.
 
     Controllers and diagnosers still read the voltage applied. At severity -1 the drive gives no voltage.
     """

@@ -45,7 +45,7 @@ class FingerPairShort(Fault):
             return self
 
     class Packed(PackedFault):
-        """Profile and severity, whether the comb is that of y, share of the force per pair."""
+        """Profile and severity, whether the comb belongs to y, share of the force per pair."""
 
         along_y: float
         per_pair: float

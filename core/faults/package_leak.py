@@ -16,9 +16,9 @@ class PackageLeak(Fault):
     .. math:: d\to d\left[1+g\,\frac{s}{p_0}\right]
 
     so that at the pressure :math:`p=p_0+s` it is :math:`d_0(1-g+gp/p_0)`. Molecules then hit the walls more often than
-    each other, and their drag goes with their number: below 1 kPa the mean free path is more than 6 um. How much of
-    the damping is gas, and the pressure the device was measured at, are assumed here; a drawn gyroscope states the
-    pressure. Damping along both axes and between them grows alike. The environment's pressure is that outside the
+    each other, and their drag is proportional to their number: below 1 kPa the mean free path is more than 6 um. How
+    much of the damping is gas, and the pressure the device was measured at, are assumed here; a drawn gyroscope states
+    the pressure. Damping along both axes and between them grows alike. The environment's pressure is that outside the
     package, and does not count.
     """
 

@@ -47,7 +47,7 @@ class PointAdhesion(StructureFault):
     )
 
     class Params(FaultParams):
-        """Severity 1 holds the point firmly; what grows with the travel is an estimate away from the fitted place."""
+        """Severity 1 holds the point firmly; the part that grows with the travel is estimated off the fitted place."""
 
         severity: float = parameter(0.0, "how firmly the point is held", "1", ge=0, le=1)
         beam: Literal["inner", "outer"] = parameter("inner", "which beam")

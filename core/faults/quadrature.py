@@ -17,14 +17,14 @@ class Quadrature(Fault):
 
     .. math:: k_{xy}\to k_{xy}+2m_c\omega_x\Omega_q,\quad\omega_x=\sqrt{k_{xx}/m_x}
 
-    A read-out with a wrong phase takes part of it for a rate. The rate it is given as is that of the nominal device,
-    with y held at rest.
+    A read-out with a wrong phase takes part of it for a rate. Its size as a rate is the value of the nominal device,
+    with y held at zero.
     """
 
     title = "Quadrature"
     group, place = "Suspension", 6
     shows = "beams"
-    changes = "spring between x and y; what it pushes along y is in step with the displacement along x"
+    changes = "spring between x and y; its force along y is in step with the displacement along x"
     suggested = 500.0
     axes = ("x", "y")
     equations = (Equation("effect", r"k_{xy}\to k_{xy}+2m_c\omega_x\Omega_q", "6.1.3"),)

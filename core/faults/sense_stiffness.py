@@ -11,7 +11,7 @@ class SenseStiffness(ScaleFault):
     r"""Stiffness along y alone, :math:`k_{yy}\to k_{yy}(1+s)`: one axis warms up, or its tuning voltage drifts.
 
     The split of the modes drifts with it, by about half the share of the upper frequency, and so does the scale of an
-    open-loop read-out. A loop that holds y at rest does not see it: what does not move has no stiffness.
+    open-loop read-out. A loop that holds y at zero does not see it: stiffness has no effect without motion.
     """
 
     title = "Stiffness of the sensing axis"

@@ -12,7 +12,7 @@ from core.record import Record
 
 
 class SensorDropout(Fault):
-    r"""Samples get lost at random, and the last one that came stands in for them.
+    r"""Samples are lost at random, and the last received sample replaces them.
 
     .. math:: z_i\to z_{i-1}\quad\text{with probability}\ q
 

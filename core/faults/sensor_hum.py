@@ -12,7 +12,7 @@ from core.record import Record
 
 
 class SensorHum(Fault):
-    r"""The mains in what is measured, :math:`z\to z+a\sin2\pi ft`.
+    r"""The mains in the measurement, :math:`z\to z+a\sin2\pi ft`.
 
     One period of 50 Hz lasts 20 ms, as long as many scenarios.
     """
@@ -52,7 +52,7 @@ class SensorHum(Fault):
 
     @staticmethod
     def step(p: Packed, s: Record, x: Ports) -> None:
-        """Add the hum; its phase goes on while an intermittent fault is off."""
+        """Add the hum; its phase continues while an intermittent fault is off."""
         amplitude = severity_now(p, x.tick)
         x.severity = amplitude
         if amplitude != 0.0:

@@ -12,7 +12,7 @@ from core.record import Record
 
 
 class SensorNoise(Fault):
-    r"""White noise beside that of the sensor, :math:`z\to z+\sigma n`, with :math:`n` normal.
+    r"""White noise in addition to the noise of the sensor, :math:`z\to z+\sigma n`, with :math:`n` normal.
 
     Filters still assume the noise of the sensor without the fault: the variance of the residuals of all hypotheses
     grows by :math:`1+\sigma^2/\sigma_0^2`.

@@ -18,7 +18,7 @@ STANDARD_GRAVITY = 9.80665
 class Shock(Fault):
     r"""Half a sine of acceleration of the frame, :math:`a=a_0\sin(\pi t/T)` for :math:`0<t<T`.
 
-    The displacement at rest is 40.3 nm per g along x for the device of chapter 3, 10.6 pm sideways. An intermittent
+    The static displacement is 40.3 nm per g along x for the device of chapter 3, 10.6 pm sideways. An intermittent
     shock comes once each period.
     """
 

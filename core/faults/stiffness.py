@@ -20,7 +20,7 @@ class Stiffness(Fault):
     shows = "beams"
     changes = (
         "stiffness of the suspension along x in every plant, sideways and in rotation, and so pull-in, in the planar "
-        "plant; resonance and displacement at rest both move"
+        "plant; resonance and static displacement both move"
     )
     suggested = 0.05
     axes = None
@@ -32,7 +32,7 @@ class Stiffness(Fault):
         severity: float = parameter(0.0, "added stiffness, share of nominal", "1", gt=-0.95, le=20)
 
     class Ports(BlockPorts):
-        """The stiffness along x, and that of every beam."""
+        """The stiffness along x, and the stiffness of every beam."""
 
         stiffness_scale: float = effect("stiffness_scale")
         elasticity_scale: float = effect("elasticity_scale")
@@ -40,7 +40,7 @@ class Stiffness(Fault):
 
     @staticmethod
     def step(p: PackedFault, s: Record, x: Ports) -> None:
-        """Multiply the stiffness along x and that of every beam."""
+        """Multiply the stiffness along x and the stiffness of every beam."""
         now = severity_now(p, x.tick)
         x.severity = now
         if now != 0.0:

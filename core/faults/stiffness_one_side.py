@@ -14,7 +14,7 @@ from core.faults.structure import Bending, Effects, StructureFault, effects
 class StiffnessOneSide(StructureFault):
     r"""Young's modulus of beams and truss of the side at +y: :math:`k\to k(1+s/2)`, and a rotation with the travel.
 
-    The stiffnesses sideways and in rotation are those of the frame of beams with one side stiffer.
+    The stiffnesses sideways and in rotation belong to the frame of beams with one side stiffer.
     """
 
     title = "Beam stiffness, one side"

@@ -108,7 +108,7 @@ class StructureFault(Fault):
         sideways: float = effect("sideways")
         turn: float = effect("turn")
         turn_cubic: float = effect("turn_cubic")
-        severity: float = severity("1", "severity that is there now")
+        severity: float = severity("1", "present severity")
 
     @classmethod
     def whole(cls, params: Any, context: Context) -> Effects:

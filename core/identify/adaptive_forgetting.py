@@ -88,14 +88,14 @@ class AdaptiveForgetting(Discrete):
             r"\tilde\lambda_i=\frac{h^T\eta h}{R_i-1}",
             "5.4.6",
             printed=r"\lambda_i=\frac{\lambda_{i-1}(1+H_iP'_{i-1}H_i^T)}{\hat R_i}",
-            why="that one is right at rest, since then R = 1 + h'eta h / lambda, but slow on the way",
+            why="this one is right in steady state, since then R = 1 + h'eta h / lambda, but slow on the way",
         ),
         Equation(
             "limit",
             r"\lambda_i=\mathrm{clip}(\lambda_{i-1}+\mu\,\mathrm{sgn}(\tilde\lambda_i-\lambda_{i-1}),\lambda_{min},1)",
             "5.4.7",
             printed=r"\lambda_i=\lambda_{i-1}+\mu\,\mathrm{sgn}(\lambda_i-\lambda_{i-1})",
-            why="a sign bounds the step and not the factor, and one symbol cannot stand on both sides",
+            why="a sign bounds the step and not the factor, and one symbol cannot be on both sides",
         ),
     )
     structure = (

@@ -201,7 +201,7 @@ def report(p: Discrete.Packed, s: Discrete.State, x: Discrete.Ports, residual: f
     r"""Write estimate, truth, error and excitation.
 
     From the poles :math:`z=e^{(-\sigma\pm j\omega_d)h}` and the static gain g follow
-    :math:`k=F/g,\;m=k/(\sigma^2+\omega_d^2),\;\beta=2\sigma m`. While the poles are not those of a damped plant, the
+    :math:`k=F/g,\;m=k/(\sigma^2+\omega_d^2),\;\beta=2\sigma m`. While the poles do not belong to a damped plant, the
     estimate keeps its last values.
     """
     show_truth(x)

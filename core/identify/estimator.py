@@ -1,7 +1,7 @@
 r"""Base of identifiers that estimate the device in a way of their own.
 
-It knows what was measured and applied, and puts out mass, stiffness and damping over their nominal values. The board
-adds the truth and the error.
+Its inputs are the measurement and the applied voltage, and its outputs mass, stiffness and damping over their nominal
+values. The board adds the truth and the error.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ class Estimator(Block):
     """An identifier; its step runs once for each measurement."""
 
     class Ports(ObservedPorts):
-        """What was measured and applied; the estimate."""
+        """The measurement and the applied voltage; the estimate."""
 
         estimate: Vector = output("1", "estimated mass, stiffness and damping over nominal", labels=PHYSICAL)
 

@@ -8,7 +8,7 @@ from core.identify.identifier import ExcitationPorts, between_updates, excite
 
 
 class Excitation(Filtered):
-    r"""Says whether this input tells mass, stiffness and damping apart (A.9).
+    r"""Measures whether this input separates mass, stiffness and damping (A.9).
 
     .. math:: \alpha_1=\lambda_{min}\Big(\frac1\delta\int_{t-\delta}^t\varphi\varphi^T\,d\tau\Big),\quad
         \varphi=\frac1{(s+\lambda)^2}[u,-\dot y,-y]^T

@@ -15,8 +15,8 @@ from core.record import Record, Vector, vector
 class External(Estimator):
     r"""The estimate comes from outside, :math:`\hat\theta_i=f(y_i,u_{i-1},\dots)`: from a function.
 
-    It is asked once the sample has been measured, as every other identifier. `core.board.hosted` asks; on any other
-    board there is nobody to ask.
+    It is called once the sample has been measured, as every other identifier. `core.board.hosted` calls it; any other
+    board has no program to call.
     """
 
     title = "External"
@@ -24,7 +24,7 @@ class External(Estimator):
     equations = (Equation("law", r"\hat\theta_i=f(y_i,u_{i-1})"),)
 
     class Params(BlockParams):
-        """What it does is decided outside."""
+        """Its law is outside."""
 
     class State(Record):
         """Mass, stiffness and damping over nominal that were answered; no numbers where there is no answer."""
@@ -38,6 +38,6 @@ class External(Estimator):
 
     @staticmethod
     def step(p: Record, s: State, x: Estimator.Ports) -> None:
-        """Pass on what was answered."""
+        """Pass on the answer."""
         for k in range(3):
             x.estimate[k] = s.answered[k]

@@ -117,7 +117,7 @@ class FilteredEstimator(Filtered):
 
         coefficient: Vector = tap("mixed", "estimated kp, a1 and a2, in um, V and 1/w0", labels=COEFFICIENTS)
         coefficient_true: Vector = tap("mixed", "true kp, a1 and a2", labels=COEFFICIENTS)
-        residual: float = tap("um", "filtered acceleration minus what the estimate says it is")
+        residual: float = tap("um", "filtered acceleration minus its estimate")
 
     @classmethod
     def fill_nominal(cls, p: Packed, params: Any, context: Context) -> None:
@@ -127,13 +127,13 @@ class FilteredEstimator(Filtered):
 
     @classmethod
     def fill_start(cls, s: State, params: Any, context: Context) -> None:
-        """Write the estimate at the start; the filters are at rest."""
+        """Write the estimate at the start; the filters are at zero."""
         if params.start == "nominal":
             s.theta[:] = coefficients(context.device)
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Start with filters at rest, and the estimate at the start."""
+        """Start with filters at zero, and the estimate at the start."""
         s = cls.State.zeros()
         cls.fill_start(s, params, context)
         return s

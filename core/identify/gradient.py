@@ -43,7 +43,7 @@ class Gradient(FilteredEstimator):
             r"V=\tilde\theta^TP_0^{-1}\tilde\theta,\quad\dot V=-2e_1^2\le0",
             "3.2.3.8-9",
             printed=r"\dot V<0",
-            why="V stands still for any parameter error that this input does not show: only persistent excitation "
+            why="V is constant for any parameter error that this input does not show: only persistent excitation "
             "makes the parameters converge",
         ),
     )

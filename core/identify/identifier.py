@@ -47,7 +47,7 @@ class ExcitationParams(BlockParams):
 class IdentifierParams(ExcitationParams):
     """Parameters of every identifier."""
 
-    enabled: bool = parameter(True, "go on estimating; off holds the estimate, and on again trusts it no longer")
+    enabled: bool = parameter(True, "estimate; off holds the estimate, and on again trusts it no longer")
 
 
 class Gram(Record):
@@ -77,7 +77,7 @@ class EstimatePorts(IdentifierPorts):
     truth: Vector = tap("1", "true mass, stiffness and damping over nominal", labels=PHYSICAL)
     coefficient: Vector = tap("mixed", "estimated coefficients")
     coefficient_true: Vector = tap("mixed", "true coefficients")
-    residual: float = tap("um", "what the estimate does not say")
+    residual: float = tap("um", "residual of the estimate")
     excitation: float = tap("mixed", EXCITATION)
     excitation_relative: float = tap("1", EXCITATION_RELATIVE)
     identifiable: float = tap("1", IDENTIFIABLE)
@@ -149,8 +149,8 @@ def excite(
 ) -> None:
     """Gather the Gram matrix, and at the end of each window judge it less twice the share that sensor noise adds.
 
-    Noise moves the regressor in every direction without telling anything about the device. If its mean were taken out
-    only once, half of the windows would still show some of it. ``noise`` is the lower triangle of the mean noise.
+    Noise moves the regressor in every direction without information about the device. If its mean were taken out only
+    once, half of the windows would still show some of it. ``noise`` is the lower triangle of the mean noise.
     """
     add_outer_product(gram.products, regressor, n)
     gram.samples += 1.0

@@ -103,7 +103,7 @@ class LeastSquares(FilteredEstimator):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> State:
-        """Start with filters at rest, the estimate and its covariance, scratch, and whether it was enabled."""
+        """Start with filters at zero, the estimate and its covariance, scratch, and whether it was enabled."""
         s = cls.State.zeros()
         cls.fill_start(s, params, context)
         s.covariance[:] = diagonal(N, params.initial_covariance)

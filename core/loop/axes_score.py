@@ -22,10 +22,10 @@ class AxesFactors(Factors):
 
 
 class AxesScore(Block):
-    """Scores a bank whose hypotheses also say the stiffness of the second axis, and that between the axes.
+    """Scores a bank whose hypotheses also have the stiffness of the second axis, and the stiffness between the axes.
 
-    What counts is that of any score. A stiffness between the axes is right within a thousandth, and where a hypothesis
-    has none, within the stiffness that reads as 1 deg/s.
+    The rules are the rules of any score. A stiffness between the axes is right within a thousandth, and where a
+    hypothesis has none, within the stiffness that reads as 1 deg/s.
     """
 
     title = "Score of two axes"
@@ -40,16 +40,16 @@ class AxesScore(Block):
         hypotheses: Records[AxesFactors] = tail()
 
     class Ports(Score.Ports):
-        """What any score reads, and what is between the axes and of the second alone."""
+        """Inputs of any score, and the effects between the axes and of the second axis alone."""
 
         second_stiffness_scale: float = reads(
-            "effects.second_stiffness_scale", "1", "true stiffness of the second axis over that of all"
+            "effects.second_stiffness_scale", "1", "true stiffness of the second axis over the stiffness of all"
         )
         cross_stiffness: float = reads("effects.cross_stiffness", "uN/um", "true stiffness added between the axes")
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
-        """Pack the ticks between two verdicts and what the hypotheses say."""
+        """Pack the ticks between two verdicts and the hypotheses."""
         device = cast(TwoAxis, context.device)
         p = cls.Packed.blank(len(params.hypotheses))
         take_turns(p, len(params.hypotheses), context)
@@ -79,7 +79,7 @@ class AxesScore(Block):
 
 @inlined
 def holds_along_both(h: AxesFactors, x: AxesScore.Ports) -> bool:
-    """Say whether what a hypothesis says is so at this moment."""
+    """Return whether a hypothesis is true at this moment."""
     return (
         holds(h, x)
         and abs(x.second_stiffness_scale - h.second_stiffness) <= TOLERANCE * h.second_stiffness

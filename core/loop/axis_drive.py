@@ -13,7 +13,7 @@ from core.record import Record
 class AxisDrive(Block):
     """Limiter and digital-to-analogue converter of one axis; holds the force for one sample.
 
-    Of the controllers that drive, the one in the last slot that has an output named after the axis is heard.
+    The force comes from the driving controller in the last slot that has an output named after the axis.
     """
 
     title = "Drive of an axis"
@@ -36,7 +36,7 @@ class AxisDrive(Block):
         analogue: float
 
     class Ports(BlockPorts):
-        """Force asked for, force applied."""
+        """Requested force, applied force."""
 
         command: float = reads("@command", "uN", "force asked for by the controller that drives the axis")
         command_middle: float = reads("@command_middle", "uN", "the same half a sample later")
@@ -56,7 +56,7 @@ class AxisDrive(Block):
 
     @staticmethod
     def step(p: Packed, s: Record, x: Ports) -> None:
-        """Apply the force asked for, as far as the drive can."""
+        """Apply the requested force, as far as the drive can."""
         x.force = convert(p, x.command)
         if p.analogue == 0.0 or (x.command_middle == x.command and x.command_end == x.command):
             x.middle = x.force

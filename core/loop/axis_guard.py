@@ -14,9 +14,9 @@ from core.record import Record
 class AxisGuard(Block):
     """Trips on a value that is not finite, on travel beyond the stops, on a force at its limit most of the time.
 
-    Forces alternate, and so leave the limit twice in every period even when a loop has run away: what counts is the
+    Forces alternate, and so leave the limit twice in every period even when a loop has run away: the measure is the
     time at the limit less a quarter of the time below it. A force that is at its limit a fifth of the time is endured.
-    Each axis passes on what the one before it has found; that of the last stops the board.
+    Each axis passes its result to the next; the last axis stops the board.
     """
 
     title = "Guard of an axis"
@@ -44,7 +44,7 @@ class AxisGuard(Block):
     class Ports(BlockPorts):
         """Signals the guard watches, and its verdict."""
 
-        before: float = reads("@before", "1", "what the guard of the axis before says")
+        before: float = reads("@before", "1", "result of the guard of the axis before")
         displacement: float = reads("plant.{axis}", "um", "true displacement")
         velocity: float = reads("plant.{axis}_velocity", "um/ms", "true velocity")
         command: float = reads("@command", "uN", "force asked for")

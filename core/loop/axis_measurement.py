@@ -1,4 +1,4 @@
-"""Measurement of an axis: what controllers and diagnosers are given of it, and what is wrong with it."""
+"""Measurement of an axis: the input of controllers and diagnosers, with the faults of the measurement."""
 
 from __future__ import annotations
 
@@ -9,10 +9,9 @@ from core.record import Record
 
 
 class AxisMeasurement(Block):
-    """Passes on what the sensor in use says of one axis; a fault of the read-out acts on all axes alike.
+    """Passes on the reading of one axis of the sensor in use; a fault of the read-out acts on all axes alike.
 
-    Faults come in the order of the chain: what is added before the converter, the converter, the samples that get
-    lost behind it.
+    Faults come in the order of the chain: additions before the converter, the converter, lost samples after it.
     """
 
     title = "Measurement of an axis"
@@ -22,12 +21,12 @@ class AxisMeasurement(Block):
         """Nothing to choose but the sensor."""
 
     class Ports(BlockPorts):
-        """The sensor in use, what is wrong with it, and what is measured."""
+        """The sensor in use, the faults of the measurement, and the measurement."""
 
         chosen: float = reads("@measuring", "um", "displacement of the sensor in use")
         chosen_velocity: float = reads("@measuring_velocity", "um/ms", "velocity of the sensor in use")
-        offset: float = reads("effects.sensor_offset", "um", "added to what is measured")
-        quantum: float = reads("effects.sensor_quantum", "um", "step what is measured is rounded to")
+        offset: float = reads("effects.sensor_offset", "um", "added to the measurement")
+        quantum: float = reads("effects.sensor_quantum", "um", "rounding step of the measurement")
         held: float = reads("effects.sensor_held", "1", "not zero while the sample is lost")
         displacement: float = output("um", "measured displacement along the axis")
         velocity: float = output("um/ms", "measured velocity along the axis")

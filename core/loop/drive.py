@@ -24,7 +24,7 @@ class Drive(Block):
         quantum_v: float = parameter(0.0, "step of the converter, 0 for none", "V", ge=0, le=100)
         dither_v: float = parameter(
             0.0,
-            "random signs added to what the controller asks for, so that a constant drive tells something",
+            "random signs added to the controller's voltage, so that a constant drive carries information",
             "V",
             ge=0,
             le=100,
@@ -42,7 +42,7 @@ class Drive(Block):
         dither_key: float
 
     class Ports(BlockPorts):
-        """Voltage asked for, voltage applied."""
+        """Requested voltage, applied voltage."""
 
         command: float = reads("@active", "V", "voltage asked for by the controller that drives")
         command_middle: float = reads("@active_middle", "V", "the same half a sample later")
@@ -63,7 +63,7 @@ class Drive(Block):
 
     @staticmethod
     def step(p: Packed, s: Record, x: Ports) -> None:
-        """Apply the voltage asked for, as far as the drive can."""
+        """Apply the requested voltage, as far as the drive can."""
         dither = 0.0
         if p.dither_v > 0.0:
             dither = p.dither_v if uniform(p.dither_key, floor(x.time_ms * p.dither_per_ms)) < 0.5 else -p.dither_v

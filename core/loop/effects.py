@@ -26,11 +26,12 @@ def _sum(unit: str, meaning: str) -> Any:
 
 
 class Effects(Block):
-    """The channels through which faults reach plant and measurement, set back to neutral before those of each tick.
+    """The channels of faults into plant and measurement, set back to neutral before the faults of each tick.
 
-    Stiffness, elasticity, damping, friction and squeeze film start from what the environment makes of the device; for a
-    new one at 300 K and 1 atm only the last is not neutral, by its rarefaction. Stiffness is the whole of that along x,
-    elasticity the part of it that is the material: every other stiffness of the suspension goes with it.
+    Stiffness, elasticity, damping, friction and squeeze film start from the values that the environment gives the
+    device; for a new device at 300 K and 1 atm only the last is not neutral, by its rarefaction. Stiffness is the whole
+    stiffness along x, elasticity its material part: every other stiffness of the suspension is proportional to the
+    elasticity.
     """
 
     title = "Effect channels"
@@ -49,7 +50,7 @@ class Effects(Block):
         stiffness_scale: float = _scale("true stiffness over nominal", hidden=False)
         damping_scale: float = _scale("true damping over nominal", hidden=False)
         drive_gain: float = _scale("voltage at the comb over the voltage applied")
-        drive_offset: float = _sum("V", "voltage at the comb that nobody applied")
+        drive_offset: float = _sum("V", "stray voltage at the comb")
         acceleration: float = _sum("um/ms^2", "acceleration of the frame along x")
         acceleration_side: float = _sum("um/ms^2", "acceleration of the frame along y")
         friction: float = _sum("uN", "Coulomb friction")
@@ -64,17 +65,21 @@ class Effects(Block):
         turn_cubic: float = _sum("rad/um^3", "rotation per cubed travel")
         other: float = _sum("1", "not zero while something is wrong that no hypothesis of a bank can say")
         vacuum: float = _scale("share of the vacuum that is left")
-        sensor_offset: float = _sum("um", "added to what is measured")
-        sensor_quantum: float = _sum("um", "step what is measured is rounded to, 0 for none")
+        sensor_offset: float = _sum("um", "added to the measurement")
+        sensor_quantum: float = _sum("um", "rounding step of the measurement, 0 for none")
         sensor_held: float = _sum("1", "not zero while the sample is lost")
-        squeeze_scale: float = _scale("squeeze film over that of a continuous gas at 300 K, over the damping")
+        squeeze_scale: float = _scale("squeeze film over its value in a continuous gas at 300 K, over the damping")
         elasticity_scale: float = _scale(
             "stiffness of all beams alike over nominal: cubic, sideways and in rotation too"
         )
         cross_stiffness: float = _sum("uN/um", "added to the stiffness that couples the first two axes")
         cross_damping: float = _sum("uN ms/um", "added to the damping that couples the first two axes")
-        second_stiffness_scale: float = _scale("stiffness of the second axis over nominal, besides that of all axes")
-        second_damping_scale: float = _scale("damping of the second axis over nominal, besides that of all axes")
+        second_stiffness_scale: float = _scale(
+            "stiffness of the second axis over nominal, in addition to the change of all axes"
+        )
+        second_damping_scale: float = _scale(
+            "damping of the second axis over nominal, in addition to the change of all axes"
+        )
         second_drive_gain: float = _scale("force on the second axis over the one applied")
 
     @classmethod
@@ -113,4 +118,4 @@ class Effects(Block):
         x.damping_scale = x.damping
         x.squeeze_scale = x.rarefied
         x.friction = x.rubbing
-        x.other = x.rubbing  # no hypothesis says friction
+        x.other = x.rubbing  # no hypothesis describes friction

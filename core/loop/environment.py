@@ -1,4 +1,4 @@
-"""Environment: what air, age and friction make of the device."""
+"""Environment: the effects of air, age and friction on the device."""
 
 from __future__ import annotations
 
@@ -51,13 +51,13 @@ def damping_in(film: Film, pressure_pa: float, temperature_k: float) -> float:
 
 
 class Environment(Block):
-    r"""Temperature, pressure and humidity around the device, its age, and what rubs on it.
+    r"""Temperature, pressure and humidity around the device, its age, and its friction.
 
-    They change the true device, never the nominal one the controllers believe in, whose figures hold for a new one at
-    300 K and 1 atm; there every factor is exactly 1. A device without a drawing is given the film of the drawn
-    LCR-350. Temperature and age change the modulus of all beams, and with it every stiffness of the suspension.
-    Temperature is also that of the thermomechanical noise. Humidity sets the adhesion energy, and with it the friction
-    of what touches; its effect on viscosity is below 1 %.
+    They change the true device, never the nominal device of the controllers, whose figures hold for a new device at 300
+    K and 1 atm; there every factor is exactly 1. A device without a drawing is given the film of the drawn LCR-350.
+    Temperature and age change the modulus of all beams, and with it every stiffness of the suspension. Temperature is
+    also that of the thermomechanical noise. Humidity sets the adhesion energy, and with it the friction of touching
+    surfaces; its effect on viscosity is below 1 %.
 
     A device of two axes is sealed in a package, at whose pressure its quality factors hold. No air outside reaches it:
     its damping depends neither on pressure nor on humidity here, and the fault ``package_leak`` raises the pressure
@@ -139,7 +139,7 @@ class Environment(Block):
         stiffness_scale: float = output("1", "stiffness over nominal", hidden=True)
         damping_scale: float = output("1", "damping over nominal", hidden=True)
         squeeze: float = output(
-            "1", "squeeze film over that of a continuous gas at 300 K, over the damping", hidden=True
+            "1", "squeeze film over its value in a continuous gas at 300 K, over the damping", hidden=True
         )
         friction: float = output("uN", "Coulomb friction without any fault", hidden=True)
         friction_scale: float = output("1", "friction at this humidity over that at 40 %", hidden=True)
@@ -180,7 +180,7 @@ class Environment(Block):
 
     @staticmethod
     def step(p: Packed, s: State, x: Ports) -> None:
-        """Say what pressure and temperature make of the device; a leak of the tick before counts."""
+        """Compute the effects of pressure and temperature on the device; a leak of the tick before counts."""
         pressure = p.pressure_pa
         if x.vacuum != 1.0:
             pressure = ATMOSPHERE_PA - x.vacuum * (ATMOSPHERE_PA - pressure)

@@ -1,4 +1,4 @@
-"""Compares what an identifier of one's own estimates with the device as it is."""
+"""Compares the estimate of a user's identifier with the true device."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Measurement: which of the sensors the controllers and diagnosers are given, and what is wrong with it."""
+"""Measurement: the sensor whose reading controllers and diagnosers get, with the faults of the measurement."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from core.voltage import AppliedPorts
 
 
 class ChosenPorts(BlockPorts):
-    """The sensor in use, and what is wrong with it."""
+    """The sensor in use, and the faults of the measurement."""
 
     chosen: float = reads("@measuring", "um", "displacement of the sensor in use")
-    offset: float = reads("effects.sensor_offset", "um", "added to what is measured")
-    quantum: float = reads("effects.sensor_quantum", "um", "step what is measured is rounded to")
+    offset: float = reads("effects.sensor_offset", "um", "added to the measurement")
+    quantum: float = reads("effects.sensor_quantum", "um", "rounding step of the measurement")
     held: float = reads("effects.sensor_held", "1", "not zero while the sample is lost")
 
 
 class Measurement(Block):
     """Passes on the displacement of the sensor in use; all sensors run, so a change is one index.
 
-    What faults of the measurement do comes in the order of the chain: what is added before the converter, the
-    converter, the samples that get lost behind it. The last samples are kept for a sensor that takes over in motion.
+    Faults of the measurement act in the order of the chain: additions before the converter, the converter, lost samples
+    after it. The last samples are kept for a sensor that takes over in motion.
     """
 
     title = "Measurement"
@@ -41,12 +41,12 @@ class Measurement(Block):
         every: Choice
 
     class Ports(ChosenPorts, AppliedPorts):
-        """The sensor in use and the voltage in, what is measured and the past out."""
+        """The sensor in use and the voltage in, the measurement and the past out."""
 
         displacement: float = output("um", "measured displacement")
         past: Records[Entry] = tap(
             "mixed",
-            "what was measured over the last samples, with voltage and variance",
+            "measurements of the last samples, with voltage and variance",
             labels=tuple(str(i) for i in range(KEPT * Entry.layout.size)),
             hidden=True,
         )

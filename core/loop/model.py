@@ -36,7 +36,7 @@ class Model(Block):
 
         kind: Literal["copy", "damped", "direct", "transfer_function"] = parameter(
             "copy",
-            "the nominal device, a damped one of the same resonance, just the displacement at rest, or a "
+            "the nominal device, a damped device of the same resonance, just the static displacement, or a "
             "transfer function",
             live=False,
         )
@@ -65,7 +65,7 @@ class Model(Block):
             return self
 
     class Packed(Record):
-        """Transition, effects of the reference on state and output, and of what it changes by within a sample."""
+        """Transition, effects of the reference on state and output, and of its change within a sample."""
 
         phi11: float
         phi12: float
@@ -147,7 +147,7 @@ class Model(Block):
             gain, unit = model.force, 1.0 / context.device.natural_frequency
             first, p.zeroth = 0.0, 1.0
             if params.kind == "transfer_function":
-                # the zero works on the output: the state is that of a unit numerator
+                # the zero acts on the output: the state belongs to a unit numerator
                 gain = 1.0
                 first, p.zeroth = [0.0, 0.0, *params.numerator][-2:]
             p.first, p.reach, p.push = first * unit, gain * reach, gain * push

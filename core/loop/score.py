@@ -26,9 +26,9 @@ EXITS = 8
 SPAN = 25.0
 """Verdicts over which residuals are averaged, with weights that fall off exponentially."""
 MOST_NIS = 100.0
-"""What a single residual counts at most, so that a verdict is free again a hundred samples after the worst."""
+"""The most that a single residual counts, so that a verdict is free again a hundred samples after the worst."""
 CHANCE = 1e-6
-"""Chance by which the limit of the average is set; that of weights that fall off is over it in 6e-6 of verdicts."""
+"""Chance that sets the limit of the average; an average with decaying weights is over it in 6e-6 of verdicts."""
 
 
 class Factors(Record):
@@ -51,19 +51,19 @@ class Turns(Record):
 class Score(Block):
     r"""Scores a bank: share of right samples, delay of each step, exits from the truth.
 
-    The delay is the number of samples from the change to the first of 20 right verdicts in a row; a false switch
-    is an exit from the truth after that; the share counts every sample, transitions included. The truth is the
-    hypothesis whose factors are those of the plant at this moment, -1 when there is none, as while a fault is there
-    that no factor can say; then there is nothing to find, and no delay. The factors count from a device without any
-    fault in the environment that is set: at another temperature, in a package without air, or old from the start, it
-    is healthy, while a leak and ageing within the run are faults. The models of a bank stay those of a new device at
-    300 K and 1 atm, so that it may well be wrong elsewhere. A bank whose probabilities are no numbers has no winner,
-    and is not right.
+    The delay is the number of samples from the change to the first of 20 right verdicts in a row; a false switch is an
+    exit from the truth after that; the share counts every sample, transitions included. The truth is the hypothesis
+    with the present factors of the plant, -1 when there is none, for example during a fault that no factor can
+    describe; then there is nothing to find, and no delay. The factors count from a device without any fault in the
+    environment that is set: at another temperature, in a package without air, or old from the start, it is healthy,
+    while a leak and ageing within the run are faults. The models of a bank remain models of a new device at 300 K and 1
+    atm, so that it may well be wrong elsewhere. A bank whose probabilities are no numbers has no winner, and is not
+    right.
 
-    A bank divides its belief among the hypotheses it has, and so it names one even if none is true. Its residuals tell:
-    those of a true hypothesis are as large as its filter expects. Verdicts are unexplained while the normalised
-    residuals squared are too large for chance on average, for every hypothesis; an average with weights
-    :math:`(1-1/25)^k` of white residuals is as good as one of :math:`2\cdot25-1` samples.
+    A bank divides its belief among the hypotheses it has, and so it names one even if none is true. Its residuals
+    decide: the residuals of a true hypothesis are as large as its filter expects. Verdicts are unexplained while the
+    normalised residuals squared are too large for chance on average, for every hypothesis; an average with weights
+    :math:`(1-1/25)^k` of white residuals is as good as an average of :math:`2\cdot25-1` samples.
     """
 
     title = "Score"
@@ -151,13 +151,13 @@ class Score(Block):
 
 
 def take_turns(p: Turns, n: int, context: Context) -> None:
-    """Pack what a score of so many hypotheses has whatever they say."""
+    """Pack the common fields of a score with this number of hypotheses."""
     samples = 2.0 * SPAN - 1.0
     p.count, p.every, p.limit = n, context.every, chi_square(samples, CHANCE) / samples
 
 
 def nothing_counted(n: int) -> Score.State:
-    """Return the state of a score of so many hypotheses that has counted nothing."""
+    """Return the state of an empty score with this number of hypotheses."""
     s = Score.State.zeros(n**2)
     s.truth = -2.0
     s.average[:] = 1.0
@@ -166,7 +166,7 @@ def nothing_counted(n: int) -> Score.State:
 
 @inlined
 def holds(h: Factors, x: Score.Ports) -> bool:
-    """Say whether the factors of a hypothesis are those of the plant at this moment."""
+    """Return whether the factors of a hypothesis are the present factors of the plant."""
     stiffness = x.set_stiffness * h.stiffness
     damping = x.set_damping * h.damping
     return (
@@ -191,7 +191,7 @@ def count(p: Turns, s: Score.State, x: Score.Ports, n: int, truth: int) -> None:
         s.run = 0.0
         s.found = 0.0
         s.was_right = 0.0
-        if truth >= 0:  # what no hypothesis names is never found
+        if truth >= 0:  # a truth without a hypothesis is never found
             s.steps += 1.0
             if s.steps <= STEPS:
                 s.delays[int(s.steps) - 1] = -1.0
@@ -244,7 +244,7 @@ class FalseSwitch(BaseModel):
 
 
 class Scores(BaseModel):
-    """What has been scored so far."""
+    """The score so far."""
 
     names: list[str]
     samples: int
@@ -277,7 +277,7 @@ def read(s: Score.State, names: list[str], winner: int, unexplained: bool) -> Sc
         last_false_switches=[FalseSwitch(tick=int(tick), samples=int(samples)) for tick, samples in exits],
         delays=[None if value < 0 else int(value) for value in delays],
         since_tick=int(s.since),
-        nis=float(s.nis_sum / s.nis_count) if s.nis_sum else None,  # 0 from first to last where the bank says none
+        nis=float(s.nis_sum / s.nis_count) if s.nis_sum else None,  # 0 from first to last where the bank has none
         least_nis=min(s.average[:n].tolist()),
         unexplained=unexplained,
         confusion=s.confusion.reshape(n, n).astype(int).tolist(),

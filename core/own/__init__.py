@@ -1,1 +1,1 @@
-"""Units of one's own: text in the notation of the library, checked node by node and never executed as Python."""
+"""User units: text in the notation of the library, checked node by node and never executed as Python."""

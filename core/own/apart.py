@@ -1,4 +1,4 @@
-"""Compiling units of one's own: elsewhere first, so that a step that is slow to compile keeps nobody waiting."""
+"""Compiling user units: first in another process, so that a slow compilation blocks nothing."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def compile_by(compiler: Compiler | None) -> None:
 
 
 def compiled_apart(block: type[Block]) -> type[Block]:
-    """Return a block whose code is kept already if it is a unit of one's own.
+    """Return a block whose code is already in the cache if it is a user unit.
 
     Raises
     ------

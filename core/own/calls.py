@@ -86,7 +86,7 @@ class Calls(Expressions):
             kind, made = self.value(argument.value)
             if isinstance(kind, Part) and self.counts(kind.record):
                 return Count(), called("int", ast.Attribute(made, "count", ast.Load()))
-        return refuse(node, "int(...) stands in an index, or is int(p.count) of a bank")
+        return refuse(node, "int(...) is allowed in an index only, or as int(p.count) of a bank")
 
     def _taken(self, node: ast.expr, taken: Any) -> ast.expr:
         """Check an argument of a kernel of the library."""

@@ -1,4 +1,4 @@
-"""What a unit declares: its imports, constants, functions and classes, read from the syntax tree."""
+"""The declarations of a unit: its imports, constants, functions and classes, read from the syntax tree."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ from core.ports import BlockPorts, Port
 from core.record import Record, Records
 
 MOST_NUMBERS = 4096
-"""Numbers of a record: what a step may remember."""
+"""Numbers of a record: the most memory of a step."""
 MOST_FIELDS = 200
 LONGEST_TEXT = 4000
 TABLES = (Record, BlockParams, BlockPorts)
 INNER = {"Params": BlockParams, "Packed": Record, "State": Record, "Ports": BlockPorts}
-"""Tables within the class of a unit, and what each is on where the base of the unit has none."""
+"""Tables within the class of a unit, and their bases where the base of the unit has none."""
 
 
 class Declaration:
-    """What a text declares, with everything but the methods worked out.
+    """The declarations of a text, with everything but the methods worked out.
 
     Attributes
     ----------
     names : dict
-        What names mean: of the library, constants, functions (as trees) and classes.
+        Meanings of names: of the library, constants, functions (as trees) and classes.
     node : ast.ClassDef
         The class of the unit.
     base : type of Block
@@ -64,7 +64,10 @@ class Declaration:
             self._import(node)
         elif isinstance(node, ast.Import):
             if [(alias.name, alias.asname) for alias in node.names] != [("math", None)]:
-                refuse(node, "only math is imported whole; docs/own-units.md lists what can be imported from elsewhere")
+                refuse(
+                    node,
+                    "only math is imported whole; docs/own-units.md lists the other permitted imports",
+                )
             self.names["math"] = Mathematics()
         elif isinstance(node, ast.Assign) and len(node.targets) == 1:
             self._constant(node.targets[0], node.value)
@@ -111,7 +114,7 @@ class Declaration:
             self.names[one.id] = own
 
     def _class(self, node: ast.ClassDef) -> None:
-        """Read a class: that of the unit, or a table it uses."""
+        """Read a class: the unit's class, or a table it uses."""
         self._new(node, node.name)
         bases = self._bases(node)
         if any(issubclass(base, Block) for base in bases):
@@ -157,7 +160,7 @@ class Declaration:
         self.names.update(outer)
 
     def _check_inner(self, node: ast.ClassDef, made: type[Any]) -> None:
-        """Refuse a table that the framework would not know, or that lacks what the base of the unit relies on."""
+        """Refuse a table that is unknown to the framework, or that lacks a field that the base of the unit needs."""
         if node.name not in INNER:
             refuse(node, f"a class within a unit is one of {', '.join(INNER)}")
         usual: type[Any] = getattr(self.base, node.name, INNER[node.name])
@@ -227,7 +230,7 @@ class Declaration:
         return made  # type: ignore[no-any-return]
 
     def _type(self, node: ast.expr) -> Any:
-        """Return what an annotation, or the name of a base, means."""
+        """Return the meaning of an annotation, or of the name of a base."""
         if isinstance(node, ast.Constant) and node.value is None:
             return None
         if isinstance(node, ast.Name) and node.id in self.names:

@@ -1,4 +1,4 @@
-"""Works out what a unit declares and packs: numbers, texts, records, in a bounded number of operations.
+"""Works out the declarations and packed numbers of a unit: numbers, texts, records, in a bounded number of operations.
 
 It walks the syntax tree. Every kind of node, every attribute and every function is one of a list; nothing leads from a
 value to anything else.
@@ -41,7 +41,7 @@ MOST_OPERATIONS = 100_000
 MOST_ITEMS = 10_000
 DEEPEST_CALLS = 10
 COST_OF_CALL = 30
-"""Operations of a call of a library function; the items it is given and makes count beside."""
+"""Operations of a call of a library function; its arguments and results count in addition."""
 COST_OF_BASE = 1_000
 """Operations that the ``pack`` or ``state`` of a base counts as."""
 
@@ -52,7 +52,7 @@ class Evaluator:
     Parameters
     ----------
     names : dict
-        What names mean outside functions.
+        Meanings of names outside functions.
     """
 
     def __init__(self, names: dict[str, Any]) -> None:
@@ -64,14 +64,14 @@ class Evaluator:
         return self.value(node, {})
 
     def call(self, function: ast.FunctionDef, arguments: Sequence[Any], block: type[Block]) -> Any:
-        """Run a method of the unit and return what it returns."""
+        """Run a method of the unit and return its result."""
         self._left = MOST_OPERATIONS
         local = {argument.arg: value for argument, value in zip(function.args.args, arguments, strict=True)}
         _, result = self._run(function.body, {**local, "super": lambda: Above(block)})
         return result
 
     def _run(self, body: Sequence[ast.stmt], local: dict[str, Any]) -> tuple[bool, Any]:
-        """Run statements; say whether they returned, and what."""
+        """Run statements; return whether they returned, and their value."""
         for node in body:
             self._count(node)
             if isinstance(node, ast.Return):

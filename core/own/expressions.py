@@ -1,8 +1,8 @@
 """Expressions of a step: each is checked, and written anew in the plainest way.
 
-Numbers are float64 throughout; a whole number that meets one becomes one. Whole numbers are constants and counters of
-loops, and stand in an index as long as their bounds prove that it exists. An index computed from data is ``int(...)``:
-it is checked while the step runs, and where there is no such item the step reads NaN and writes nothing.
+Numbers are float64 throughout; a whole number combined with a float becomes a float. Whole numbers are constants and
+counters of loops, and are allowed in an index as long as their bounds prove that it exists. An index computed from data
+is ``int(...)``: it is checked while the step runs, and for a missing item the step reads NaN and writes nothing.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ class Expressions:
         return made if isinstance(kind, Truth) else refuse(node, "is no condition; compare it, such as with != 0.0")
 
     def value(self, node: ast.expr) -> Checked:
-        """Check an expression; return its kind and what it is written as."""
+        """Check an expression; return its kind and its new form."""
         self.count(node)
         checks: dict[type[ast.expr], Callable[[Any], Checked]] = {
             ast.Constant: self._constant,
@@ -166,7 +166,7 @@ class Expressions:
         return kind, ast.Attribute(owner, node.attr, ast.Load())
 
     def item(self, node: ast.Subscript) -> tuple[Kind, Numbers | Parts, ast.expr, ast.expr, bool]:
-        """Return what an index leads to, the vector, both written anew, and whether the item is proved to exist."""
+        """Return the item of an index, the vector, both written anew, and whether the item is proved to exist."""
         kind, owner = self.value(node.value)
         if not isinstance(kind, Numbers | Parts):
             refuse(node, "is no vector")

@@ -1,4 +1,4 @@
-"""What numbers from data could break: an index beyond a vector, the whole part of a number too large to have one."""
+"""Errors through numbers from data: an index beyond a vector, the whole part of a number too large to have one."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def put(vector: Vector, count: float, index: float, value: float) -> None:
 
 @inlined
 def signed(size: float, sign: float) -> float:
-    """Return a size with a sign; NaN for that of NaN, which machines give different signs."""
+    """Return a size with a sign; NaN for a NaN sign, which differs between machines."""
     return math.copysign(size, sign) if sign == sign else math.nan
 
 

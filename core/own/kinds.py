@@ -19,17 +19,17 @@ class Number:
 
 @dataclass(frozen=True)
 class Truth:
-    """What a condition is."""
+    """The kind of a condition."""
 
 
 @dataclass(frozen=True)
 class Whole:
-    """A whole number that is a constant, or counts a loop; an index may be made of it.
+    """A whole number that is a constant, or counts a loop; it may be used in an index.
 
     Parameters
     ----------
     low, high : int
-        It lies between them, both included.
+        A whole number between them, both included.
     counts : bool
         Whether it is below the number of hypotheses of the bank.
     """
@@ -86,14 +86,14 @@ class Signals:
 
 @dataclass(frozen=True)
 class Several:
-    """What a function returns when it returns several numbers."""
+    """The kind of a function that returns several numbers."""
 
     count: int
 
 
 @dataclass(frozen=True)
 class Nothing:
-    """What a function returns when it returns nothing."""
+    """The kind of a function that returns nothing."""
 
 
 Kind = Number | Truth | Whole | Count | Numbers | Part | Parts | Signals | Several | Nothing
@@ -131,7 +131,7 @@ def of_port(ports: type[BlockPorts], name: str) -> tuple[Kind, bool] | None:
 
 @cache
 def signature(function: Callable[..., Any]) -> tuple[tuple[Kind | type[Record], ...], Kind]:
-    """Return what a kernel of the library takes and returns, by its annotations.
+    """Return the arguments and the result of a kernel of the library, by its annotations.
 
     Raises
     ------

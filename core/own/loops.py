@@ -35,7 +35,7 @@ class Loops(Calls):
         raise NotImplementedError
 
     def check_name(self, node: ast.AST, name: str) -> None:
-        """Refuse a name that cannot be that of a value."""
+        """Refuse a name that no value can have."""
         if name.startswith("_") or name in self.names:
             refuse(node, f"{name} is a name of something else" if name in self.names else "begins with _")
 
@@ -64,7 +64,7 @@ class Loops(Calls):
         made.append(ast.For(ast.Name(name, ast.Store()), over, body or [ast.Pass()], []))
 
     def _range(self, node: ast.expr) -> tuple[Whole, int, ast.expr]:
-        """Return what a loop counts, how often it goes, and its range written anew."""
+        """Return the counter of a loop, the number of its turns, and its range written anew."""
         is_range = (
             isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and self.names.get(node.func.id) is range
         )

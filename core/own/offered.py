@@ -1,7 +1,7 @@
-"""What a unit of one's own may import: names of the library, each by name.
+"""Permitted imports of a user unit: names of the library, each by name.
 
-A unit never imports a module. A line ``from core.elementary import exp`` says which of the names below it means.
-Kernels among them take numbers, or records whose class they name; none reads an index from its data.
+A unit never imports a module. A line ``from core.elementary import exp`` names one of the names below. Kernels among
+them take numbers, or records whose class they name; none reads an index from its data.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ OFFERED: dict[str, tuple[str, ...]] = {
 }
 
 MATHEMATICS = {"sqrt": math.sqrt, "copysign": math.copysign, "isfinite": math.isfinite, "pi": math.pi, "inf": math.inf}
-"""What ``math`` offers: what a processor computes exactly by itself, and two numbers."""
+"""Names of ``math``: operations that a processor computes exactly, and two numbers."""
 
 PYTHON: dict[Any, tuple[int, int]] = {
     **dict.fromkeys((abs, bool, float, int, len, round, str, list, tuple), (1, 1)),

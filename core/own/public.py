@@ -1,4 +1,4 @@
-"""Signals that a unit of one's own may be wired to: those that a device in a laboratory would show, none of the truth.
+"""Signals for the inputs of user units: signals that exist in a laboratory, none of the truth.
 
 A sensor senses the plant and a fault changes it, so they alone see it; neither may drive or judge.
 """
@@ -84,10 +84,10 @@ def check_ports(node: ast.AST, family: str, ports: type[BlockPorts]) -> None:
 
 
 def _shape(port: Port) -> tuple[object, ...]:
-    """Return what others rely on of a port: whether it is read or written, and which numbers it has."""
+    """Return the properties of a port that others rely on: whether it is read or written, and its numbers."""
     return port.kind, port.vector, port.labels, port.each
 
 
 def slot_of(ports: type[BlockPorts]) -> str:
-    """Return the slot in which a controller with these ports stands; "" of one displacement."""
+    """Return the slot of a controller with these ports; "" for one displacement."""
     return next((slot for slot, base in SLOTS.items() if issubclass(ports, base)), "")

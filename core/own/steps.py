@@ -42,7 +42,7 @@ class Steps(Loops):
     Parameters
     ----------
     names : dict
-        What names mean outside functions.
+        Meanings of names outside functions.
     counted : type of Record, optional
         The record into which the framework writes the number of hypotheses.
     """
@@ -64,7 +64,7 @@ class Steps(Loops):
             refuse(node, f"takes more than {MOST_OPERATIONS} operations a sample")
 
     def function(self, node: ast.FunctionDef, kinds: Sequence[Kind], name: str) -> Kind:
-        """Check a function with arguments of these kinds, write it anew under a name, return what it returns."""
+        """Check a function with arguments of these kinds, write it anew under a name, return its kind."""
         arguments = node.args
         if arguments.vararg or arguments.kwarg or arguments.kwonlyargs or arguments.posonlyargs or arguments.defaults:
             refuse(node, "takes arguments by their place, without defaults")

@@ -1,4 +1,4 @@
-"""The text of a unit of one's own: small enough to be read, and read as a syntax tree."""
+"""The text of a user unit: small enough to be read, and read as a syntax tree."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ INVISIBLE = {chr(code) for code in (*range(0x200B, 0x2010), *range(0x202A, 0x202
 
 
 class UnitError(InputError):
-    """What is wrong with the text of a unit, and where.
+    """An error in the text of a unit, and its place.
 
     Parameters
     ----------
     message : str
-        The mistake, and what is allowed.
+        The mistake, and the allowed form.
     line, column : int
         Where it is, both from 1.
     """

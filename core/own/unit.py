@@ -1,4 +1,4 @@
-"""A unit of one's own: its text, checked, as a block like any other."""
+"""A user unit: its text, checked, as a block like any other."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ BASES: tuple[tuple[type[Block], str], ...] = (
     (Judge, "diagnose"),
     (Estimator, "identify"),
 )
-"""What a unit is, by its base; one on ``Block`` with the ports of a controller is a controller."""
+"""The family of a unit, by its base; a unit on ``Block`` with the ports of a controller is a controller."""
 
 ATTRIBUTES = {
     **{"title": str, "equations": tuple, "structure": tuple, "weaknesses": tuple},
@@ -64,7 +64,7 @@ RETURNED: dict[str, tuple[type[Any] | tuple[type[Any], ...], str]] = {
     **dict.fromkeys(("noise_um", "ambiguity_um", "tone_hz"), ((int, float), "a number")),
 }
 RUN = {"__builtins__": {"range": range, "float": float, "int": int, "abs": abs, "min": min, "max": max}}
-"""All that the code of a step can name beside what it uses of the library."""
+"""All names that the code of a step has besides the library names it uses."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class Unit:
     Attributes
     ----------
     family, name, source : str
-        Where it belongs, what it is called, its text.
+        Its family, its name, its text.
     block : type of Block
         The unit as the library would have it.
     operations : int
@@ -89,7 +89,7 @@ class Unit:
 
     @property
     def hash(self) -> str:
-        """What its text is known by."""
+        """Identifier of its text."""
         return hashlib.sha256(self.source.encode()).hexdigest()
 
 
@@ -145,7 +145,7 @@ def unit(name: str, source: str) -> Unit:
 
 
 def _family(declared: Declaration) -> str:
-    """Return what a unit is."""
+    """Return the family of a unit."""
     for base, family in BASES:
         if issubclass(declared.base, base):
             return family
@@ -232,14 +232,14 @@ def _packed(cls: type[Block], params: BlockParams, context: Context) -> FloatArr
     except (TypeError, ValueError, ArithmeticError) as error:
         raise error if isinstance(error, InputError) else InputError(str(error)) from None
     if issubclass(cls, Judge):
-        cls.Packed(numbers).count = cast(BankParams, params).count  # loops go so far: it is not the unit's to say
+        cls.Packed(numbers).count = cast(BankParams, params).count  # the number of loops, which the unit must not set
     if np.isnan(numbers).any():
         raise InputError("pack leaves a number that is none")
     return numbers
 
 
 def _file(name: str, mark: str) -> str:
-    """Return what the source of a step is called."""
+    """Return the file name for the source of a step."""
     return f"<unit {name} {mark}>"
 
 

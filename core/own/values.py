@@ -1,4 +1,4 @@
-"""Values that declarations are made of: which there are, and what can be done with them."""
+"""Values in declarations: their types, and the operations on them."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def as_float(node: ast.AST, value: Any) -> float:
 
 
 def as_read(target: ast.expr) -> ast.expr:
-    """Return what is written to as what is read."""
+    """Return a written target as a read expression."""
     if isinstance(target, ast.Name):
         return ast.copy_location(ast.Name(target.id, ast.Load()), target)
     return target

@@ -1,8 +1,8 @@
 r"""Co-energy of one comb with fingers off centre, and its derivatives.
 
-A rotor finger stands between two stator fingers at the gap :math:`g`; moved sideways by :math:`\eta` it has
-:math:`1/(g-\eta)+1/(g+\eta)=2g/(g^2-\eta^2)` of capacitance per length and :math:`\varepsilon_0t`. A comb overlaps
-from :math:`X_s` (stator tip) to :math:`X_r` (rotor tip), and with a rotation :math:`\eta` changes along it:
+A rotor finger is between two stator fingers at the gap :math:`g`; moved sideways by :math:`\eta` it has
+:math:`1/(g-\eta)+1/(g+\eta)=2g/(g^2-\eta^2)` of capacitance per length and :math:`\varepsilon_0t`. A comb overlaps from
+:math:`X_s` (stator tip) to :math:`X_r` (rotor tip), and with a rotation :math:`\eta` changes along it:
 
 .. math:: C=n\varepsilon_0t\int_{X_s}^{X_r+x}\frac{2g\,d\xi}{g^2-\eta(\xi)^2},\quad
     \eta=y+\theta\xi,\quad W=\tfrac12V^2C
@@ -123,7 +123,7 @@ def comb(
     square, limit, stator, half, y, theta : float
         As in ``sums``; ``stator`` is the distance of its tip.
     side : float
-        +1 for the comb at +x, -1 for the one at -x.
+        +1 for the comb at +x, -1 for the comb at -x.
     """
     middle = side * (stator + half)
     whole, slope, first, r = sums(square, limit, middle, half, y, theta)

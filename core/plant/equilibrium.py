@@ -117,7 +117,7 @@ def rest_at(force: Force, start: FloatArray, right: float, left: float) -> Float
 def voltage_at(
     force: Force, x: float, start: FloatArray, stators: tuple[float, float]
 ) -> tuple[FloatArray, float] | None:
-    """Return the place and the voltage on the shuttle that hold it at rest at a travel, by Newton's method."""
+    """Return the place and the voltage on the shuttle for an equilibrium at a travel, by Newton's method."""
     q, v = start[:-1].copy(), float(start[-1])
     q[0] = x
     unknowns = np.append(q[1:], v)

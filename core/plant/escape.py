@@ -24,13 +24,13 @@ def boundary(
 ) -> Boundary | None:
     r"""Return the boundary of the motions that cannot pull in, under a held voltage.
 
-    Along x the other coordinates are taken at rest. With the energy :math:`U(x)=-\int F_x\,dx` of that path and its
+    Along x the other coordinates are in equilibrium. With the energy :math:`U(x)=-\int F_x\,dx` of that path and its
     lower barrier :math:`U_b`, with or without damping, a motion with
 
     .. math:: \tfrac12mv^2+U(x)<U_b
 
-    cannot leave. The barrier is where the force turns outwards, or where the other coordinates lose their rest.
-    Outside the boundary the shuttle may leave, and without damping it does if that barrier lies ahead of it.
+    cannot leave. The barrier is the place where the force turns outwards, or where the other coordinates lose their
+    equilibrium. Outside the boundary the shuttle may leave, and without damping it does if that barrier is ahead of it.
 
     Parameters
     ----------

@@ -39,9 +39,9 @@ class Gyroscope(TwoAxisPlant):
 
     .. math:: M\ddot q+(D+2m_c\Omega S)\dot q+Kq=F,\quad q=(x,y)
 
-    Exact to rounding for a held force and for one that is a parabola over a sample, with the rate held. The forces of
-    :math:`\dot\Omega` and :math:`\Omega^2` are left out, as in the text: beside the elastic force they are smaller by
-    :math:`\dot\Omega/\omega^2` and :math:`\Omega^2/\omega^2`, the latter 9e-9 for 100 deg/s at 3 kHz.
+    Exact to rounding for a held force and for a force that is a parabola over a sample, with the rate held. The forces
+    of :math:`\dot\Omega` and :math:`\Omega^2` are left out, as in the text: relative to the elastic force they are
+    smaller by :math:`\dot\Omega/\omega^2` and :math:`\Omega^2/\omega^2`, the latter 9e-9 for 100 deg/s at 3 kHz.
     """
 
     title = "Gyroscope"

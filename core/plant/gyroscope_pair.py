@@ -23,11 +23,11 @@ USUAL = {"id": "gyro-2-2"}
 
 
 class GyroscopePair(TwoAxisPlant):
-    r"""Two gyroscopes on one frame, which turns and shakes both: that of the bench, and a partner.
+    r"""Two gyroscopes on one frame, which turns and shakes both: the gyroscope of the bench, and a partner.
 
     Each obeys :math:`M\ddot q+(D+2m_c\Omega S)\dot q+Kq=F` for itself, and only forces can couple them (6.1.4, 6.1.5).
-    The partner starts at rest. Faults are those of the first; the environment is that of both, and takes the partner
-    for as much damped by the gas as the first.
+    The partner starts without motion. Faults belong to the first; the environment is common, and the gas damps the
+    partner as much as the first.
     """
 
     title = "Pair of gyroscopes"
@@ -75,7 +75,7 @@ class GyroscopePair(TwoAxisPlant):
         partner: Motion
 
     class Ports(TwoAxisPorts):
-        """In addition the forces on the partner, what the environment makes of it, and its motion."""
+        """In addition the forces on the partner, the effects of the environment on it, and its motion."""
 
         partner_force_x: float = reads("drive.partner_x.force", "uN", "force on the partner along x")
         partner_middle_x: float = reads("drive.partner_x.middle", "uN", "the same half a sample later")

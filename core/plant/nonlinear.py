@@ -43,8 +43,8 @@ class Nonlinear(Shuttle):
     .. math:: m\ddot x=F_e-\beta\dot x-kx-k_3x^3-F_c\tanh(\dot x/v_s)-F_{stop}(x,\dot x)
 
     Classical Runge-Kutta with a fixed number of substeps, in parts where the shuttle meets a stop or friction turns:
-    both may be faster than the sample. The plant's own friction is smoothed below the slip velocity; that of a fault
-    holds the shuttle at rest.
+    both may be faster than the sample. The plant's own friction is smoothed below the slip velocity; the friction of a
+    fault holds the shuttle without slip.
     """
 
     title = "Nonlinear plant"

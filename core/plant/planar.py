@@ -26,9 +26,9 @@ class Planar(Plane):
         m\ddot y=F_{e,y}-\partial U/\partial y-c_y\dot y,\quad
         J\ddot\theta=M_e-\partial U/\partial\theta-c_\theta\dot\theta
 
-    Electrostatic forces are the derivatives of the co-energy along the finger overlap, elastic ones those of an energy
-    fitted to a frame of beams. Classical Runge-Kutta, finer while fingers are far off centre. Fingers that touch
-    short their comb, and stay short until the board is reset.
+    Electrostatic forces are the derivatives of the co-energy along the finger overlap, elastic forces the derivatives
+    of an energy fitted to a frame of beams. Classical Runge-Kutta, finer while fingers are far off centre. Fingers that
+    touch short their comb, and stay short until the board is reset.
     """
 
     title = "Planar plant"
@@ -71,7 +71,7 @@ class Planar(Plane):
     )
 
     class Params(PlaneParams):
-        """Mechanics across the drive; what is not given follows from the drawing of the device."""
+        """Mechanics across the drive; missing values follow from the drawing of the device."""
 
     @staticmethod
     def step(p: Plane.Packed, s: Plane.State, x: Plane.Ports) -> None:

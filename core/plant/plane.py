@@ -19,28 +19,28 @@ from core.units import UN_PER_N, thermal_force_un
 
 
 class PlaneParams(ContactParams):
-    """Mechanics across the drive; what is not given follows from the drawing of the device.
+    """Mechanics across the drive; missing values follow from the drawing of the device.
 
-    A device without a drawing is given that of LCR-350 with its own comb.
+    A device without a drawing gets the drawing of LCR-350 with its own comb.
     """
 
     stator_tip_um: float | None = parameter(
         None, "distance of the stator's finger tips from the centre; from the drawing unless given", "um", gt=0
     )
     overlap_um: float | None = parameter(
-        None, "finger overlap at rest; from the drawing unless given", "um", gt=20.0, le=1000
+        None, "undeflected finger overlap; from the drawing unless given", "um", gt=20.0, le=1000
     )
     inertia_kg_m2: float | None = parameter(
         None, "rotary inertia; from the drawing unless given", "kg m^2", gt=1e-21, le=1e-9
     )
     lateral_stiffness_n_m: float | None = parameter(
-        None, "stiffness along y at rest; from the drawing unless given", "N/m", gt=0, le=1e4
+        None, "stiffness along y without travel; from the drawing unless given", "N/m", gt=0, le=1e4
     )
     lateral_reach_um: float | None = parameter(
         None, "travel that halves the stiffness along y; from the drawing unless given", "um", gt=0.1, le=1e9
     )
     rotation_stiffness_nm: float | None = parameter(
-        None, "stiffness against rotation at rest; from the drawing unless given", "N m/rad", gt=0, le=1e-4
+        None, "stiffness against rotation without travel; from the drawing unless given", "N m/rad", gt=0, le=1e-4
     )
     rotation_reach_um: float | None = parameter(
         None, "travel that halves the stiffness against rotation; from the drawing unless given", "um", gt=0.1, le=1e9

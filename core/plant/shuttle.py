@@ -16,7 +16,7 @@ from core.units import UN_PER_N, thermal_force_un
 ELASTICITY = reads("effects.elasticity_scale", "1", "stiffness of all beams alike over nominal")
 """Input of a plant with more elasticity than that along x."""
 RIGHT, LEFT = 1, 2
-"""Bits of ``short``: the comb at +x, whose stator carries the first voltage, and the one at -x."""
+"""Bits of ``short``: the comb at +x, whose stator carries the first voltage, and the comb at -x."""
 
 
 class PackedMotion(Record):
@@ -63,7 +63,7 @@ class Shuttle(Block):
         thermal_key: float
 
     class Ports(BlockPorts):
-        """Inputs of every plant, followed by those of one kind of plant; then the motion and state it writes."""
+        """Inputs of every plant, then the inputs of one kind of plant; then the motion and state it writes."""
 
         voltage: float = reads("drive.voltage", "V", "applied voltage")
         middle: float = reads("drive.middle", "V", "applied voltage half a sample later")
@@ -72,7 +72,7 @@ class Shuttle(Block):
         stiffness_scale: float = reads("effects.stiffness_scale", "1", "stiffness over nominal")
         damping_scale: float = reads("effects.damping_scale", "1", "damping over nominal")
         drive_gain: float = reads("effects.drive_gain", "1", "voltage at the comb over voltage applied")
-        drive_offset: float = reads("effects.drive_offset", "V", "voltage at the comb that nobody applied")
+        drive_offset: float = reads("effects.drive_offset", "V", "stray voltage at the comb")
         acceleration: float = reads("effects.acceleration", "um/ms^2", "acceleration of the frame along x")
         friction: float = reads("effects.friction", "uN", "Coulomb friction")
         shorted: float = reads("effects.short", "1", "combs shorted from outside")
@@ -165,7 +165,7 @@ def joined(first: float, second: float) -> float:
 
 @kernel
 def dry_friction(limit: float, velocity: float, net: float) -> float:
-    """Coulomb friction: against the motion; at rest against the net force, as far as it can."""
+    """Coulomb friction: against the motion; without motion against the net force, as far as it can."""
     if velocity != 0.0:
         return -limit if velocity > 0.0 else limit
     if abs(net) <= limit:

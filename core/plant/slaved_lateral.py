@@ -31,8 +31,8 @@ class SlavedLateral(TouchingShuttle):
 
     The text turns the shuttle about the point of adhesion as about a rigid pivot, and it loses stability at a third of
     the gap. Elasticity gives a hundredth of that rotation (see the planar plant); with the overlap shortened to 5 um
-    this plant folds where the text says, so that the text's controllers can be tried on it. With the whole overlap of
-    40 um the same kinematics would be unstable at rest beyond 4.1 V of bias.
+    this plant folds at the place given by the text, so that the text's controllers can be tried on it. With the whole
+    overlap of 40 um the same kinematics would be unstable without a drive beyond 4.1 V of bias.
     """
 
     title = "Slaved lateral plant (calibration)"

@@ -54,7 +54,7 @@ class TransferFunction(Shuttle):
 
     @classmethod
     def unsuited(cls, device: Oscillator, model: Oscillator) -> str:
-        """Refuse resonators: their force is that of a comb."""
+        """Refuse resonators: their force comes from a comb."""
         if device.time_unit_ms > 0.0:
             return ""
         return super().unsuited(device, model) or "this device is a resonator; choose linear"

@@ -75,7 +75,7 @@ def pack_body(b: Body, device: TwoAxis, context: Context, stream: str, *, therma
     r"""Pack a device.
 
     The held thermal force is raised by :math:`\frac{\omega h/2}{\sin\omega h/2}`, so that its density at the resonance
-    of each axis is that of white noise.
+    of each axis equals the density of white noise.
 
     Raises
     ------
@@ -111,7 +111,7 @@ def terms_for(share: float) -> int:
 
 
 def held_density(share: float) -> float:
-    r"""Return the spectrum of a held white force at :math:`\omega h` over that of white noise."""
+    r"""Return the spectrum of a held white force at :math:`\omega h` over the spectrum of white noise."""
     return sin(0.5 * share) / (0.5 * share)
 
 
@@ -131,7 +131,7 @@ def take(b: Body, m: Motion, mass_scale: float, stiffness_scale: float, damping_
 
 @kernel
 def push_x(m: Motion, start: float, middle: float, end: float, acceleration: float) -> None:
-    """Set the force along x: the parabola through three values, exactly constant if held, and that of the frame."""
+    """Set the force along x: the parabola through three values, constant if held, and the force of the frame."""
     to_middle, to_end = middle - start, end - start
     m.force_x = start - m.mass_x * acceleration
     m.rise_x, m.bend_x = 4.0 * to_middle - to_end, 2.0 * to_end - 4.0 * to_middle

@@ -17,7 +17,7 @@ from core.units import DEG_PER_RAD, RAD_MS_PER_DEG_S
 
 
 class TwoAxisPorts(BlockPorts):
-    """Forces along two axes, the rate, what faults and environment make of the device; its motion."""
+    """Forces along two axes, the rate, effects of faults and environment on the device; its motion."""
 
     force_x: float = reads("drive.x.force", "uN", "force along x")
     middle_x: float = reads("drive.x.middle", "uN", "force along x half a sample later")

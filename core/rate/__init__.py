@@ -1,1 +1,1 @@
-"""What turns the device: generators of angular rate."""
+"""Rotation of the device: generators of angular rate."""

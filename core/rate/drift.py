@@ -83,7 +83,7 @@ def pack_drift(p: PackedDrift, params: DriftParams, context: Context) -> None:
 
 
 def start_drift(s: Drift, context: Context) -> None:
-    """Begin the walk at 0 and the flicker anywhere: it has gone on for ever."""
+    """Begin the walk at 0 and the flicker anywhere: it has an infinite past."""
     stream = key(context.seed, "rate.flicker")
     for i in range(PROCESSES):
         s.flicker[i] = normal(stream, float(i))
@@ -91,7 +91,7 @@ def start_drift(s: Drift, context: Context) -> None:
 
 @kernel
 def drift_now(p: PackedDrift, s: Drift, tick: float) -> float:
-    """Return the noise of this sample in deg/s and go on to the next."""
+    """Return the noise of this sample in deg/s and advance to the next."""
     noise = s.walk
     if p.white > 0.0:
         noise += p.white * normal(p.white_key, floor(tick / p.held))

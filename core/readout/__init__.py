@@ -1,1 +1,1 @@
-"""Read-outs: what they conclude from the rate a controller estimates."""
+"""Read-outs: conclusions from the rate that a controller estimates."""

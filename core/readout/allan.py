@@ -42,7 +42,7 @@ def push(stage: Stage, value: float) -> None:
 
 @kernel
 def difference(stage: Stage, count: int) -> float:
-    """Return the mean of the last so many values less that of as many before."""
+    """Return the difference of the means of the last ``count`` values and of as many before."""
     place = int(stage.place)
     late = 0.0
     early = 0.0

@@ -20,7 +20,7 @@ class Constant(Waveform):
 
     @classmethod
     def lines(cls, params: Any) -> list[tuple[float, float]]:
-        """One line at rest."""
+        """One line at zero frequency."""
         return [(0.0, 1.0)]
 
     @staticmethod

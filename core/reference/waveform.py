@@ -19,7 +19,7 @@ class ReferenceParams(BlockParams):
     """Amplitude in volts, or in micrometres of static displacement of the nominal device."""
 
     amplitude_v: float | None = parameter(None, "amplitude", "V")
-    amplitude_um: float | None = parameter(None, "amplitude as displacement at rest, instead of volts", "um")
+    amplitude_um: float | None = parameter(None, "amplitude as static displacement, instead of volts", "um")
     offset_v: float = parameter(0.0, "constant added", "V")
 
     @model_validator(mode="after")
@@ -34,14 +34,15 @@ class ReferenceParams(BlockParams):
             return self.amplitude_v
         assert self.amplitude_um is not None  # _one_amplitude has checked it
         if context.device.static_gain == 0.0:
-            raise InputError("no voltage alone displaces this device at rest; give amplitude_v", "amplitude_um")
+            raise InputError("no constant voltage alone displaces this device; give amplitude_v", "amplitude_um")
         return self.amplitude_um / context.device.static_gain
 
 
 class Waveform(Block):
     """A reference; a subclass gives ``shape(p, t_ms)`` of unit amplitude.
 
-    The plant of a bench with axes may have one for a generator beside its rate; a controller makes a force of it.
+    The plant of a bench with axes may have a waveform as a generator in addition to its rate; a controller turns it
+    into a force.
     """
 
     axes = None

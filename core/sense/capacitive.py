@@ -61,11 +61,11 @@ class Capacitive(Sensor):
         """Combs and readout."""
 
         overlap_um: float | None = parameter(
-            None, "overlap of the fingers at rest; that of the device unless given", "um", gt=0, le=1000
+            None, "undeflected overlap of the fingers; the device's own unless given", "um", gt=0, le=1000
         )
         gap_um: float | None = parameter(
             None,
-            "gap between the fingers, with which the capacitance goes as one over it; that of the device unless given",
+            "gap between the fingers, the capacitance is proportional to one over it; the device's own unless given",
             "um",
             gt=0,
             le=100,

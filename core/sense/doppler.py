@@ -18,9 +18,9 @@ from core.sense.sensor import Sensor
 class Doppler(Sensor):
     r"""Apparent velocity of the surface under a beam normal to the chip (2.2.3), :math:`h'(x)\,\dot x`.
 
-    The beam measures motion along itself, so only the edges of the polysilicon show, as pulses of alternating sign.
-    The integral of the pulses is the height under the beam, the same function of displacement as the light through
-    the wafer: it has the same ambiguity of direction. Only the height of a pulse tells the speed.
+    The beam measures motion along itself, so only the edges of the polysilicon show, as pulses of alternating sign. The
+    integral of the pulses is the height under the beam, the same function of displacement as the light through the
+    wafer: it has the same ambiguity of direction. Only the height of a pulse depends on the speed.
 
     The integral leaks, since the noise of the velocity would make it wander.
     """

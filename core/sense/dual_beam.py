@@ -16,8 +16,8 @@ class DualBeam(Sensor):
     r"""Intensities of two beams 1 um apart (6.3), :math:`I_a(x)` and :math:`I_b(x)=I_a(x-s)`.
 
     At :math:`s=\Lambda/4` one is the cosine and the other the sine of the same phase. The pair therefore gives
-    displacement and direction, which a single beam cannot. The text proposes two beams without saying how far apart;
-    the panel "1-micron displacement" of figure 6.3.1.1 is read as the spacing.
+    displacement and direction, which a single beam cannot. The text proposes two beams without their distance; the
+    panel "1-micron displacement" of figure 6.3.1.1 is read as the spacing.
     """
 
     title = "Two beams"

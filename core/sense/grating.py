@@ -61,7 +61,11 @@ class GratingParams(SensorParams):
     opening: float = parameter(0.5, "open share of the pitch", gt=0.01, le=0.99, equation="2.2.2")
     spot_um: float = parameter(1.5, "1/e^2 radius of the beam on the grating (assumed)", "um", gt=0, le=100)
     grating_offset_um: float | None = parameter(
-        None, "position of an opening under the beam at rest; drawn by the seed unless given", "um", ge=-1000, le=1000
+        None,
+        "undeflected position of an opening under the beam; drawn by the seed unless given",
+        "um",
+        ge=-1000,
+        le=1000,
     )
 
     def shape(self) -> list[float]:

@@ -46,7 +46,7 @@ class Ideal(Block):
 
     @classmethod
     def ambiguity_um(cls, params: Any, context: Context) -> float:
-        """Return 0: the sensor tells all displacements apart."""
+        """Return 0: the sensor distinguishes all displacements."""
         return 0.0
 
     @classmethod

@@ -22,9 +22,10 @@ class Entry(Record):
 KEPT = 32
 """Number of entries: the noise of the speed falls with its power 3/2. A unit that runs more rarely finds no entry."""
 SPEED = 100.0
-"""Variance of the speed that a new filter assumes in motion, over that at rest: it covers the stroke at resonance."""
+"""Variance of the speed that a new filter assumes in motion, over its variance without motion: it covers the stroke at
+resonance."""
 
-PAST_PORT = reads("sensor.past", "mixed", "what was measured over the last samples, to begin from")
+PAST_PORT = reads("sensor.past", "mixed", "measurements of the last samples, to begin from")
 
 
 @kernel
@@ -42,7 +43,7 @@ def note(past: Records[Entry], x: AppliedPorts, measured: float, variance: float
 def catch_up(p: Tracked, s: Filter, drive: Gathered, past: Records[Entry], x: AppliedPorts) -> bool:
     """Run a new filter through the past at its own measurement interval; return whether there were any entries.
 
-    The voltage since the last entry used, that of this tick included, is left gathered.
+    The voltage since the last entry used, including this tick, stays gathered.
     """
     every = int(p.every)
     begun = False

@@ -27,7 +27,7 @@ from core.sense.through_wafer import ThroughWafer
 class PeakValley(Sensor):
     r"""Counts extremes of the light, half a pitch each, and interpolates between them (2.2.2, 2.2.3).
 
-    An extreme of full swing is a fringe and the motion goes on; any other extreme is a turn. A turn near a fringe
+    An extreme of full swing is a fringe and the motion continues; any other extreme is a turn. A turn near a fringe
     extreme looks like a fringe, so the unit loses the direction there: for a sine of 4 um in 4 of 10 positions of the
     grating, with the transient at its start in 9 of 10, at any noise. It is on the bench because the text describes its
     unit no further than this.
@@ -46,7 +46,7 @@ class PeakValley(Sensor):
     )
 
     class Params(SensorParams):
-        """What it counts, and what it calls an extreme."""
+        """The counted edges, and the threshold of an extreme."""
 
         light: Literal["through_wafer", "doppler"] = parameter("through_wafer", "which optical signal it reads")
         hysteresis: float = parameter(0.1, "share of the swing an extreme must be left by", ge=0.01, le=0.9)
@@ -62,7 +62,7 @@ class PeakValley(Sensor):
         follow: float
 
     class State(Record):
-        """Whether it has run and is sure, levels, last extreme, direction, farthest way so far, way at rest."""
+        """Whether it has run and is sure, levels, last extreme, direction, farthest way so far, initial way."""
 
         started: float
         sure: float
@@ -147,7 +147,7 @@ class PeakValley(Sensor):
             elif way < s.best - p.hysteresis:
                 s.behind += s.direction
                 if s.best > 1.0 - p.tolerance:
-                    # full swing: a fringe extreme, and the motion goes on
+                    # full swing: a fringe extreme, and the motion continues
                     reached = start + s.best * (end - start)
                     if even:
                         s.odd += p.follow * (reached - s.odd)
@@ -160,7 +160,7 @@ class PeakValley(Sensor):
             if math.isfinite(way):
                 way = min(max(way, 0.0), 1.0)
                 if s.sure != 0.0 and s.best > 1.0 - p.tolerance and way < s.best:
-                    # just past a fringe extreme: the motion is assumed to go on
+                    # just past a fringe extreme: the motion is assumed to continue
                     way = 2.0 - way
                 x.displacement = p.offset + half * (s.behind + s.direction * way)
         x.error = x.displacement - x.true

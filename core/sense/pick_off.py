@@ -16,8 +16,8 @@ from core.units import noise_of_sample, um_of_pm
 class PickOff(Sensor):
     r"""Displacement and velocity of one axis plus white noise, :math:`z_i=q\,[(x_i+v_i)/q]`; one for every axis.
 
-    A capacitive pick-off gives the displacement, and a second one under a constant bias a current that goes with the
-    velocity. Each has noise of its own, given as a density that is white up to half the sample rate.
+    A capacitive pick-off gives the displacement, and a second pick-off under a constant bias a current proportional to
+    the velocity. Each has noise of its own, given as a density that is white up to half the sample rate.
     """
 
     title = "Pick-off of an axis"

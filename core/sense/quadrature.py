@@ -60,7 +60,7 @@ class Quadrature(Sensor):
     )
 
     class Params(SensorParams):
-        """What it assumes of the pair."""
+        """Its assumptions about the pair."""
 
         spacing_um: float = parameter(1.0, "distance between the beams it assumes", "um", ge=0.01, le=100)
 

@@ -58,7 +58,7 @@ class QuadratureKalman(Tracker):
     )
 
     class Params(TrackerParams):
-        """What it assumes of the shuttle."""
+        """Its assumptions about the shuttle."""
 
     class Packed(Record):
         """Pitch and offset of the grating, variance of the phase as displacement, the model."""

@@ -10,7 +10,7 @@ from core.elementary import floor
 from core.kernel import kernel
 from core.ports import output, reads, tap
 
-LAST_PORT = reads("sensor.displacement", "um", "what was measured last: where to take over")
+LAST_PORT = reads("sensor.displacement", "um", "last measurement: where to take over")
 
 TRUE_PORT = reads("plant.displacement", "um", "true displacement, for the error only")
 RECOVERED_PORT = output("um", "recovered displacement")
@@ -21,7 +21,7 @@ P = TypeVar("P", bound=BlockParams)
 
 
 class SensorParams(BlockParams):
-    """What every sensor that may rest has."""
+    """The parameter of every sensor that may be idle."""
 
     always: bool = parameter(False, "run even while the sensor in use does not need it; it puts out 0 while it rests")
 
@@ -39,7 +39,7 @@ def slips(error: float, pitch: float) -> float:
 
 
 class Sensor(Block):
-    """A sensor, with the noise that its filters should assume and the displacements it cannot tell apart."""
+    """A sensor, with the noise that its filters should assume and the distance of displacements that look alike."""
 
     @classmethod
     def runs_always(cls, params: Any) -> bool:

@@ -76,7 +76,7 @@ class SingleBeam(Tracker):
     )
 
     class Params(TrackerParams):
-        """What it assumes of the shuttle, and how it treats hypotheses."""
+        """Its assumptions about the shuttle, and its treatment of hypotheses."""
 
         memory_ms: float = parameter(2.8, "memory of the likelihood", "ms", gt=0, le=1e4)
         reflection_odds: float = parameter(25.0, "logarithm of the odds against a reflection", ge=0, le=100)

@@ -53,7 +53,7 @@ class Filter(Record):
 
 
 class TrackerParams(SensorParams):
-    """What a tracker assumes of the shuttle."""
+    """Assumptions of a tracker about the shuttle."""
 
     stroke_um: float = parameter(4.0, "amplitude of the motion it is tuned for", "um", gt=0, le=100)
     stiffness: float = parameter(1.0, "stiffness it assumes over the nominal one", gt=0.01, le=100)
@@ -96,7 +96,7 @@ def model_of(params: TrackerParams, context: Context) -> Tracked:
 
 
 def put_at_rest(s: Filter, params: TrackerParams, context: Context) -> None:
-    """Put a filter at rest at zero, uncertain by 0.1 um, a tenth of the speed and the force of the model's errors."""
+    """Put a filter at zero, uncertain by 0.1 um, a tenth of the speed and the force of the model's errors."""
     square = context.device.stiffness / context.device.mass
     lacking = params.model_error * square * params.stroke_um
     speed = 0.1 * params.stroke_um * math.sqrt(square)
@@ -107,7 +107,7 @@ def put_at_rest(s: Filter, params: TrackerParams, context: Context) -> None:
 
 @kernel
 def between_updates(p: Tracked, drive: Gathered, x: AppliedPorts) -> bool:
-    """Gather the voltage of a tick; say whether a sensor that runs every N of them does not run at this one."""
+    """Gather the voltage of a tick; return whether a sensor that runs every N of them skips this one."""
     gather(p.tick, drive, x.applied, x.middle, x.end)
     return bool(p.every != 1.0 and x.tick % p.every != 0.0)
 

@@ -14,8 +14,8 @@ from core.sense.sensor import Sensor, SensorParams
 class Velocimeter(Sensor):
     r"""Velocity of the shuttle along x plus white noise, :math:`z_i=\dot x_i+v_i`.
 
-    The text measures displacement and velocity (C = I in equation 5.2.4) without saying how; a laser along the motion
-    would do it.
+    The text measures displacement and velocity (C = I in equation 5.2.4) without naming a method; a laser along the
+    motion would do it.
     """
 
     title = "In-plane velocimeter"

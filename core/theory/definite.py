@@ -39,7 +39,7 @@ class Definiteness:
 def definiteness(matrix: Sequence[Sequence[float]]) -> Definiteness:
     r"""Judge :math:`x^TAx` by the symmetric part :math:`\tfrac12(A+A^T)`.
 
-    The eigenvalues of A itself do not decide: those of [[1, 4], [0, 1]] are both 1, and x'Ax is -2 at [1, -1].
+    The eigenvalues of A itself do not decide: for [[1, 4], [0, 1]] both are 1, and x'Ax is -2 at [1, -1].
 
     Raises
     ------

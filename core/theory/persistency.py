@@ -58,7 +58,7 @@ def excitation(gram: FloatArray) -> Excitation:
 
 
 def _eigenvalues(matrix: FloatArray) -> FloatArray:
-    """Return the eigenvalues, smallest first; those that are rounding errors of the largest are set to 0."""
+    """Return the eigenvalues, smallest first; rounding errors relative to the largest are set to 0."""
     values = np.asarray(np.linalg.eigvalsh(matrix), dtype=np.float64)
     return np.where(np.abs(values) < ROUNDING * np.abs(values[-1]), 0.0, values)
 

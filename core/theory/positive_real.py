@@ -34,7 +34,7 @@ class Verdict:
     hurwitz, minimum_phase : bool
         Whether all poles, and all zeros, have a negative real part.
     relative_degree : int
-        Degree of the denominator less that of the numerator.
+        Degree of the denominator less the degree of the numerator.
     least_real : float
         Smallest real part on the imaginary axis; huge if a pole on the axis makes it so.
     at : float
@@ -54,7 +54,7 @@ class Verdict:
 
 
 def polynomial(coefficients: Sequence[float], field: str) -> FloatArray:
-    """Return coefficients without leading zeros, highest power first; refuse those that make no polynomial."""
+    """Return coefficients without leading zeros, highest power first; refuse coefficients that make no polynomial."""
     values = np.asarray(coefficients, dtype=np.float64)
     if values.ndim != 1 or not np.all(np.isfinite(values)) or not np.any(values):
         raise InputError("must be finite numbers, not all 0", field)
@@ -106,7 +106,8 @@ def positive_real(numerator: Sequence[float], denominator: Sequence[float]) -> V
         reasons.append("the real part is negative")
     elif lowest <= TINY:
         reasons.append("the real part touches zero")
-    # at infinity: degrees 0 and -1 need the highest power that the real part may have, degree 1 needs that of w^2 Re G
+    # at infinity: degrees 0 and -1 need the highest power that the real part may have, degree 1 needs the power of w^2
+    # Re G
     most = len(n) + len(d) - 2
     wanted = {0: most, 1: most - 1, -1: most - 1}.get(degree, 0) // 2
     leading = real[-1 - wanted] if wanted < len(real) else 0.0
@@ -161,7 +162,7 @@ def _least_real(real: FloatArray, square: FloatArray) -> tuple[float, float]:
     candidates = []
     for turn in _turns(turning):
         beside = float(np.polyval(bottom, turn)) <= TINY * float(np.sum(np.abs(bottom)))
-        x = turn * (1.0 + 1e-6) + 1e-9 if beside else turn  # beside a pole on the axis
+        x = turn * (1.0 + 1e-6) + 1e-9 if beside else turn  # next to a pole on the axis
         candidates.append((math.sqrt(x), float(np.polyval(top, x) / np.polyval(bottom, x))))
     far = 0.0
     if len(top) >= len(bottom):

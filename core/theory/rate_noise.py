@@ -24,11 +24,14 @@ LEAST_OCTAVES = 4
 OVERLAP = 8.0
 """Most means that begin within one averaging time."""
 PURITY = 0.04
-"""Error of a variance that is always granted: with ever so many averages, no rate is these three noises alone."""
+"""Error of a variance that is always allowed: even with infinitely many averages, no rate is exactly these three
+noises."""
 MARGIN = 2
-"""Octaves left out beyond those that the three noises do not explain: what a lag leaves falls by half with each."""
+"""Octaves left out beyond the octaves that the three noises do not explain: the rest of a lag falls by half with
+each."""
 SHARED = 2.0
-"""Variance of a term over that of independent octaves: all octaves look at one record (measured for a random walk)."""
+"""Variance of a term over the variance of independent octaves: all octaves share one record (measured for a random
+walk)."""
 STANDS_OUT = 3.0
 """Standard errors by which a term must exceed 0."""
 PASSES = 30
@@ -42,7 +45,7 @@ class Figure:
     Parameters
     ----------
     value : float, optional
-        None where the record does not tell.
+        None where the record does not show it.
     error : float
         Standard error of the value, in its unit; without a value, the most it may be.
     reason : str
@@ -81,15 +84,15 @@ def averaging_times(averages: FloatArray) -> FloatArray:
 def fit(taus_s: Octaves, deviations: Octaves, averages: Octaves) -> RateNoise:
     r"""Fit the three noises to an Allan deviation by octaves.
 
-    A variance over K averaging times has about K - 1 degrees of freedom; squares are weighed by what the fit itself
-    says of their scatter, pass by pass. Octaves with less than 9 averaging times are left out. So are the shortest ones
-    as long as the three noises do not explain them, and two more: there the loop that estimates the rate filters it.
-    White noise through a lag of 50 ms is told within 2 %.
+    A variance over K averaging times has about K - 1 degrees of freedom; squares are weighed by their scatter according
+    to the fit, pass by pass. Octaves with less than 9 averaging times are left out. The shortest octaves are also left
+    out as long as the three noises do not explain them, and two more: there the loop that estimates the rate filters
+    the noise. White noise through a lag of 50 ms is estimated within 2 %.
 
     Parameters
     ----------
     taus_s : sequence of float, shape (octaves,)
-        Averaging times, s, each twice the one before.
+        Averaging times, s, each twice the time before.
     deviations : sequence of float, shape (octaves,)
         Allan deviations, deg/s.
     averages : sequence of float, shape (octaves,)
@@ -98,7 +101,7 @@ def fit(taus_s: Octaves, deviations: Octaves, averages: Octaves) -> RateNoise:
     Returns
     -------
     RateNoise
-        Each figure, or the reason why the record does not tell it.
+        Each figure, or the reason why the record does not show it.
     """
     taus, variances = np.array(taus_s, dtype=float), np.square(np.array(deviations, dtype=float))
     times = averaging_times(np.array(averages, dtype=float))
@@ -155,13 +158,13 @@ def _least_squares(taus: FloatArray, variances: FloatArray, times: FloatArray) -
 
 
 def _figure(which: int, terms: FloatArray, covariance: FloatArray, needs: str) -> Figure:
-    """Return one figure; one that does not stand out has an upper limit, and needs another record."""
+    """Return one figure; a figure below the noise has an upper limit, and needs another record."""
     term, deviation, scale = float(terms[which]), math.sqrt(covariance[which, which]), SCALES[which]
     if term > STANDS_OUT * deviation:
         value = math.sqrt(term)
         return Figure(scale * value, scale * 0.5 * deviation / value)
     most = scale * math.sqrt(term + STANDS_OUT * deviation)
-    return Figure(None, most, f"does not stand out, at most {format_si(most, UNITS[which], 3)}; needs {needs}")
+    return Figure(None, most, f"is below the noise, at most {format_si(most, UNITS[which], 3)}; needs {needs}")
 
 
 def _seconds(duration_s: float) -> str:

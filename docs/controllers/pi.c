@@ -33,7 +33,7 @@ int main(int count, char **arguments)
         if (x.begins != 0.0)
             integral = 0.0;
         if (x.engaged == 0.0)
-            integral = x.applied - kp * e; /* in shadow: ready to go on from here */
+            integral = x.applied - kp * e; /* in shadow: ready to take over from here */
         else
             integral += ki * e * x.dt_ms;
         voltage = kp * e + integral;

@@ -20,7 +20,7 @@ while true
     if engaged
         integral = integral + ki * e * dt_ms;
     else
-        integral = applied - kp * e;  % in shadow: ready to go on from here
+        integral = applied - kp * e;  % in shadow: ready to take over from here
     end
     fwrite(stdout, kp * e + integral, "double", 0, "ieee-le");
     fflush(stdout);

@@ -20,7 +20,7 @@ while len(data := sys.stdin.buffer.read(SAMPLE.size)) == SAMPLE.size:
         integral = 0.0
     if engaged:
         integral += ki * e * dt_ms
-    else:  # in shadow: ready to go on from here
+    else:  # in shadow: ready to take over from here
         integral = applied - kp * e
     sys.stdout.buffer.write(VOLTAGE.pack(kp * e + integral))
     sys.stdout.buffer.flush()

@@ -32,7 +32,7 @@ class Lead(Block):
         ratio: float = parameter(0.2, "time of the lag over that of the lead", gt=1e-3, le=1)
 
     class Packed(Record):
-        """What is left of the lag after a sample, and the gains of error and lag."""
+        """Remainder of the lag after a sample, and the gains of error and lag."""
 
         decay: float
         of_error: float

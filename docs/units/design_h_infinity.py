@@ -12,7 +12,7 @@ from scipy.linalg import solve_continuous_are
 MASS_KG, DAMPING_NS_M, STIFFNESS_N_M = 2.209e-10, 7.09e-7, 0.0538
 """The device ``ch3``."""
 WEIGHT = 10.0
-"""Loop gain at rest before the design."""
+"""Loop gain at zero frequency before the design."""
 ABOVE_LEAST = 1.1
 """Bound of the norm over the least that any controller can have."""
 

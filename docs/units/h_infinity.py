@@ -18,7 +18,7 @@ class HInfinity(Block):
     r"""Loop shaping by normalised coprime factors (McFarlane and Glover 1992; Skogestad and Postlethwaite 2005, 9.4).
 
     The loop is stable for every device whose :math:`\nu`-gap from ``ch3``, both weighed by :math:`W=10`, is below
-    :math:`1/\gamma` (Vinnicombe 1993), as long as the samples are quick beside the loop.
+    :math:`1/\gamma` (Vinnicombe 1993), as long as the samples are quick relative to the loop.
     """
 
     title = "H-infinity loop shaping"
@@ -40,7 +40,7 @@ class HInfinity(Block):
         """Nothing is left to set."""
 
     class Packed(Record):
-        """The controller over a sample, and what of its state makes the voltage."""
+        """The controller over a sample, and the gains from its state to the voltage."""
 
         phi11: float
         phi12: float
@@ -70,7 +70,7 @@ class HInfinity(Block):
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
-        """Pack the controller over a sample: its poles are those of an oscillator, driven by the error."""
+        """Pack the controller over a sample: its poles are the poles of an oscillator, driven by the error."""
         p = cls.Packed.blank()
         device = context.device
         h = context.dt_ms * device.natural_frequency

@@ -38,7 +38,7 @@ class NeuralNet(Block):
         scale_um: float = parameter(1.0, "error that saturates the law", "um", gt=1e-6, le=1e3)
 
     class Packed(Record):
-        """Scales of the inputs, and the weights; those of the output in volts, in the direction of the force."""
+        """Scales of the inputs, and the weights; the weights of the output in volts, in the direction of the force."""
 
         by_error: float
         by_rate: float
@@ -53,7 +53,7 @@ class NeuralNet(Block):
         started: float
 
     class Ports(ControllerPorts):
-        """The ports of every controller, and what the network adds."""
+        """The ports of every controller, and the output of the network."""
 
         correction: float = tap("V", "what the network adds to the reference")
 

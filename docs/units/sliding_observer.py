@@ -26,7 +26,7 @@ class SlidingObserver(Block):
     weaknesses = ("noise of the sensor reaches the velocity as the root of its size times the bound",)
 
     class Params(BlockParams):
-        """Bound of what the nominal device does not explain, and the gains of the feedback."""
+        """Bound of the forces outside the nominal model, and the gains of the feedback."""
 
         bound_um_ms2: float = parameter(100.0, "bound of the unexplained acceleration", "um/ms^2", gt=1e-6, le=1e9)
         proportional_v_um: float = parameter(-10.0, "gain of the displacement", "V/um", ge=-1e3, le=1e3)
@@ -83,7 +83,7 @@ class SlidingObserver(Block):
         if s.started != 0.0:
             e = s.measured - s.displacement
             way = 1.0 if e > 0.0 else -1.0 if e < 0.0 else 0.0
-            # velocity and force at the middle of the sample: what Euler's step loses there is of higher order
+            # velocity and force at the middle of the sample: the error of Euler's step there is of higher order
             nominal = (
                 p.of_voltage * x.applied
                 + p.of_velocity * s.velocity

@@ -19,14 +19,14 @@ def teacher(error: np.ndarray, rate: np.ndarray) -> np.ndarray:
 
 
 def network(weights: np.ndarray, error: np.ndarray, rate: np.ndarray) -> np.ndarray:
-    """Return what the network puts out; the rows are the weights of the error, of the rate and of the units."""
+    """Return the output of the network; the rows are the weights of the error, of the rate and of the units."""
     of_error, of_rate, out = weights.reshape(3, UNITS)
     hidden = np.tanh(np.multiply.outer(error, of_error) + np.multiply.outer(rate, of_rate))
     return hidden @ out
 
 
 def train() -> tuple[np.ndarray, float]:
-    """Return the weights, in rows, and the root mean square of what they miss."""
+    """Return the weights, in rows, and the root mean square of the residual."""
     error, rate = (part.ravel() for part in np.meshgrid(SPAN, SPAN))
     wanted = teacher(error, rate)
     start = np.random.default_rng(SEED).normal(size=3 * UNITS)

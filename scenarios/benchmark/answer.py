@@ -1,4 +1,4 @@
-"""Answer of a diagnoser in a case: evidence that grows with a fault, and a probability of each class if it says one."""
+"""Answer of a diagnoser in a case: evidence that grows with a fault, and the probability of each class if any."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _is_bank(block: type[Block]) -> bool:
 
 
 def _moved(block: type[Block]) -> str:
-    """Return the output that tells how far something is from where it should be."""
+    """Return the output that measures the distance from the normal state."""
     return next((port.name for port in block.outputs if port.name in NEUTRAL), "")
 
 
@@ -49,16 +49,17 @@ def section(block: type[Block], track: Track) -> Document:
 
 @dataclass(frozen=True)
 class Answer:
-    """What one diagnoser said in one case, sample by sample.
+    """The probabilities of one diagnoser in one case, sample by sample.
 
     Attributes
     ----------
     evidence : ndarray, shape (samples,)
-        Minus the logarithm of the probability of the healthy class, or the distance from what a healthy device gives.
+        Minus the logarithm of the probability of the healthy class, or the distance from the output of a healthy
+        device.
     classes : ndarray, shape (classes, samples), optional
         Probability of each class.
     digest : str
-        SHA-256 over the bits of the outputs that both were made of.
+        SHA-256 over the bits of the outputs behind both.
     """
 
     evidence: FloatArray
@@ -67,18 +68,18 @@ class Answer:
 
 
 def answers(track: Track, case: Case, diagnosers: Mapping[str, Document], units: Document) -> dict[str, Answer]:
-    """Run a case with diagnosers side by side on the same samples; return what each said.
+    """Run a case with diagnosers side by side on the same samples; return the answer of each.
 
     Parameters
     ----------
     track : Track
-        What they are asked.
+        Hypotheses and parameters of each diagnoser.
     case : Case
         The case.
     diagnosers : mapping
         The section of each by its name on the bench.
     units : dict
-        The units of one's own among them, as a scenario carries them.
+        The user units among them, as a scenario carries them.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Figures of what a diagnoser said in one case: pure functions of evidence, probabilities and truth.
+"""Figures of a diagnoser in one case: pure functions of evidence, probabilities and truth.
 
 Sums are made one sample after another, and logarithms by the project's own function, so that figures have the same bits
 on every machine.
@@ -43,7 +43,7 @@ def classed(probabilities: FloatArray, classes: IntArray, count: int) -> FloatAr
     Parameters
     ----------
     probabilities : ndarray, shape (hypotheses, samples)
-        What was said; less than 0 or no number counts as 0.
+        The given probabilities; less than 0 or no number counts as 0.
     classes : ndarray
         The class of each hypothesis.
     count : int
@@ -69,8 +69,8 @@ def scores(p: FloatArray, truth: IntArray) -> tuple[float, float]:
 
     .. math:: L=-\overline{\ln\max(p_\text{truth},10^{-6})},\qquad B=\overline{\textstyle\sum_c(p_c-o_c)^2}
 
-    Both are proper: on average nothing earns less than to say what one believes (Brier 1950; Good 1952; Gneiting and
-    Raftery 2007).
+    Both are proper: on average a diagnoser loses least when it states its true probabilities (Brier 1950; Good 1952;
+    Gneiting and Raftery 2007).
     """
     classes, samples = p.shape
     logs, squares = 0.0, 0.0
@@ -134,7 +134,7 @@ def false_switches(said: IntArray, truth: IntArray) -> int:
 
 
 def found_within(delays: Sequence[float | None], limits: Sequence[int]) -> list[float]:
-    """Return the share of delays that are at most each limit, of those that are there; none of none."""
+    """Return the share of existing delays that are at most each limit; empty without a delay."""
     there = [delay for delay in delays if delay is not None]
     return [sum(delay <= limit for delay in there) / len(there) for limit in limits] if there else []
 
@@ -159,7 +159,7 @@ def estimate(values: Iterable[float | None]) -> Estimate | None:
 
 
 def rises(on: BoolArray) -> int:
-    """Return how often an alarm goes on."""
+    """Return how often an alarm starts."""
     return int(np.count_nonzero(on[1:] & ~on[:-1]))
 
 
@@ -177,15 +177,15 @@ class Alarms:
 def alarms(evidence: FloatArray, threshold: float, start: int, onset: int) -> Alarms:
     """Return the figures of an alarm that is on while the evidence is above a threshold.
 
-    ``detection`` is the share of faulty samples with the alarm on, ``false_alarm`` that of healthy ones, as the DX
-    competitions count, ``episodes`` how often it rises while the device is healthy. The delay is the number of samples
-    from the fault to the first alarm, and of a fault that is missed all there are, so that missing never pays. An alarm
-    that already stands when the fault happens says nothing of it: such a case has no delay.
+    ``detection`` is the share of faulty samples with the alarm on, ``false_alarm`` the share of healthy samples with
+    the alarm on, as the DX competitions count, ``episodes`` how often it starts while the device is healthy. The delay
+    is the number of samples from the fault to the first alarm, and all remaining samples for a missed fault, so that
+    missing never pays. An alarm that is already on when the fault happens is no detection: such a case has no delay.
 
     Parameters
     ----------
     evidence : ndarray
-        What grows when something is wrong.
+        The evidence, which grows with a fault.
     threshold : float
         The alarm is on above it.
     start, onset : int
@@ -208,8 +208,8 @@ def isolation(p: FloatArray, on: BoolArray, truth: int, onset: int) -> tuple[flo
     """Return two shares of the faulty samples with the alarm on: named rightly, and given to the truth.
 
     The first is the isolation rate, which needs two kinds of fault. The second, the mean probability of the truth where
-    a fault is detected, is what a DX competition has ranked by; it is linear in what is said, so that it praises
-    diagnosers that are surer than right.
+    a fault is detected, is a ranking of a DX competition; it is linear in the stated probability, so it rewards
+    overconfident diagnosers.
     """
     faulty = np.ascontiguousarray(p[:, onset:][:, on[onset:]])
     classes, samples = faulty.shape

@@ -66,7 +66,7 @@ def measure(
     told : callable
         Called after each run.
     own : dict, optional
-        Units of one's own, as a scenario carries them.
+        User units, as a scenario carries them.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def measure(
 
 
 def _source(block: type[Block]) -> str:
-    """Return a hash of the file a diagnoser is in, or of the text of a unit of one's own."""
+    """Return a hash of the file of a diagnoser, or of the text of a user unit."""
     if block.text:
         return hashlib.sha256(block.text.encode()).hexdigest()
     return hashlib.sha256(inspect.getsource(inspect.getmodule(block) or block).encode()).hexdigest()
@@ -143,7 +143,7 @@ class Judge:
         self._cases: list[CaseDigest] = []
 
     def take(self, case: Case, answer: Answer) -> None:
-        """Add what was said in a case."""
+        """Add the answer in a case."""
         alarm = alarms(answer.evidence, self._threshold, WARM, case.onset)
         self._false_alarms += alarm.episodes
         self._healthy_samples += case.onset - WARM

@@ -1,4 +1,4 @@
-"""Results of the benchmark: a row for each diagnoser and track, with what recomputes it; a submission is the same."""
+"""Results of the benchmark, also of a submission: a row for each diagnoser and track, with data to recompute it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Bin(Table):
 
 
 class CaseDigest(Table):
-    """A case and what the diagnoser said in it: seed, hash of the scenario, hash of the bits of the outputs."""
+    """A case and the answer of the diagnoser: seed, hash of the scenario, hash of the bits of the outputs."""
 
     seed: str
     scenario: str
@@ -36,7 +36,7 @@ class CaseDigest(Table):
 
 
 class Row(Table):
-    """One diagnoser on one track; figures of probabilities are missing of one that says none.
+    """One diagnoser on one track; a diagnoser without probabilities has no figures of them.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Row(Table):
     found_within : list of float
         Share of the cases that have a delay in which it is at most each of `WITHIN_SAMPLES`.
     scenario, digest : str
-        SHA-256 over those of the cases, in order.
+        SHA-256 over the digests of the cases, in order.
     """
 
     unit: str
@@ -84,14 +84,14 @@ class LeftOut(Table):
 
 
 class Cost(Table):
-    """What a sample of a diagnoser costs, on the machine that measured it: no part of what is recomputed to the bit."""
+    """The cost of a sample of a diagnoser, on the machine that measured it: not recomputed to the bit."""
 
     ns_per_sample: float
     over_mmae: float
 
 
 class Results(Table):
-    """Rows and what they were computed with.
+    """Rows, and the version and seeds of the computation.
 
     Attributes
     ----------
@@ -106,7 +106,7 @@ class Results(Table):
     own : dict
         The text of each unit that is not of the library, so that the results can be recomputed from their file.
     costs : dict
-        Of each diagnoser, measured beside the Kalman bank ``mmae`` in the same run.
+        Of each diagnoser, measured together with the Kalman bank ``mmae`` in the same run.
     """
 
     benchmark: str
@@ -130,7 +130,7 @@ class Results(Table):
         return sorted(rows, key=_place)
 
     def without_cases(self) -> Results:
-        """Return the results without what each case gave."""
+        """Return the results without the digests of the cases."""
         return self.model_copy(update={"rows": [row.model_copy(update={"cases": []}) for row in self.rows]})
 
     def differences(self, other: Results) -> list[str]:
@@ -150,7 +150,7 @@ def _place(row: Row) -> tuple[float, float, str]:
 
 
 def _unlike(row: Row, beside: Row | None) -> list[str]:
-    """Return what of a row differs; what single cases gave only where both say it."""
+    """Return the differences of a row; differences of single cases only where both have them."""
     if beside is None:
         return ["is missing"]
     found = [name for name in Row.model_fields if name != "cases" and getattr(row, name) != getattr(beside, name)]

@@ -1,4 +1,4 @@
-"""Seeds of the benchmark: 128 bits for each case, in lists that anyone can work out, and one that is hidden."""
+"""Seeds of the benchmark: 128 bits for each case, in lists that anyone can work out, and one hidden list."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from core.table import Table
 BENCHMARK = "mems-diag-1"
 SEED_BYTES, SALT_BYTES = 16, 32
 COMMITMENT = "1a1c59d3199ea7a0fe191b7578b036b4770669f3cff4f36711ed19e3a52eef75"
-"""SHA-256 of the hidden list, published before anybody is measured by it."""
+"""SHA-256 of the hidden list, published before the first measurement with it."""
 CASES, CALIBRATIONS = "cases", "calibration"
 
 
@@ -30,11 +30,11 @@ class SeedList:
     Attributes
     ----------
     name : str
-        What it is called.
+        Name of the list.
     cases : mapping
         The seeds of the cases of each track.
     calibrations : int
-        Healthy runs of each track by which thresholds are set; their seeds are never those of cases.
+        Healthy runs of each track for setting thresholds; their seeds are never seeds of cases.
     """
 
     name: str
@@ -47,7 +47,7 @@ class SeedList:
 
 
 def derived(name: str, track: str, count: int) -> tuple[str, ...]:
-    r"""Return seeds that nobody has chosen: 128 bits of :math:`\text{SHA-256}(\text{benchmark name track number})`."""
+    r"""Return seeds by a fixed rule, :math:`\text{SHA-256}(\text{benchmark name track number})`, 128 bits."""
     texts = (f"{BENCHMARK} {name} {track} {number}" for number in range(1, count + 1))
     return tuple(hashlib.sha256(text.encode()).digest()[:SEED_BYTES].hex() for text in texts)
 
@@ -67,7 +67,7 @@ Salt = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
 
 
 class Hidden(Table):
-    """A list of seeds that is kept to itself until it is revealed, and a salt so that nobody can guess it."""
+    """A list of seeds that is secret until it is revealed, and a salt that makes it impossible to guess."""
 
     salt: Salt
     cases: dict[str, list[Seed]]
@@ -114,7 +114,7 @@ def hidden_list(text: str, tracks: tuple[str, ...]) -> SeedList:
 
 
 def main() -> None:
-    """Print a new hidden list, or that of a salt: ``python -m scenarios.benchmark.seeds [SALT] > hidden.toml``."""
+    """Print a new hidden list, or the list of a salt: ``python -m scenarios.benchmark.seeds [SALT] > hidden.toml``."""
     from scenarios.benchmark.track import tracks
 
     salt = sys.argv[1] if len(sys.argv) > 1 else secrets.token_hex(SALT_BYTES)

@@ -20,13 +20,13 @@ from scenarios.key import content_hash
 from scenarios.schema import Scenario
 
 WARM = 500
-"""Samples at the start that nobody is judged by: everything is at rest, and windows are empty."""
+"""Samples at the start that are not judged: there is no motion yet, and windows are empty."""
 ONSET = (1500, 2500)
 """Between these the fault happens."""
 WITHIN = 2500
 """Samples from the fault to the end of a case."""
 HEALTHY = 10_000
-"""Samples of a healthy run that thresholds are set by, after those of `WARM`."""
+"""Samples of a healthy run that set the thresholds, after the `WARM` samples."""
 DIGITS = 6
 """Digits of a number that is drawn, so that it reads the same in any document."""
 
@@ -45,9 +45,9 @@ class Track(Table):
     Attributes
     ----------
     hypotheses : list
-        What every diagnoser that chooses between hypotheses is given.
+        Hypotheses for every diagnoser that chooses between hypotheses.
     classes : dict
-        What is to be told apart, healthy first, and the hypotheses that mean it.
+        The classes to distinguish, healthy first, and the hypotheses of each class.
     """
 
     title: str

@@ -1,4 +1,4 @@
-"""Carries out the runs of a batch, those of one structure abreast."""
+"""Carries out the runs of a batch; runs of one structure go abreast."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def outcomes(runs: Sequence[Run], on_tick: Callable[[int], None] = lambda _: Non
 
 
 def shape(scenario: Scenario) -> Any:
-    """Return what runs must share to run abreast; None for one that runs alone."""
+    """Return the properties that runs must share to run abreast; None for a run that runs alone."""
     commands = [command for event in scenario.events for command in event]
     if scenario.study is not None or scenario.twins or any(c.when or isinstance(c, MakeSafe) for c in commands):
         return None
@@ -75,7 +75,7 @@ def shape(scenario: Scenario) -> Any:
 
 
 def _abreast(runs: Sequence[Run], numbers: list[int], found: dict[int, Outcome], tell: Callable[[], None]) -> None:
-    """Carry out runs of one shape, `WIDTH` at a time, and add their outcomes; some cannot go on abreast."""
+    """Carry out runs of one shape, `WIDTH` at a time, and add their outcomes; some have to continue alone."""
     scenario = runs[numbers[0]][0]
     samples = scenario.samples or DEFAULT_SAMPLES
     try:
@@ -128,7 +128,7 @@ def _together(
 
 
 def running_warnings(board: Board) -> dict[str, str]:
-    """Return the taps that warn of the blocks that run, and what of."""
+    """Return the taps with warnings of the running blocks, and their texts."""
     wiring = board.wiring
     out = {wiring.instances[row].prefix for row in wiring.left_out}
     return {name: text for name, text in warnings(wiring).items() if name.rpartition(".")[0] not in out}

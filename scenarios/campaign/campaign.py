@@ -2,7 +2,7 @@
 
 The table alone records progress. If a worker, the scheduler or this process dies, the runs in the table are never
 computed again; the next process that resumes the campaign computes the missing ones. A single run is a campaign too,
-which keeps the trace of its first run; that one comes last, when all others are there for its report. As no campaign
+which keeps the trace of its first run; that run comes last, when its report can use all other runs. As no campaign
 keeps traces otherwise, it is computed for its trace even though the table has its outcome.
 """
 
@@ -34,8 +34,8 @@ AHEAD = 2
 """Batches under way for each worker."""
 LOOK_S = 0.2
 PATIENCE, ATTEMPTS = 5, 3
-"""Losses in a row, without a result in between, after which a campaign gives up, and one that keeps a trace: where both
-share processes, the single run is the likelier cause."""
+"""Losses in a row, without a result in between, after which a campaign fails, and a campaign that keeps a trace: where
+both share processes, the single run is the likelier cause."""
 
 Found = list[tuple[str, str]]
 """Outcomes as JSON, by the key of the run."""
@@ -50,27 +50,27 @@ class Table(Protocol):
         """Return the keys that are in the table."""
 
     def outcomes(self, keys: Sequence[str]) -> Iterable[tuple[str, str]]:
-        """Return what the table has for some keys."""
+        """Return the stored outcomes of some keys."""
 
     def put(self, found: Found) -> None:
         """Add outcomes in one transaction; an outcome that the table has already stays as it is."""
 
 
 class Trace(Protocol):
-    """What keeps the trace of the first run of a campaign; it is called in a worker process, so it can be pickled."""
+    """Keeps the trace of the first run of a campaign; it is called in a worker process, so it can be pickled."""
 
     def __call__(self, document: dict[str, Any], seed: int, others: Others) -> tuple[Outcome, Any]:
-        """Carry the run out; return its outcome, and what is wanted of it besides."""
+        """Carry the run out; return its outcome, and the additional result."""
 
 
 class Stopped(Exception):
-    """The campaign could not go on; the finished runs stay in the table."""
+    """The campaign could not continue; the finished runs stay in the table."""
 
 
 def compute(runs: list[Run], version: str) -> tuple[Found, float]:
     """Compute a batch; in a worker. Return the outcomes and the mean time of a run, s.
 
-    A point of which no scenario comes gives its error as the outcome of its runs.
+    A point that gives no valid scenario gives its error as the outcome of its runs.
 
     Raises
     ------
@@ -101,7 +101,7 @@ def compute(runs: list[Run], version: str) -> tuple[Found, float]:
 
 
 def compute_traced(trace: Trace, run: Run, others: Others, version: str) -> tuple[Found, float, Any]:
-    """Carry out the run whose trace is kept; in a worker. Return its outcome, its time, and what is wanted besides."""
+    """Carry out the run whose trace is kept; in a worker. Return its outcome, its time, and the additional result."""
     _check_version(version)
     key, point, seed = run
     found, kept = trace(point.document, seed, others)
@@ -129,7 +129,7 @@ class Campaign:
     processes : Processes, optional
         Processes of this machine that it shares with others instead.
     trace : Trace, optional
-        What keeps the trace of the first run; `kept` is what it returned.
+        Keeps the trace of the first run; `kept` is its return value.
     on_progress : callable
         Called after every batch, with the number of runs done and of all runs.
     """
@@ -177,7 +177,7 @@ class Campaign:
         self._is_cancelled = True
 
     def run(self) -> bool:
-        """Compute the missing runs; return whether all runs are there.
+        """Compute the missing runs; return whether all runs are complete.
 
         Raises
         ------
@@ -217,7 +217,7 @@ class Campaign:
         return Processes(self._workers) if self._processes is None else nullcontext(self._processes)
 
     def _have(self, keys: Sequence[str]) -> set[str]:
-        """Return what the table has; the run whose trace is kept is computed in any case."""
+        """Return the stored keys; the run whose trace is kept is computed in any case."""
         have = self._table.have(keys)
         return have if self._trace is None else have - {self.sweep.key(0)}
 

@@ -1,8 +1,8 @@
-"""What is checked of a campaign before it begins: all that somebody wrote, and not every point.
+"""Checks of a campaign before it begins: its whole document, but not every point.
 
 Each value of a variant or a grid, and both ends of each range, are tried with the first values of all else. The points
-themselves are read when their runs are made; one of which no scenario comes gives runs with an error. Of what chance
-draws, such as devices, one that can be carried out is enough.
+themselves are read when their runs are made; a point that gives no valid scenario gives runs with an error. Of random
+draws, such as devices, one possible draw is enough.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from scenarios.schema import Scenario
 MOST = 100
 """Steps of an axis that are tried; beyond them, those with the least and the greatest number at each path."""
 LENGTH = frozenset({"samples", "duration_ms", "sample_rate_khz"})
-"""What the length of a run follows from."""
+"""The fields that determine the length of a run."""
 
 
 def check(sweep: Sweep) -> Scenario:
@@ -58,7 +58,7 @@ def _step(axis: Axis, number: int) -> Step:
 
 
 def _telling(axis: Axis) -> list[Step]:
-    """Return the steps of a variant or a grid that tell whether it was mistyped."""
+    """Return the steps of a variant or a grid that show whether it was mistyped."""
     steps = [axis[number] for number in range(len(axis))]
     least: dict[str, tuple[Any, int]] = {}
     greatest: dict[str, tuple[Any, int]] = {}
@@ -88,7 +88,7 @@ def _sets_length(axis: Axis) -> bool:
 
 
 def _ticks(base: Scenario, values: Values) -> float:
-    """Return the length of a point; what is no number is refused when the point is read."""
+    """Return the length of a point; a value that is no number is refused when the point is read."""
 
     def number(path: str, usual: float) -> float:
         value = values.get(path, usual)

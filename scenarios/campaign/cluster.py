@@ -21,7 +21,7 @@ class Cluster(Executor):
     """Hands work over to a cluster, and returns an answer for every piece of it.
 
     Dask's own executor never answers for a piece that was done but could not be fetched, for example if the scheduler
-    is lost at that moment: a caller would wait for it for ever.
+    is lost at that moment: a caller would wait for it without end.
 
     Parameters
     ----------
@@ -43,11 +43,11 @@ class Cluster(Executor):
         """
         try:
             return max(1, int(sum(self._client.nthreads().values())))
-        except AttributeError as error:  # a client that lost its scheduler can ask nobody
+        except AttributeError as error:  # a client that lost its scheduler cannot ask it
             raise ConnectionError(f"the client of the scheduler is {self._client.status}") from error
 
     def stop(self, task: Future[Any]) -> None:
-        """Call a piece of work off; a worker that has begun it goes on to its end, and nobody hears of it."""
+        """Call a piece of work off; a worker that has begun it finishes it, and its result is dropped."""
         task.cancel()
 
     def submit(self, function: Callable[..., T], /, *arguments: Any, **named: Any) -> Future[T]:
@@ -96,7 +96,7 @@ def check_address(address: str) -> None:
     Raises
     ------
     InputError
-        If it is not an address, or if there are no certificates for one that needs them.
+        If it is not an address, or if the certificates for it are missing.
     """
     from dask import config
     from distributed.comm.addressing import get_address_host_port

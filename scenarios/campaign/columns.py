@@ -24,20 +24,20 @@ FIXED = {
 COUNTS = pa.list_(pa.int32())
 NAMES = pa.list_(pa.string())
 DIAGNOSIS = {"names": NAMES, "confusion": COUNTS, "delays": COUNTS, "healthy": COUNTS, "faulty": COUNTS}
-"""What each diagnoser said: hypotheses; samples by truth and verdict, row by row; samples until each change of the
-truth was found, null for one that never was; samples by evidence (`scenarios.campaign.outcome.EVIDENCE`)."""
+"""Results of each diagnoser: hypotheses; samples by truth and verdict, row by row; samples until each change of the
+truth was found, null for a missed change; samples by evidence (`scenarios.campaign.outcome.EVIDENCE`)."""
 ABOUT = b"combbench"
-"""What a column holds, beside its name: an axis, a figure, or what a diagnoser said."""
+"""The content of a column, stored with its name: an axis, a figure, or the result of a diagnoser."""
 
 Row = tuple[int, str, Outcome]
-"""The number of a run, its key, and what came out."""
+"""The number of a run, its key, and its outcome."""
 
 
 def columns(sweep: Sweep, rows: Iterable[Row]) -> pa.Table:
-    """Return runs that are there as a table.
+    """Return the finished runs as a table.
 
-    Columns are the number of the point, every axis by its path, what is `FIXED` (a warning a line), every figure, and
-    for each diagnoser `DIAGNOSIS`; a cell is null where a run has no such figure.
+    Columns are the number of the point, every axis by its path, the `FIXED` columns (a warning a line), every figure,
+    and for each diagnoser `DIAGNOSIS`; a cell is null where a run has no such figure.
     """
     rows = list(rows)
     seeds = len(sweep.seeds)
@@ -63,7 +63,7 @@ def columns(sweep: Sweep, rows: Iterable[Row]) -> pa.Table:
 
 
 def axes(sweep: Sweep) -> dict[str, pa.DataType]:
-    """Return what the points of a campaign are labelled with: numbers, or texts where one of them is a text."""
+    """Return the labels of the points of a campaign: numbers, or texts where one of them is a text."""
     return {name: pa.string() if is_text else pa.float64() for name, is_text in sweep.points.axes().items()}
 
 
@@ -84,12 +84,12 @@ def diagnosers(schema: pa.Schema) -> list[str]:
 
 
 def about(field: pa.Field) -> str:
-    """Return what a column holds."""
+    """Return the content of a column."""
     return str((field.metadata or {}).get(ABOUT, b""), "utf-8")
 
 
 def named(schema: pa.Schema, what: str) -> list[str]:
-    """Return the columns that hold axes, figures, or what diagnosers said."""
+    """Return the columns of axes, of figures, or of the results of diagnosers."""
     return [field.name for field in schema if about(field) == what]
 
 

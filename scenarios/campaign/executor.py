@@ -94,14 +94,14 @@ class Processes(Executor):
         return pool(self.width, self._niceness, self._signs)
 
     def _release(self, future: Future[Any], pool: ProcessPoolExecutor) -> None:
-        """Take back the signs of a piece of work that has ended, and give up processes of which one died."""
+        """Take back the signs of a piece of work that has ended, and drop the pool if one of its processes died."""
         self._free.append(self._places.pop(future))
         if not future.cancelled() and isinstance(future.exception(), BrokenProcessPool) and self._pool is pool:
             self._pool = None
 
 
 def pool(workers: int, niceness: int = 0, signs: Signs | None = None) -> ProcessPoolExecutor:
-    """Return processes that are there soon: forked from one that has loaded the code, which takes seconds.
+    """Return processes that start quickly: forked from a process that has loaded the code, which takes seconds.
 
     That one does nothing else; forking this process, which has threads at work, is not safe.
     """
@@ -118,7 +118,7 @@ def pool(workers: int, niceness: int = 0, signs: Signs | None = None) -> Process
 def _load(niceness: int) -> None:
     """Start the process that others are forked from; it has the priority of this thread, which is its own on Linux.
 
-    It steps back half as far as they do: it has seconds of work, and somebody may wait for them.
+    Its priority is reduced half as far as theirs: it has seconds of work, and a user may wait for them.
     """
     os.nice(niceness // 2)
     forkserver.ensure_running()
@@ -141,12 +141,12 @@ def prepare(niceness: int = 0, signs: Signs | None = None, behind_wall: bool = F
 
 
 def collect_seldom() -> None:
-    """Let the garbage collector pass over what is loaded, and look for cycles seldom: here next to nothing has any."""
+    """Let the garbage collector skip the loaded objects, and look for cycles seldom: here almost no object has any."""
     gc.freeze()
     gc.set_threshold(100_000)
 
 
 def _follow(wait: Callable[[], None]) -> None:
-    """End this process after its parent has ended: a parent that was killed cannot tell its children."""
+    """End this process after its parent has ended, because a killed parent cannot stop its children."""
     wait()
     os._exit(1)

@@ -18,9 +18,9 @@ from core.format import format_short
 from core.table import Table
 
 ROUNDS = 10
-"""How often the range between two points of the grid is halved: it is told to a thousandth of their distance."""
+"""Halvings of the range between two points of the grid: the threshold is found to a thousandth of it."""
 MOST_TURNS = 8
-"""Places that are told exactly; where there are more, chance decides."""
+"""Number of thresholds that are found exactly; where there are more, the result depends on chance."""
 
 
 class Wanted(Table):
@@ -43,12 +43,12 @@ class Wanted(Table):
 
     @classmethod
     def checked(cls, values: dict[str, Any], field: str = "") -> Wanted:
-        """Check what somebody wrote.
+        """Check the request of a user.
 
         Raises
         ------
         InputError
-            Naming what is wrong.
+            Naming the error.
         """
         try:
             return cls.model_validate(values)
@@ -85,7 +85,7 @@ class ThresholdTurn(BaseModel):
 
     value: float = Field(description="The value nearest to it at which the claim holds")
     begins: bool
-    low: float = Field(description="It lies between this value and the next")
+    low: float = Field(description="It is between this value and the next")
     high: float
 
 
@@ -103,7 +103,7 @@ class Threshold(BaseModel):
 
 
 class Halving:
-    """Chooses the values to try, round by round, and tells what they showed.
+    """Chooses the values to try, round by round, and reports their results.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ class Halving:
         self.rounds = 0
 
     def next(self) -> list[float]:
-        """Return the values to try now; none when all is told."""
+        """Return the values to try now; empty at the end."""
         if not self._tried:
             return self._wanted.grid()
         if self.rounds > ROUNDS:
@@ -134,7 +134,7 @@ class Halving:
             self._tried[value] = Tried(value=value, measured=figure, holds=self._bears_out(figure))
 
     def found(self) -> Threshold:
-        """Return what is known so far."""
+        """Return the result so far."""
         wanted = self._wanted
         turns = [
             ThresholdTurn(

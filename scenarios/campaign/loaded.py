@@ -1,4 +1,4 @@
-"""What all worker processes have in common: loaded once, in the process that they are forked from.
+"""Common data of all worker processes: loaded once, in their parent process.
 
 Code takes more than a second to load, and compiled kernels half of one. This process has no work of its own.
 """
@@ -18,4 +18,4 @@ if marker is not None and marker.exists():  # otherwise each is compiled by who 
     outcomes([(short, 1)])
     outcomes([(short, seed) for seed in range(FEWEST)])
 
-gc.freeze()  # what is loaded stays: no collection looks at it again, and no process copies it
+gc.freeze()  # loaded objects stay: no collection looks at them again, and no process copies them

@@ -28,7 +28,7 @@ LEAST = 1e-300
 
 
 class Diagnosis(BaseModel):
-    """What one diagnoser said, sample by sample, counted.
+    """The results of one diagnoser, sample by sample, counted.
 
     Attributes
     ----------
@@ -37,8 +37,8 @@ class Diagnosis(BaseModel):
     delays : list
         Samples until each change of the truth was found; None for a change that was never found.
     healthy, faulty : list of int
-        Samples by evidence of a fault (the bins between `EVIDENCE`, and one at either end), while the truth was
-        healthy and while it was not; empty if no hypothesis is that of a healthy device.
+        Samples by evidence of a fault (the bins between `EVIDENCE`, and one at either end), while the truth was healthy
+        and while it was faulty; empty if no hypothesis is a healthy device.
     """
 
     names: list[str]
@@ -49,7 +49,7 @@ class Diagnosis(BaseModel):
 
 
 class Outcome(BaseModel):
-    """One run, whoever asked for it."""
+    """One run, independent of its requests."""
 
     seed: int
     digest: str = ""
@@ -82,7 +82,7 @@ def outcome(scenario: Scenario, seed: int, on_tick: Callable[[int], None] | None
 
 
 def outcome_of(result: Result) -> Outcome:
-    """Return the outcome of a result: the same whether all its outputs were kept or those of its figures alone."""
+    """Return the outcome of a result: the same whether all its outputs were kept or only the outputs of its figures."""
     found = summed(result.scenario, result.board, result.metrics, result.digest, result.trace, result.warnings)
     found.elapsed_s = result.elapsed_s
     return found
@@ -156,7 +156,7 @@ def evidence(fault: FloatArray, none: FloatArray, truth: FloatArray, healthy: in
     for i in range(len(ratio)):
         if not ratio[i] > 0.0:
             ratio[i] = 1.0
-    # the bits of a number are nearly proportional to its logarithm: the bin they tell is the right one or next to it
+    # the bits of a number are nearly proportional to its logarithm: the bin from them is the right one or next to it
     bits, ends = ratio.view(np.int64), odds.view(np.int64)
     share = (count - 1) / (ends[-1] - ends[0])
     for i in range(len(ratio)):

@@ -1,8 +1,8 @@
 """Results of a campaign as Parquet files that others read in place: each file some thousand runs, in order.
 
-The table of results is the truth. A file is written once all its runs are in the table, or with those that are there
-when somebody looks; one that is missing or incomplete is made anew from the table. All files of a campaign have the
-same columns, so that a folder of them is one table.
+The table of results is the truth. A file is written once all its runs are in the table, or with the finished runs when
+it is read; a missing or incomplete file is made anew from the table. All files of a campaign have the same columns, so
+that a folder of them is one table.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class Parts:
         return self._folder / f"part-{number:05d}.parquet"
 
     def paths(self) -> list[Path]:
-        """Return the files that are there, in order."""
+        """Return the existing files, in order."""
         return [path for path in map(self.path, range(len(self))) if path.exists()]
 
     def whole(self) -> int:
@@ -87,13 +87,13 @@ class Parts:
                 yield pq.read_table(path, columns=names, schema=schema, partitioning=None)
 
     def sums(self, number: int) -> dict[int, Sums] | None:
-        """Return what the runs of a file add up to, by the number of the point; none of a file of many points."""
+        """Return the totals of the runs of a file, by the number of the point; None for a file of many points."""
         path = self.path(number)
         said = (pq.read_metadata(path).metadata or {}).get(SUMS) if path.exists() else None
         return None if said is None else {int(point): sums for point, sums in json.loads(said).items()}
 
     def follow(self, done: int, read: Read) -> None:
-        """Write what has become complete, as soon as so many runs have been done since that there may be a file."""
+        """Write complete files, as soon as enough runs have finished since the last time."""
         if done - self._followed >= PART:
             self.keep_up(read)
             self._followed = done
@@ -135,7 +135,7 @@ class Parts:
         return rows
 
     def _rows_in(self, path: Path) -> int:
-        """Return how many runs of this campaign a file has: none if somebody else wrote it, or if it is not there."""
+        """Return how many runs of this campaign a file has: none if it belongs to another campaign or is missing."""
         try:
             metadata = pq.read_metadata(path)
         except (FileNotFoundError, pa.ArrowInvalid):
@@ -143,7 +143,7 @@ class Parts:
         return metadata.num_rows if (metadata.metadata or {}).get(ABOUT) == self._mark else 0
 
     def _clear(self) -> None:
-        """Remove the files of what the campaign was before it was changed, once."""
+        """Remove the files of the campaign before its change, once."""
         if not self._is_cleared:
             for path in self._folder.glob("part-*.parquet"):
                 if not self._rows_in(path):
@@ -165,7 +165,7 @@ class Parts:
         return pa.concat_tables(fitted(table, schema) for table in tables)
 
     def _rows_of(self, numbers: range, read: Read) -> pa.Table | None:
-        """Return those of some runs that are in the table of results."""
+        """Return the stored rows of some runs."""
         keys = {number: self._sweep.key(number) for number in numbers}
         texts = dict(read(list(dict.fromkeys(keys.values()))))
         rows: list[Row] = [
@@ -201,7 +201,8 @@ def write_runs(parts: Parts, file: BinaryIO, *, kind: Literal["csv", "parquet"])
 def _put(path: Path, table: pa.Table) -> None:
     """Write a file under a name that no reader of the folder takes for one of its own, then rename it.
 
-    One with many runs of each point holds what they add up to: to read it takes a moment, to read the runs does not.
+    A file with many runs of each point holds their totals: reading the totals takes a moment, reading the runs takes
+    long.
     """
     points = np.unique(table["point"].to_numpy())
     if len(points) * MANY <= table.num_rows:

@@ -1,4 +1,4 @@
-"""Points of a campaign: every combination of its axes, each made when it is asked for."""
+"""Points of a campaign: every combination of its axes, each made when it is read."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from scenarios.key import content_hash
 Values = dict[str, Any]
 Labels = dict[str, str | float]
 Step = tuple[Labels, Values]
-"""One step of an axis: what it is called in tables, and what it writes over a scenario."""
+"""One step of an axis: its label in tables, and the values it writes over a scenario."""
 
 
 class Axis(Protocol):
-    """Steps to combine with those of other axes."""
+    """Steps to combine with the steps of other axes."""
 
     def __len__(self) -> int:
         """Return the number of steps."""
@@ -56,7 +56,7 @@ class Rows:
         return ({self._number: float(at + 1)} if self._number else {**values}), values
 
     def column(self, path: str) -> FloatArray:
-        """Return what the steps write to a field."""
+        """Return the values that the steps write to a field."""
         column: FloatArray = self._rows[:, self.paths.index(path)]
         return column
 
@@ -70,7 +70,7 @@ class Rows:
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """One set of values: what it is called in tables, and what it writes over a scenario."""
+    """One set of values: its labels in tables, and the values it writes over a scenario."""
 
     labels: Labels
     values: Values
@@ -88,14 +88,14 @@ class Points(Sequence[Point]):
     Parameters
     ----------
     axes : sequence of Axis
-        What varies.
+        Varied fields.
     base : dict
         The scenario that the points differ from.
 
     Attributes
     ----------
     varied : sequence of Axis
-        What varies.
+        Varied fields.
     """
 
     def __init__(self, axes: Sequence[Axis], base: dict[str, Any]) -> None:
@@ -132,7 +132,7 @@ class Points(Sequence[Point]):
         return Point(labels, values, self._base)
 
     def column(self, path: str, numbers: IntArray) -> FloatArray:
-        """Return what some points write to a field that takes numbers; nan where they do not."""
+        """Return the values that some points write to a numeric field; nan where they write none."""
         for axis in reversed(self.varied):
             numbers, steps = np.divmod(numbers, len(axis))
             if isinstance(axis, Rows):
@@ -174,6 +174,6 @@ class Contents(Sequence[str]):
             point = self._points[at]
             try:
                 self._known[at] = content_hash(point.document)
-            except InputError:  # no scenario comes of its values: its runs say why
+            except InputError:  # its values give no valid scenario: its runs carry the error
                 self._known[at] = content_hash({"scenario": point.base, "set": point.values})
         return self._known[at]

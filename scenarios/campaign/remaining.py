@@ -50,7 +50,7 @@ class Remaining:
     def take(self, count: int) -> list[Run]:
         """Hand out the next runs that the table lacks, in the order of points and seeds.
 
-        So many at most; there may be none among those that were looked for, and some behind them.
+        At most ``count`` runs; the result may be empty although later places still have runs.
         """
         numbers = self._following(max(count, self._reach))
         keys = {self._sweep.key(number): number for number in numbers}
@@ -78,14 +78,14 @@ class Remaining:
             self._left -= 1
 
     def take_back(self) -> None:
-        """Take back what was handed out and is not done: it waits again."""
+        """Take back the unfinished runs that were handed out: they wait again."""
         self._state[list(self._out.values())] = WAITING
         self.waiting += len(self._out)
         self._out.clear()
         self._next = 0
 
     def _following(self, count: int) -> list[int]:
-        """Return the next runs that wait, so many at most."""
+        """Return the next waiting runs, at most ``count``."""
         while self.waiting:
             self._next += int(np.argmax(self._state[self._next :] == WAITING))
             self._compare(self._next + count)

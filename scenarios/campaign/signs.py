@@ -1,4 +1,4 @@
-"""Shared memory between a worker and the process that gave it work: the worker counts ticks, the other says stop."""
+"""Shared memory of a worker and its master process: the worker counts ticks, the master can stop it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Signs:
 
 
 _received: tuple[Signs, int] | None = None
-"""In a worker: the signs, and which of them are those of the work in hand."""
+"""In a worker: the signs, and the place of the present work among them."""
 
 
 def receive(signs: Signs) -> None:
@@ -38,7 +38,7 @@ def receive(signs: Signs) -> None:
 
 
 def watched(place: int, function: Callable[..., T], *arguments: object) -> T:
-    """Call a function that tells where it is; in a worker."""
+    """Call a function that reports its progress; in a worker."""
     global _received
     assert _received is not None
     _received = _received[0], place
@@ -47,7 +47,7 @@ def watched(place: int, function: Callable[..., T], *arguments: object) -> T:
 
 
 def tell(ticks: int) -> None:
-    """Say how many ticks of the work are done; elsewhere than in a worker nobody listens.
+    """Report how many ticks of the work are done; without effect outside a worker.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A run with its seeds: a campaign of one point, the same with other controllers beside it; its summary.
+"""A run with its seeds: a campaign of one point, and the same run with other controllers for comparison; its summary.
 
 Whoever carries the runs out (command line, server, a point of a campaign), the summary is made here, from outcomes.
 """
@@ -54,7 +54,7 @@ def compared(scenario: Scenario, seeds: Sequence[int]) -> dict[str, list[Outcome
 
 
 def beside(result: Result) -> dict[str, Any]:
-    """Return the summary of a result, what its counterparts give beside each expectation."""
+    """Return the summary of a result for its use as a counterpart."""
     return summary(result.scenario, [outcome_of(result)], compared(result.scenario, [result.seed]))
 
 
@@ -79,7 +79,7 @@ def summary(
     runs : sequence of Outcome
         One for each seed, in their order.
     others : mapping, optional
-        Runs of its counterparts, whose figures are put beside each expectation.
+        Runs of its counterparts, whose figures are added to each expectation.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What runs of a point add up to, some at a time: moments of a figure, what a diagnoser said."""
+"""Totals of the runs of a point, some at a time: moments of a figure, results of a diagnoser."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from core.block import FloatArray, IntArray
 from scenarios.campaign.outcome import EVIDENCE
 
 Sums = dict[str, Any]
-"""What `Tallies` have of a point, as JSON can carry it."""
+"""The sums of `Tallies` for a point, as JSON can carry them."""
 
 
 @dataclass(slots=True)
 class Spread:
-    """A figure over runs; ``std`` is that of a sample."""
+    """A figure over runs; ``std`` is the standard deviation of a sample."""
 
     count: int
     mean: float
@@ -35,14 +35,14 @@ class Moments:
         self._low, self._high = np.full(points, np.inf), np.full(points, -np.inf)
 
     def add(self, values: FloatArray, starts: IntArray, at: IntArray) -> None:
-        """Add values that are in the order of points; those of a point begin at its start, nan is none.
+        """Add values in the order of points; the values of a point begin at its start, nan is a missing value.
 
         Parameters
         ----------
         values : (runs,) ndarray
         starts : (points,) ndarray
         at : (points,) ndarray
-            Where each point stands.
+            Row of each point.
         """
         there = np.isfinite(values)
         count = np.add.reduceat(there.astype(float), starts)
@@ -81,7 +81,7 @@ class Moments:
 
 
 class DiagnosisSums:
-    """What a diagnoser said in some runs of a point."""
+    """The results of a diagnoser in some runs of a point."""
 
     def __init__(self) -> None:
         self.names: list[str] = []
@@ -91,7 +91,7 @@ class DiagnosisSums:
         self.evidence = np.zeros((2, len(EVIDENCE) + 1), np.int64)
 
     def add(self, said: dict[str, NDArray[Any]]) -> None:
-        """Add what a diagnoser said in some runs of the point."""
+        """Add the results of a diagnoser in some runs of the point."""
         if not self.names:
             self.names = list(dict.fromkeys(said["names"].tolist()))
             self.confusion = np.zeros(len(self.names) ** 2, np.int64)

@@ -27,7 +27,7 @@ BINS = 60
 CELLS = (72, 44)
 """Cells across and up."""
 COUNTED = {"runs": None, "ok": "ok", "tripped": "trip"}
-"""What points can be sorted by beside axes and figures, and the column it is counted in."""
+"""Sort keys of points besides axes and figures, and the column of their count."""
 
 
 class Extent(BaseModel):
@@ -76,7 +76,7 @@ class Survey:
 
     @property
     def quantities(self) -> list[str]:
-        """What runs can be spread over: axes that are numbers, the seed, figures."""
+        """Possible axes of a plot of runs: numeric axes, the seed, figures."""
         axes = [name for name in self._axes if pa.types.is_floating(self._schema.field(name).type)]
         return [*axes, "seed", *self.figures]
 
@@ -170,7 +170,7 @@ class Survey:
         return sum(int(pc.sum(pc.not_equal(table["error"], "")).as_py() or 0) for table in self.parts.tables(["error"]))
 
     def warnings(self) -> list[str]:
-        """Return what runs warn of, once each."""
+        """Return the warnings of runs, once each."""
         said = (table["warnings"].unique().to_pylist() for table in self.parts.tables(["warnings"]))
         return list(dict.fromkeys(text for texts in said for lines in texts for text in lines.split("\n") if text))
 
@@ -183,7 +183,7 @@ class Survey:
         return complete
 
     def _per_point(self, column: str | None) -> IntArray:
-        """Count the runs of every point: all, those as expected, or those that tripped."""
+        """Count the runs of every point: all, the expected runs, or the tripped runs."""
         found = np.zeros(len(self.sweep.points), np.int64)
         for table in self.parts.tables(["point", column] if column else ["point"]):
             points = table["point"].to_numpy()

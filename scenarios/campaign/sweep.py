@@ -189,7 +189,7 @@ class Sweep:
         tables |= {f"variants.{position}.set": variant.set for position, variant in enumerate(head.variants)}
         for where, table in tables.items():
             if "seed" in table:
-                raise InputError("the noise seeds of a campaign are those of [seeds]", f"{where}.seed", "set [seeds]")
+                raise InputError("the noise seeds of a campaign belong in [seeds]", f"{where}.seed", "set [seeds]")
         taken: set[str] = set()
         for axis in axes:
             some = 1 if isinstance(axis, Rows) else len(axis)  # all rows set the same

@@ -20,7 +20,7 @@ from scenarios.campaign.sums import DiagnosisSums, Moments, Spread, Sums
 from scenarios.campaign.sweep import Sweep
 
 FALLING = np.append(EVIDENCE[::-1], EVIDENCE[0])
-"""The threshold beside each point of a curve, as it falls; the last bin has no end."""
+"""The threshold of each point of a curve, as it falls; the last bin has no end."""
 
 
 @dataclass(slots=True)
@@ -35,7 +35,7 @@ class Roc:
 
 @dataclass(slots=True)
 class DiagnosisTally:
-    """What one diagnoser said in all runs of a point."""
+    """The results of one diagnoser in all runs of a point."""
 
     names: list[str]
     confusion: list[list[int]]
@@ -69,7 +69,7 @@ class Tallies:
 
     def __init__(self, points: IntArray) -> None:
         self._points = points
-        self._counts = np.zeros((3, len(points)), np.int64)  # runs, those as expected, those that tripped
+        self._counts = np.zeros((3, len(points)), np.int64)  # runs, expected runs, tripped runs
         self._errors: dict[int, Counter[str]] = defaultdict(Counter)
         self._warnings: dict[int, Counter[str]] = defaultdict(Counter)
         self._moments: dict[str, Moments] = {}
@@ -106,7 +106,7 @@ class Tallies:
                 )
 
     def sums(self, place: int) -> Sums:
-        """Return what was added up at a place, as JSON can carry it."""
+        """Return the sums at a place, as JSON can carry them."""
         return {
             "counts": self._counts[:, place].tolist(),
             "errors": self._errors[place],
@@ -116,7 +116,7 @@ class Tallies:
         }
 
     def add_sums(self, place: int, sums: Sums) -> None:
-        """Add what was added up of further runs of the point at a place."""
+        """Add the sums of further runs of the point at a place."""
         self._counts[:, place] += sums["counts"]
         self._errors[place].update(sums["errors"])
         self._warnings[place].update(sums["warnings"])
@@ -148,7 +148,7 @@ class Tallies:
 
 
 def _counted(texts: Counter[str]) -> list[str]:
-    """Return what most runs said."""
+    """Return the most common texts."""
     return [f"{text} ({count} runs)" for text, count in texts.most_common(3)]
 
 
@@ -161,13 +161,13 @@ class _Rows:
         self._values = rows.flatten().to_numpy(zero_copy_only=False)
 
     def of(self, first: int, end: int) -> NDArray[Any]:
-        """Return what is in some rows, one after another; nan stands for null."""
+        """Return the items of some rows, one after another; nan stands for null."""
         found: NDArray[Any] = self._values[self._ends[first] : self._ends[end]]
         return found
 
 
 def _tally(sums: DiagnosisSums) -> DiagnosisTally | None:
-    """Return what a diagnoser said, none where it was in no run."""
+    """Return the results of a diagnoser, None where it was in no run."""
     if not sums.names:
         return None
     return DiagnosisTally(

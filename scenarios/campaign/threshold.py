@@ -33,7 +33,7 @@ class Memory:
         return {key for key in keys if key in self._rows}
 
     def outcomes(self, keys: Sequence[str]) -> Iterable[tuple[str, str]]:
-        """Return what the table has for some keys."""
+        """Return the stored outcomes of some keys."""
         return [(key, self._rows[key]) for key in keys if key in self._rows]
 
     def put(self, found: Found) -> None:
@@ -56,7 +56,7 @@ def claim_of(scenario: Scenario, metric: str) -> Expectation:
 
 
 class Search(Campaign):
-    """A campaign whose points follow from each other: the grid, then the halves; `kept` is what was found.
+    """A campaign whose points follow from each other: the grid, then the halves; `kept` is the result.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ class Search(Campaign):
 
     @property
     def total(self) -> int:
-        """Runs so far, those of this round included."""
+        """Runs so far, including this round."""
         return self._earlier + super().total
 
     @property
@@ -114,7 +114,7 @@ class Search(Campaign):
         return 0.5 * share if rounds == 0 else min(1.0, 0.5 + 0.5 * (rounds - 1 + share) / ROUNDS)
 
     def run(self) -> bool:
-        """Look until all is told; return whether it is."""
+        """Search until all thresholds are found; return whether they are."""
         while super().run():
             self._halving.take(self._measured())
             self.kept = json.loads(self._halving.found().model_dump_json())

@@ -1,4 +1,4 @@
-"""Games with the bank of hypotheses: what a seed hides, what is handed in, and the rule of the points; pure."""
+"""Games with the bank of hypotheses: the hidden values of a seed, the answer, and the rule of the points; pure."""
 
 from __future__ import annotations
 
@@ -27,6 +27,6 @@ def game_of(name: str) -> Game[Any]:
 
 
 def judged(name: str, seed: int, values: dict[str, Any]) -> Outcome:
-    """Return the points of what was handed in, for a process of its own."""
+    """Return the points of an answer, for a process of its own."""
     game = game_of(name)
     return game.judge(seed, game.read(seed, values))

@@ -1,4 +1,4 @@
-"""Be the filter: tune a bank of Kalman filters to a device, a noise and faults that nobody tells."""
+"""Be the filter: tune a bank of Kalman filters to an unknown device, noise and faults."""
 
 from __future__ import annotations
 
@@ -38,7 +38,9 @@ class Settings(HandIn):
         0.3, "noise on the voltage that the bank assumes; Q is scale times its square", "V", ge=0.001, le=10
     )
     probability_floor: float = parameter(1e-3, "smallest probability of a hypothesis", ge=0, le=0.05)
-    mass: float = parameter(1.0, "mass of a sixth hypothesis over that of the healthy device", ge=0.5, le=2, live=False)
+    mass: float = parameter(
+        1.0, "mass of a sixth hypothesis over the mass of the healthy device", ge=0.5, le=2, live=False
+    )
     stiffness: float = parameter(1.0, "stiffness of a sixth hypothesis over the healthy one", ge=0.5, le=2, live=False)
     damping: float = parameter(1.0, "damping of a sixth hypothesis over the healthy one", ge=0.25, le=4, live=False)
 
@@ -80,7 +82,7 @@ class Sixth(NamedTuple):
     credit : float
         The part of its probability that counts for the unknown fault.
     nearest : int
-        Place of the one of the five for which the rest counts.
+        Place of the state among the five for which the rest counts.
     """
 
     credit: float
@@ -102,21 +104,21 @@ class BeTheFilter(Game[Settings]):
     id = GAME
     title = "Be the filter"
     summary = (
-        "A hidden device, a hidden noise, hidden faults: set what the bank assumes, and give it a sixth hypothesis."
+        "A hidden device, a hidden noise, hidden faults: set the bank's assumptions, and give it a sixth hypothesis."
     )
     task = (
-        "The bank knows the healthy device and five hypotheses. Nobody tells it the noise: at scale 1 it assumes "
+        "The bank knows the healthy device and five hypotheses. The noise is unknown to it: at scale 1 it assumes "
         "0.4 \N{MICRO SIGN}m at the sensor, and the truth is at least a quarter off. The device starts healthy. After "
-        "30 ms of device time it changes every 20 ms, six times; twice to a fault that none of the five says. Watch "
+        "30 ms of device time it changes every 20 ms, six times; twice to a fault outside the five. Watch "
         "the measurement and the bank, set R, Q and the floor, and give the bank a sixth hypothesis for the unknown "
         "fault."
     )
     rule = (
         "The server runs your bank with five noise seeds and compares its probabilities with the truth at every "
-        "sample: 100 points for certainty in the truth throughout, 0 for even odds on six, fewer for what is worse "
-        "than a guess. On average nothing earns more than probabilities that are right. While the unknown fault is "
-        "there, only the sixth hypothesis can be right, and only as far as its motion at 2 kHz lies nearer to that "
-        "of the fault than the motion of the nearest of the five does: all of its probability counts if the two "
+        "sample: 100 points for certainty in the truth throughout, 0 for even odds on six, fewer for answers "
+        "that are worse than a guess. On average right probabilities earn most. During the unknown fault only the "
+        "sixth hypothesis can be right, and only as far as its motion at 2 kHz is nearer to the motion of the "
+        "fault than the motion of the nearest of the five is: all of its probability counts if the two "
         "move alike, none if it is no nearer. The rest counts for the one of the five that moves most like your "
         "sixth, so a copy of one of them changes next to nothing. The motion is one amplitude and one phase: other "
         "factors that move alike are as good."
@@ -134,12 +136,12 @@ class BeTheFilter(Game[Settings]):
     turned = ("assumed_noise_scale", "process_noise_v", "probability_floor")
 
     def bench(self, seed: int, handed: Settings | None = None) -> Document:
-        """Return the live bench of a seed as a scenario, the bank set as somebody would hand it in."""
+        """Return the live bench of a seed as a scenario, the bank set to the answer."""
         hidden = Hidden(seed)
         return {**document(hidden, handed or Settings()), "seed": hidden.draws.whole("live", NOISE_SEEDS)}
 
     def judge(self, seed: int, handed: Settings) -> Outcome:
-        """Return the points of what was handed in, beside those of the default settings."""
+        """Return the points of an answer, with the points of the default settings."""
         hidden = Hidden(seed)
         usual, sixth = Settings(), sixth_of(hidden, handed)
         brier, credit = _brier(hidden, handed, sixth), sixth.credit
@@ -167,7 +169,7 @@ class BeTheFilter(Game[Settings]):
         )
 
     def hidden(self, seed: int) -> list[Fact]:
-        """Tell what a seed hides."""
+        """Return the hidden values of a seed."""
         one = Hidden(seed)
         scale = one.noise_um**2 / DATA_SHEET_UM**2
         fault = ", ".join(
@@ -185,12 +187,12 @@ class BeTheFilter(Game[Settings]):
 
 
 def points(brier: float) -> float:
-    """Return the points of a Brier score: 100 for 0, none for that of even odds."""
+    """Return the points of a Brier score: 100 for 0, none for the score of even odds."""
     return 100.0 * (1.0 - brier / GUESS)
 
 
 def _brier(hidden: Hidden, settings: Settings, sixth: Sixth) -> dict[str, float]:
-    """Return mean Brier scores over the noise seeds: of all samples, of those of the five, of the unknown fault's."""
+    """Return mean Brier scores over the noise seeds: of all samples, of the five states, of the unknown fault."""
     truth = hidden.truth
     scenario = Scenario.load({**document(hidden, settings), "samples": len(truth)})
     parts = {"all": truth >= 0, "given": truth != UNKNOWN, "unknown": truth == UNKNOWN}
@@ -214,7 +216,7 @@ def counted(said: Sequence[FloatArray], sixth: Sixth) -> FloatArray:
     said : sequence of ndarray
         Probability of each hypothesis of the bank.
     sixth : Sixth
-        How that of the sixth counts.
+        Rule for the samples of the sixth.
     """
     q = np.zeros((UNKNOWN + 1, len(said[0])))
     for place, p in enumerate(said):

@@ -1,4 +1,4 @@
-"""The seed of a game draws its numbers, each by its name, and its device; everybody who has the seed gets the same."""
+"""The seed of a game draws its numbers, each by its name, and its device; everyone with the seed gets the same."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ BENCH: Document = {
     "controller": {"kind": "open_loop"},
     "sensor": {"kind": "ideal"},
 }
-"""The bench of every game as people know it, that of section 5.2.4: the nominal device, no word of noise."""
+"""The visible bench of every game, the bench of section 5.2.4: the nominal device, without the noise."""
 USUAL = (0.75, 2.0)
-"""Amplitude of a drawn device over that of the nominal one; others are drawn again."""
+"""Amplitude of a drawn device over the nominal amplitude; other devices are drawn again."""
 NOISE_SEEDS = 2**53
 
 
@@ -86,7 +86,7 @@ def amplitude_um(bench: Scenario) -> float:
 
 
 def distances(bench: Scenario, one: Hypothesis, others: Sequence[Hypothesis]) -> list[float]:
-    r"""Return how far the motion of a device lies from that of others, um.
+    r"""Return the distance between the motion of a device and the motions of others, um.
 
     .. math:: |Y_i-Y_j|,\qquad Y=\frac{f_gF}{kf_k-mf_m\omega^2+j\beta f_\beta\omega}V
 
@@ -97,7 +97,7 @@ def distances(bench: Scenario, one: Hypothesis, others: Sequence[Hypothesis]) ->
     one : Hypothesis
         The device.
     others : sequence of Hypothesis
-        From which the distance is asked.
+        The device from which the distance is measured.
     """
     nominal = bench.spec.device.oscillator()
     return [alias_map([one, other], nominal, TONES).pairs[0].distance_um for other in others]

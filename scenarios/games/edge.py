@@ -38,7 +38,7 @@ def document(seed: int) -> Document:
 
 
 class Edge:
-    """The bank of one seed, asked what it makes of faults.
+    """The bank of one seed, tried with faults.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ class Edge:
         return self.missed_in(severity) < MISSED
 
     def _is_missed(self, board: Board, severity: float) -> bool:
-        """Whether the bank still says healthy in most of the last samples; a board that stops has noticed."""
+        """Whether the verdict of the bank is healthy in most of the last samples; a board that stops has noticed."""
         board.apply(Inject(fault=self._fault, severity=severity))
         column, healthy = board.signals.index(f"{DIAGNOSER}.winner"), 0
         while board.tick < ONSET + AFTER:
@@ -82,7 +82,7 @@ class Edge:
         return 2 * healthy > LAST
 
     def find(self) -> float | None:
-        r"""Return the smallest severity that is found, its sign that of the end; none if none is up to the end.
+        r"""Return the smallest severity that is found, with the sign of the end; None if none is found up to the end.
 
         It is the first crossing from below: a ladder :math:`s_k=s_\text{end}2^{(k-18)/2}` is climbed to the first rung
         that is found, and the step to it is halved eight times on a scale of logarithms, to 0.14 %.

@@ -55,7 +55,7 @@ class FoolTheBank(Game[Named]):
     )
     task = (
         "The bank of six hypotheses knows the device and its noise. A seed offers three faults. Inject them on the "
-        "bench and heal them again, and see how small a fault may be before the bank goes on saying healthy. Then "
+        "bench and heal them again, and see how small a fault may be before the bank misses it. Then "
         "name a fault and a severity that it misses, as large as you dare. You have one attempt at each seed."
     )
     rule = (
@@ -81,7 +81,7 @@ class FoolTheBank(Game[Named]):
         return [_kind(name) for name in [*changed, *[name for name in order if name not in MECHANICAL][:2]]]
 
     def read(self, seed: int, values: Mapping[str, Any]) -> Named:
-        """Check what somebody names at a seed: one of its faults, within the range of that fault."""
+        """Check the fault named at a seed: one of its faults, within the range of that fault."""
         handed = super().read(seed, values)
         kinds = {one.name: one for one in self.kinds(seed)}
         if handed.fault not in kinds:
@@ -98,7 +98,7 @@ class FoolTheBank(Game[Named]):
         return {**document(seed), "seed": Draws(self.id, seed).whole("live", NOISE_SEEDS)}
 
     def judge(self, seed: int, handed: Named) -> Outcome:
-        """Return the points of what was named, and where the edge is."""
+        """Return the points of the named fault, and the severity of the edge."""
         kind = _kind(handed.fault)
         size, end = abs(handed.severity), kind.maximum if handed.severity > 0.0 else kind.minimum
         bank = Edge(seed, handed.fault, end)
@@ -111,21 +111,21 @@ class FoolTheBank(Game[Named]):
             never = f"It finds this fault nowhere up to {_amount(kind, end)}, so there is no edge and no points."
             return Outcome(points=0.0, figures=figures, said=f"{count} {never}", worked="P=0")
         figures["edge"] = found
-        again = " Yours lies beyond the edge, and the bank misses it again." if worth and size > abs(found) else ""
+        again = " Yours is beyond the edge, and the bank misses it again." if worth and size > abs(found) else ""
         words = f"{format_number(worth, 1)} points. The smallest it finds is {_amount(kind, found)}.{again}"
         sides = (size, abs(found)) if size <= abs(found) else (abs(found), size)
         worked = rf"P=100\cdot\frac{{{sides[0]:.4g}}}{{{sides[1]:.4g}}}={worth:.1f}" if worth else "P=0"
         return Outcome(points=worth, figures=figures, said=f"{count} {words}", worked=worked)
 
     def hidden(self, seed: int) -> list[Fact]:
-        """Tell what a seed hides."""
+        """Return the hidden values of a seed."""
         bench = Scenario.load(document(seed))
         noise = format_short(bench.document["sensor"]["noise_um"], "um")
         return [Fact(name="Sensor noise", said=noise), device_fact(bench)]
 
 
 def points(size: float, missed: int, edge: float | None) -> float:
-    """Return the points of a severity that is missed in so many runs, by the edge if there is one."""
+    """Return the points of a severity by the number of runs that missed it, and by the edge if there is one."""
     if missed < MISSED or edge is None:
         return 0.0
     return 100.0 * min(size / edge, edge / size)

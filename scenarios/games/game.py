@@ -70,7 +70,7 @@ class Game(ABC, Generic[H]):
     id, title, summary : str
         How a list names it.
     task, rule : str
-        They say what people are to do, and how points are counted.
+        They describe the task, and the rule of the points.
     equations : tuple of Equation
         The rule.
     attempts : int
@@ -78,7 +78,7 @@ class Game(ABC, Generic[H]):
     form : type of HandIn
         The numbers that people hand in.
     turned : tuple of str
-        Those of them that people turn on the live bench while it runs, by their parameters there.
+        The parameters that a player may change on the live bench while it runs.
     """
 
     id: ClassVar[str]
@@ -97,12 +97,12 @@ class Game(ABC, Generic[H]):
         return []
 
     def read(self, seed: int, values: Mapping[str, Any]) -> H:
-        """Check what somebody hands in at a seed.
+        """Check an answer at a seed.
 
         Raises
         ------
         InputError
-            Naming the field, what is wrong and what is allowed.
+            Naming the field, the error and the allowed values.
         """
         del seed
         try:
@@ -112,15 +112,15 @@ class Game(ABC, Generic[H]):
 
     @abstractmethod
     def bench(self, seed: int, handed: H | None = None) -> Document:
-        """Return the live bench of a seed as a scenario, the bank set as somebody would hand it in."""
+        """Return the live bench of a seed as a scenario, the bank set to the answer."""
 
     @abstractmethod
     def judge(self, seed: int, handed: H) -> Outcome:
-        """Return the points of what was handed in: the same bits for the same seed and numbers."""
+        """Return the points of an answer: the same bits for the same seed and numbers."""
 
     @abstractmethod
     def hidden(self, seed: int) -> list[Fact]:
-        """Tell what a seed hides."""
+        """Return the hidden values of a seed."""
 
 
 def check_seed(seed: int) -> int:

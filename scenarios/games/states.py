@@ -1,4 +1,4 @@
-"""What a seed hides from one who would be the filter: a device, its noise, and an order of states."""
+"""The hidden values of a seed in the game Be the filter: a device, its noise, and an order of states."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ GIVEN = (
     Hypothesis(name="b+30", damping=1.30),
 )
 UNKNOWN = len(GIVEN)
-"""Class of the fault that none of the five says; the sixth is for it."""
+"""Class of the fault outside the five; the sixth is for it."""
 SIXTH = "sixth"
 FAULTS = {"mass": "added_mass", "stiffness": "stiffness", "damping": "damping"}
 """The fault that makes a factor true."""
@@ -33,7 +33,7 @@ DATA_SHEET_UM = 0.4
 NOISE_UM = ((0.15, 0.28), (0.55, 0.75))
 DRIVE_V = (0.05, 0.8)
 FACTORS = {"mass": (0.85, 1.25), "stiffness": (0.88, 1.15), "damping": (0.6, 1.8)}
-"""Ends of what the unknown fault is drawn from; two of the three are changed."""
+"""Ends of the ranges of the unknown fault; two of the three are changed."""
 APART = (0.12, 0.8)
 """Distance of the unknown fault from the nearest of the five, as a share of the healthy amplitude."""
 FIRST, EACH, CHANGES = 1500, 1000, 6
@@ -41,7 +41,7 @@ FIRST, EACH, CHANGES = 1500, 1000, 6
 
 
 class Hidden:
-    """What a seed hides.
+    """The hidden values of a seed.
 
     Attributes
     ----------
@@ -50,9 +50,9 @@ class Hidden:
     noise_um, drive_noise_v : float
         The true noise of sensor and drive.
     unknown : Hypothesis
-        The fault that none of the five says.
+        The fault outside the five.
     states : list of int
-        What is true from each change on, the beginning first: places among the five, or `UNKNOWN`.
+        The truth from each change on, the beginning first: places among the five, or `UNKNOWN`.
     """
 
     def __init__(self, seed: int) -> None:
@@ -66,7 +66,7 @@ class Hidden:
 
     @property
     def document(self) -> Document:
-        """The bench without its bank, as a scenario: the drawn device, its noise, and what happens to it."""
+        """The bench without its bank, as a scenario: the drawn device, its noise, and its events."""
         return {
             **self.bench.document,
             "plant": {**BENCH["plant"], "drive_noise_v": self.drive_noise_v},
@@ -75,7 +75,7 @@ class Hidden:
         }
 
     def _unknown(self) -> Hypothesis:
-        """Draw the unknown fault: far enough from all of the five that the drive can tell it from them."""
+        """Draw the unknown fault: far enough from all of the five that it is distinguishable under the drive."""
         healthy, turn = amplitude_um(self.bench), 0
         while True:
             kept = self.draws.whole(f"kept {turn}", len(FACTORS))

@@ -1,7 +1,7 @@
 """Long columns, block by block: numpy adds up a block, and blocks are added in their order.
 
-The bits of a sum do not depend on how the samples came, and a column that lies in a temporary file is never in memory
-as a whole.
+The bits of a sum do not depend on the sizes of the pieces, and a column in a temporary file is never in memory as a
+whole.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ ALL = slice(None)
 
 
 def loaded(column: FloatArray, at: IntArray | slice = ALL) -> FloatArray:
-    """Return samples of a column in memory; those of a temporary file are read, and the pages they took are let go."""
+    """Return samples of a column in memory; samples of a temporary file are read, and their pages are released."""
     if not isinstance(column, np.memmap):
         return column if at is ALL else column[at]
     read = np.array(column[at])
@@ -30,7 +30,7 @@ def loaded(column: FloatArray, at: IntArray | slice = ALL) -> FloatArray:
 
 
 def blocks(*columns: FloatArray, more: int = 0) -> Iterable[list[FloatArray]]:
-    """Return the blocks of columns of one length, each with so many samples more of the next."""
+    """Return the blocks of columns of one length, each extended by some samples of the next."""
     length = len(columns[0])
     if length <= BLOCK:  # as most columns are
         return ([loaded(column) for column in columns],)
@@ -38,7 +38,7 @@ def blocks(*columns: FloatArray, more: int = 0) -> Iterable[list[FloatArray]]:
 
 
 def total(of: Callable[..., Any], *columns: FloatArray) -> Any:
-    """Return the sum of what a function makes of the blocks of columns."""
+    """Return the sum of the results of a function over the blocks of columns."""
     found = None
     for block in blocks(*columns):
         now = np.sum(of(*block))
@@ -52,7 +52,7 @@ def mean(column: FloatArray) -> float:
 
 
 def largest(of: Callable[..., Any], *columns: FloatArray) -> float:
-    """Return the largest number a function makes of columns; nan where it makes one."""
+    """Return the largest value of a function of columns; nan where one is nan."""
     return float(np.max([np.max(of(*block)) for block in blocks(*columns)]))
 
 

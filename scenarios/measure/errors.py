@@ -27,7 +27,7 @@ def _squares(values: FloatArray, total: float) -> float:
 
 
 def swing(values: FloatArray) -> float:
-    """Return the largest size; what is not a number counts, so that nothing is taken for settled."""
+    """Return the largest size; a value that is not a number counts, so that it never looks settled."""
     found = 0.0
     for (block,) in blocks(values):
         found = _swing(block, found)
@@ -100,7 +100,7 @@ def first_peaks(x: FloatArray, model: FloatArray) -> tuple[float, float]:
 def _first_peaks(x: FloatArray, model: FloatArray, found: FloatArray) -> bool:
     """Go on looking; return whether the model has turned twice.
 
-    What is found is the direction, whether the model turned, its peak, and the largest of x in either direction.
+    The result has the direction, whether the model turned, its peak, and the largest of x in either direction.
     """
     for i in range(len(model) - 1):
         slope = model[i + 1] - model[i]

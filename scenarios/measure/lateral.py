@@ -36,7 +36,7 @@ def lateral_metrics(board: Board) -> dict[str, float]:
 
     ``lateral.fold_um``, ``fold_v`` and ``fold_lateral_um`` are travel, drive and sideways displacement of the worst
     corner where the equilibrium under a slowly rising drive stops being stable; ``lateral.contact_ms`` is the moment
-    of the first contact; ``lateral.far_ratio`` is the travel of the farthest finger over that of the centre, where the
+    of the first contact; ``lateral.far_ratio`` is the travel of the farthest finger over the centre's, where the
     shuttle rests at 1 um of travel in a stable equilibrium.
     ``device.pull_in_v`` is the bias beyond which the shuttle turns into the stators without any drive.
     """

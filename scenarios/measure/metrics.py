@@ -53,14 +53,14 @@ def _projection(frequency_hz: float, dt_ms: float, first_tick: int, samples: int
 
 
 def _tones(frequency_hz: float, dt_ms: float, first_tick: int, samples: int) -> FloatArray:
-    """Return the columns that a tone with an offset is made of."""
+    """Return the columns of a tone with an offset."""
     angle = 2.0 * math.pi * frequency_hz * (first_tick + np.arange(samples)) * dt_ms / 1e3
     return np.column_stack([np.sin(angle), np.cos(angle), np.ones(samples)])
 
 
 @kernel
 def weighed(weights: FloatArray, signal: FloatArray) -> tuple[float, float]:
-    """Return the sums of a signal under two rows of weights, in the order of its samples wherever they lie."""
+    """Return the sums of a signal under two rows of weights, in the order of its samples, in memory or in a file."""
     first, second = 0.0, 0.0
     for i in range(weights.shape[1]):
         first += weights[0, i] * signal[i]
@@ -80,9 +80,9 @@ def control_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch
     """Return the errors of the shuttle against the model, and the effort.
 
     The settling time is the last moment at which the error left the band of 2 % of the model's amplitude, counted from
-    ``metrics.since_ms``. The effort is the ratio of the fundamental of the applied voltage to that of the reference in
-    the tail; the displacement ratio compares shuttle and model in the same way. The overshoot is measured at the last
-    step of a reference that is constant in the tail, as a share of the model's motion.
+    ``metrics.since_ms``. The effort is the ratio of the fundamental of the applied voltage to the fundamental of the
+    reference in the tail; the displacement ratio compares shuttle and model in the same way. The overshoot is measured
+    at the last step of a reference that is constant in the tail, as a share of the model's motion.
     """
     dt = board.dt_ms
     x, model = trace["plant.displacement"], trace["model.displacement"]
@@ -155,7 +155,7 @@ def identify_metrics(board: Board, name: str, error: FloatArray | None, stretch:
     estimates at the end.
     """
     prefix = f"identify.{name}"
-    known = set(board.signals.names)  # an identifier of one's own need not judge the input
+    known = set(board.signals.names)  # a user's identifier need not judge the input
     last = {port: board.value(f"{name}.{port}") for port in EXCITED if f"{name}.{port}" in known}
     if error is not None:
         counted = error[stretch.start(len(error), board.dt_ms) :]
@@ -184,7 +184,7 @@ def measure(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dic
         figures |= identify_metrics(board, name, trace.get(f"{name}.error_pct"), stretch)
     scores = board.scores()
     for name in board.spec.diagnosers:
-        if name in scores and scores[name].samples:  # a score without samples says nothing, not even 0
+        if name in scores and scores[name].samples:  # a score without samples has no figure, not even 0
             figures |= diagnosis_metrics(name, scores[name], step_lengths(trace[f"{name}.truth"]))
     if stretch.beside:
         figures |= delay_ratios(figures, list(scores), stretch.beside)

@@ -42,7 +42,7 @@ def _measure(name: str, title: str, checkpoint: Checkpoint) -> PlantCost:
     while (spent := time.thread_time() - begin) < LEAST_S:
         rows = board.advance(board.chunk)
         if rows.count == 0:
-            reason = board.trip.reason if board.trip is not None else "the board stands still"
+            reason = board.trip.reason if board.trip is not None else "the board is paused"
             return PlantCost(name, title, None, reason)
         ticks += rows.count
     return PlantCost(name, title, 1e9 * spent / ticks)

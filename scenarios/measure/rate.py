@@ -23,13 +23,13 @@ SETTLED = 0.05
 SHORTEST = 0.01
 """Share of a run that a rate must stay the same for to count as a level."""
 LONGER = 4
-"""Length of a spectrum over that of its record: how finely the frequencies lie."""
+"""Length of a spectrum over the length of its record: the resolution of the frequencies."""
 LONGEST = 1 << 18
 """Samples of a step response that are transformed."""
 FINE = 0.01
 """Bandwidth over the rate of the samples up to which those between them are not missed."""
 READ = ("rate", "quadrature", "angle", "trusted", "bound")
-"""Outputs of a controller that figures are made of."""
+"""Outputs of a controller for its figures."""
 
 Levels = list[tuple[int, int]]
 
@@ -44,9 +44,9 @@ def traced(board: Board) -> list[str]:
 def rate_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dict[str, float]:
     r"""Return the figures of a plant with axes.
 
-    The rate is read by the controller that drives at the end. What it says is compared with the true rate on each level
-    of it, a moment at which the rate changes being a step. The last quarter of a level, or what ``metrics.tail_share``
-    says, counts as settled.
+    The rate is read by the controller that drives at the end. Its reading is compared with the true rate on each level
+    of it; a moment at which the rate changes is a step. The last quarter of a level, or the share
+    ``metrics.tail_share``, counts as settled.
     """
     true, read = trace["rate.rate"], trace.get(f"{board.spec.active}.rate")
     pieces = levels(true, stretch.start(len(true), board.dt_ms))
@@ -89,10 +89,10 @@ def _settled(piece: tuple[int, int], stretch: Stretch) -> slice:
 
 
 def _reading(board: Board, true: FloatArray, read: FloatArray, pieces: Levels, stretch: Stretch) -> dict[str, float]:
-    """Compare what is read with the true rate, both as means over the settled part of a level.
+    """Compare the reading with the true rate, both as means over the settled part of a level.
 
-    The settling time is the last moment at which the reading is outside 5 % of its step around its mean at the end.
-    Where the step does not stand out of the noise there is none.
+    The settling time is the last moment at which the reading is outside 5 % of its step around its mean at the end. A
+    step that is smaller than the noise has no settling time.
     """
     figures: dict[str, float] = {}
     for step, piece in enumerate(pieces, 1):
@@ -118,13 +118,13 @@ def _reading(board: Board, true: FloatArray, read: FloatArray, pieces: Levels, s
 def bandwidth_hz(read: FloatArray, change: float, dt_ms: float) -> float:
     r"""Return the frequency at which a step response passes :math:`1/\sqrt2`, Hz; nan if it never does.
 
-    The transfer function is the Fourier transform of the response's slope. Of a long record only every so many samples
-    are taken. Where they do not show its first half period well, its first quarter is taken instead.
+    The transfer function is the Fourier transform of the response's slope. Of a long record only every n-th sample is
+    taken. Where they do not show its first half period well, its first quarter is taken instead.
 
     Parameters
     ----------
     read : ndarray, shape (samples,)
-        What is read from the step on.
+        The reading from the step on.
     change : float
         By how much it changes.
     """
@@ -140,7 +140,7 @@ def bandwidth_hz(read: FloatArray, change: float, dt_ms: float) -> float:
 
 
 def _both(name: str, step: int, steps: int, value: float) -> dict[str, float]:
-    """Return the figure of a step, under the plain name as well: that of the last step stays."""
+    """Return the figure of a step, under the plain name as well: the last step keeps the plain name."""
     return {name: value} | ({f"{name}.{step}": value} if steps > 1 else {})
 
 
@@ -150,7 +150,7 @@ def _phasor(q: FloatArray, v: FloatArray, omega: float) -> Any:
 
 
 def _mean_square(of: Callable[..., FloatArray], *columns: FloatArray) -> float:
-    """Return the mean square of what a function makes of columns."""
+    """Return the mean square of the values of a function of columns."""
     return float(total(lambda *block: np.square(of(*block)), *columns) / len(columns[0]))
 
 
@@ -160,13 +160,13 @@ def _size(swing: FloatArray) -> float:
 
 
 def _frequency(x: FloatArray, v: FloatArray) -> float:
-    """Return the frequency of a swing in rad/ms; nan at rest."""
+    """Return the frequency of an oscillation in rad/ms; nan without motion."""
     size, speed = (float(total(lambda block: np.dot(block, block), q)) for q in (x, v))
     return math.sqrt(speed / size) if size > 0.0 else math.nan
 
 
 def _over(trace: dict[str, FloatArray], at: slice, one: str, other: str) -> complex:
-    """Return the swing of one axis over that of another, by least squares; a smooth window takes other tones out."""
+    """Return the ratio of the phasors of two axes, by least squares; a smooth window removes other tones."""
     omega = _frequency(trace["plant.x"][at], trace["plant.x_velocity"][at])
     if not omega > 0.0:
         return complex(math.nan, math.nan)
@@ -184,7 +184,7 @@ def _over(trace: dict[str, FloatArray], at: slice, one: str, other: str) -> comp
 
 
 def _hanning(first: int, end: int, samples: int) -> FloatArray:
-    """Return a part of numpy's window of so many samples, but for its ends, which are 0."""
+    """Return a part of numpy's window of this length, except its ends, which are 0."""
     at: FloatArray = np.cos(math.pi * (2.0 * np.arange(first, end) + (1 - samples)) / (samples + 1))
     return 0.5 + 0.5 * at
 
@@ -202,10 +202,10 @@ def _locus(trace: dict[str, FloatArray], at: slice) -> dict[str, float]:
 def _scale(
     board: Board, trace: dict[str, FloatArray], true: FloatArray, pieces: Levels, stretch: Stretch
 ) -> dict[str, float]:
-    r"""Return the swing of y that goes with the rate, where no force holds y.
+    r"""Return the swing of y per rate, where no force holds y.
 
-    It is the change of y over x from the first level to the last, over that of the rate. With one level, what the cross
-    terms of the nominal device make of x is taken off instead.
+    It is the change of y over x from the first level to the last, over the change of the rate. With one level, the
+    coupling by the cross terms of the nominal device is subtracted instead.
     """
     last = _settled(pieces[-1], stretch)
     device = board.spec.nominal
@@ -223,7 +223,7 @@ def _scale(
 
 
 def _in_step(trace: dict[str, FloatArray], at: slice) -> dict[str, float]:
-    """Return the forces, and how far y is from that of a partner, or from rest."""
+    """Return the forces, and the distance of y from the y of a partner, or from zero."""
     figures = {}
     for axis, name in (("y", "sync.force_un"), ("x", "sync.drive_force_un")):
         figures[name] = _size(trace[f"drive.{axis}.force"][at])

@@ -13,14 +13,14 @@ from core.units import DEG_RT_H_PER_DEG_RT_S
 
 
 def rate_noise_metrics(taus_s: Sequence[float], state: Allan.State) -> dict[str, float]:
-    """Return N, B and K as far as the record tells them, and N as a density.
+    """Return N, B and K as far as the record shows them, and N as a density.
 
     Parameters
     ----------
     taus_s : sequence of float, shape (octaves,)
         Averaging times of the read-out, s.
     state : Allan.State
-        What it has gathered.
+        State of the Allan figures.
     """
     averages = np.array(state.averages)
     noise = fit(taus_s, np.sqrt(0.5 * state.squares / np.maximum(averages, 1.0)), averages)

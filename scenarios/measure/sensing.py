@@ -68,7 +68,7 @@ def sensing_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch
 
 
 def _ambiguity_um(board: Board) -> float:
-    """Return the distance of displacements that the sensor in use cannot tell apart, as it states itself."""
+    """Return the distance between displacements that look alike to the sensor in use, by its own statement."""
     spec = board.spec
     sensor = spec.sensors[spec.measuring]
     block: Any = sensor.block

@@ -1,4 +1,4 @@
-"""What figures of a run are taken from: a part of it, and a diagnoser that others are held against."""
+"""The input of figures of a run: a part of the run, and a diagnoser for comparison."""
 
 from __future__ import annotations
 

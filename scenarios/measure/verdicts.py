@@ -13,7 +13,7 @@ from core.diagnose.consistency import AMBIGUOUS, ISOLATED, NORMAL, UNKNOWN
 from scenarios.measure.blocks import first_where, total
 
 TRACED_VERDICTS = ("truth", "winner", "verdict", "alarm", "region", "loss", "estimate")
-"""Outputs of diagnosers that figures are made of."""
+"""Outputs of diagnosers for their figures."""
 
 
 def verdict_metrics(board: Board, trace: dict[str, FloatArray]) -> dict[str, float]:

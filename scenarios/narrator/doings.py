@@ -1,4 +1,4 @@
-"""What is done to a bench, and its trips: one sentence for each entry of the log."""
+"""Actions on a bench, and its trips: one sentence for each entry of the log."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from scenarios.narrator.sentence import Kind, Sentence
 from scenarios.narrator.words import change, figure, length, listed, moment, uncapital
 
 TOLD = ("inject", "heal", "switch", "set", "tripped", "make_safe")
-"""Kinds of entries that are told; of those that set parameters only what gives the drive to another controller."""
+"""Kinds of entries with a sentence; of set parameters only a change of the driving controller."""
 TRIPS = ("tripped", "make_safe")
 SCALES = {"mass": "effects.mass_scale", "stiffness": "effects.stiffness_scale", "damping": "effects.damping_scale"}
 MODEL, MEASURED = "model.displacement", "sensor.displacement"
@@ -25,11 +25,11 @@ SPAN = 100
 
 
 class Doings:
-    r"""Says what is done to a bench.
+    r"""Writes the sentences about actions on a bench.
 
-    A fault and its healing say by what factors the device is the nominal one from that tick on. A switch says the root
-    mean square of the measured error over the 100 ticks before, :math:`\sqrt{\tfrac1{100}\sum(y_m-y)^2}`. A trip says
-    the value that was too large, and the limit.
+    A sentence about a fault or its healing gives the factors of the device relative to the nominal device from that
+    tick on. A sentence about a switch gives the root mean square of the measured error over the 100 ticks before,
+    :math:`\sqrt{\tfrac1{100}\sum(y_m-y)^2}`. A sentence about a trip gives the value that was too large, and the limit.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ class Doings:
             if now != before:
                 numbers[f"{noun}_scale"] = now
                 times = "again" if now == 1.0 else f"{format_short(now, '', 3)} times"
-                said.append(f"the {noun} is {times} that of a healthy device")
+                said.append(f"the {noun} is {times} the healthy value")
                 signals.append(name)
         return numbers, listed(said) if said else "", signals
 
@@ -152,7 +152,7 @@ class Doings:
         return ""
 
     def _changes(self, name: str) -> str:
-        """Say what a fault changes, without what follows from it."""
+        """Return the changes by a fault, without their consequences."""
         block: Any = self._library.blocks("faults").get(name)
         return f"the {getattr(block, 'changes', 'device').partition(';')[0]}"
 

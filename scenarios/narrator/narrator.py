@@ -1,4 +1,4 @@
-"""The narrator: a fold over the rows and the log of a bench, which tells what happens in plain sentences."""
+"""The narrator: a fold over the rows and the log of a bench, which gives plain sentences about its events."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ from scenarios.narrator.settling import Settling
 from scenarios.narrator.verdicts import Verdicts
 
 PORTS = ("winner", "truth")
-"""What of a diagnoser is followed from tick to tick, and what is read of it when it turns."""
+"""Ports of a diagnoser that are followed from tick to tick, and the ports that are read when it changes."""
 EACH = ("probability", "residual", "nis")
 
 
 class Narrator:
     """Tells faults, healings, switches, verdicts, trips, and when the error is back.
 
-    It reads only the signals it is given and the entries it hears, so it cannot tell what these do not. The sentences
-    do not depend on how many rows it is shown at a time.
+    It reads only the signals and entries it is given, so it cannot report anything else. The sentences do not depend on
+    how many rows it is shown at a time.
 
     Parameters
     ----------
     spec : Spec
         The bench as it begins.
     signals : sequence of Signal
-        The signals that may be told of.
+        The signals that sentences may use.
     outputs : int
         How many of the columns of the rows are outputs.
     """
@@ -72,7 +72,7 @@ class Narrator:
             self._heard = [*self._heard, entry]
 
     def follow(self, log: Log, rows: Rows | None = None) -> list[Sentence]:
-        """Return what is to be told after some rows more, or none, of a board whose log says what was done."""
+        """Return the sentences after some more rows, or none, of a board with its log."""
         new = list(takewhile(lambda entry: entry.seq > self._last_heard, reversed(log)))
         self._last_heard = log.last
         for entry in reversed(new):
@@ -80,7 +80,7 @@ class Narrator:
         return self.tell() if rows is None else self.look(rows)
 
     def look(self, rows: Rows) -> list[Sentence]:
-        """Return what is to be told after some rows more, which may be none."""
+        """Return the sentences after some more rows, which may be none."""
         if not rows.count:
             return self.tell()
         self._samples.show(rows)
@@ -108,7 +108,7 @@ class Narrator:
         return changes
 
     def tell(self) -> list[Sentence]:
-        """Return what is to be told of the entries heard: a trip at once, anything else when its tick has run."""
+        """Return the sentences of the new entries: a trip at once, anything else when its tick has run."""
         end = self._samples.end
         due: list[LogEntry] = []
         later: list[LogEntry] = []
@@ -124,7 +124,7 @@ class Narrator:
         return found
 
     def copy(self) -> Narrator:
-        """Return a narrator that goes on from here by itself."""
+        """Return an independent narrator with the same state."""
         twin = copy.copy(self)
         twin._verdicts = [copy.copy(one) for one in self._verdicts]
         twin._doings, twin._settling = copy.copy(self._doings), copy.copy(self._settling)

@@ -28,7 +28,7 @@ def _keep(ring: Any, outputs: FloatArray, taps: FloatArray, columns: IntArray, f
 class Samples:
     """Gives signals by their names, rounded to single precision as recordings and the history keep them.
 
-    So a replay tells the same as the bench did.
+    So a replay has the same sentences as the bench.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ class Samples:
         self._rows, self.first = None, self.end
 
     def copy(self) -> Samples:
-        """Return what goes on from here by itself."""
+        """Return an independent copy."""
         twin = Samples(self._columns, self._outputs, list(self._places))
         twin._ring, twin.began, twin.first, twin.end = self._ring.copy(), self.began, self.end, self.end
         return twin

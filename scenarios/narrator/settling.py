@@ -45,8 +45,8 @@ class Settling:
     r"""Tells when the error is back after the last fault, healing or switch.
 
     From there on the root mean squares of the measured error :math:`y_m-y` and of the model :math:`y_m` are taken over
-    100 ticks after 100 ticks. Once the error has been over 5 % of the model, the first 100 ticks under 2.5 % of it are
-    told. A trip ends it.
+    100 ticks after 100 ticks. Once the error has been over 5 % of the model, the first 100 ticks under 2.5 % of it give
+    a sentence. A trip ends it.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class Settling:
         self._at, self._sums = 0, np.zeros(4)
 
     def follow(self, told: Sentence) -> None:
-        """Follow what comes of what was told."""
+        """Follow the settling after a sentence."""
         self._after = None if told.kind == "trip" else (told.tick, "healing" if told.kind == "heal" else told.kind)
         self._at, self._sums = told.tick, np.zeros(4)
 
@@ -69,7 +69,7 @@ class Settling:
         if self._after is None or self._at >= until or MODEL not in samples or MEASURED not in samples:
             return
         model, measured = (samples.values(name, self._at, until) for name in (MODEL, MEASURED))
-        self._sums = self._sums.copy()  # a copy of this goes on alone
+        self._sums = self._sums.copy()  # a copy of this continues independently
         settled = _settle(model, measured, self._sums, SPAN, OVER, BACK)
         self._at = self._at + settled if settled else until
         if settled:

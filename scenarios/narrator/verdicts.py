@@ -22,11 +22,11 @@ TURNS = int(HELD)
 class Verdicts:
     r"""Tells each verdict of a diagnoser: another hypothesis has won 20 times in a row.
 
-    A verdict holds until another hypothesis wins 20 times in a row; that of the healthy device holds at tick 0. Where
-    the narrator begins later, or no hypothesis is the healthy device, the first verdict is not told. A model misses by
-    the root mean square of its residuals over the 20, :math:`\sqrt{\tfrac1{20}\sum r_k^2}`; where there are no
-    residuals, of the normalised ones. The delay counts from the change of the truth to the first of the 20, as that of
-    the score does. Without the signal of the truth a sentence says nothing of it.
+    A verdict holds until another hypothesis wins 20 times in a row; the healthy verdict holds at tick 0. Where the
+    narrator begins later, or no hypothesis is the healthy device, the first verdict gives no sentence. A model misses
+    by the root mean square of its residuals over the 20, :math:`\sqrt{\tfrac1{20}\sum r_k^2}`; where there are no
+    residuals, of the normalised ones. The delay counts from the change of the truth to the first of the 20, as the
+    delay of the score does. Without the signal of the truth a sentence does not mention it.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ class Verdicts:
             yield tick, value, self._changed
 
     def _gather(self, samples: Samples, stop: int) -> None:
-        """Gather by how much the model misses that wins now, and the one whose verdict holds."""
+        """Gather the residual of the model that wins now, and of the model whose verdict holds."""
         first = samples.first + (self._since - samples.first) % self._every
         first = max(first, self._since)
         port = self._port(samples)
@@ -121,7 +121,7 @@ class Verdicts:
         )
 
     def _misses(self, samples: Samples, new: int, old: int, numbers: dict[str, float], signals: list[str]) -> str:
-        """Say by how much the model misses that wins, and the one that won before."""
+        """Return the text with the residual of the model that wins, and of the previous winner."""
         port, said = self._port(samples), []
         if not port:
             return ""

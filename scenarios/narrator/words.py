@@ -9,7 +9,7 @@ from core.diagnose.hypothesis import ModelList, NamedModel
 from core.format import MINUS, format_short, format_si
 
 NOUNS = {"gain": "drive gain", "second_stiffness": "stiffness along y"}
-"""Factors whose name says too little."""
+"""Factors with an unclear name."""
 
 
 def moment(ms: float) -> str:
@@ -34,7 +34,7 @@ def change(share: float) -> str:
 
 
 def uncapital(title: str) -> str:
-    """Write a title within a sentence; one that begins with an abbreviation stays."""
+    """Write a title within a sentence; a title that begins with an abbreviation stays."""
     return title if title[1:2].isupper() else title[:1].lower() + title[1:]
 
 
@@ -63,7 +63,7 @@ def diagnosis_words(diagnosers: Mapping[str, Section]) -> dict[str, str]:
 
 
 def _factor(name: str, value: float) -> str:
-    """Say a factor on the nominal device, or what is added to it in its unit."""
+    """Write a factor on the nominal device, or an additive change in its unit."""
     if name.endswith("_dps"):
         sign = "+" if value > 0.0 else ""
         return f"{name[:-4].replace('_', ' ')} {sign}{format_short(value, 'deg/s', 3)}"

@@ -28,18 +28,18 @@ class Tracking(gymnasium.Env[FloatArray, FloatArray]):
     r"""Follow the reference model of a scenario: ``CombBench/Tracking-v0``.
 
     An action is the voltage held over the next sample, as a share of the limit of the drive (-1 to 1); an observation
-    is what a controller reads: reference (V), model (um), measured (um), voltage applied (V). The reward of a step,
+    has the inputs of a controller: reference (V), model (um), measured (um), voltage applied (V). The reward of a step,
     with the true displacement :math:`y` at its end, is
 
     .. math:: R=e^{-(y_m-y)^2/\sigma^2},\qquad \sigma=1\,\mu m
 
-    so it lies between 0 and 1, and a trip, which terminates the episode, costs all rewards that were to come. The end
-    of the scenario truncates it. The seed of a reset decides the noise of this episode and of all that follow.
+    so it is between 0 and 1, and a trip, which terminates the episode, costs all later rewards. The end of the scenario
+    truncates it. The seed of a reset decides the noise of this episode and of all later episodes.
 
     Parameters
     ----------
     scenario : str or Scenario
-        A library id, or a scenario; its events happen as they stand.
+        A library id, or a scenario; its events happen unchanged.
     values : dict, optional
         Fields of the scenario written over, by dotted paths.
 
@@ -64,7 +64,7 @@ class Tracking(gymnasium.Env[FloatArray, FloatArray]):
 
     @property
     def board(self) -> Hosted:
-        """The board of this episode, to look at; whoever learns from it cheats."""
+        """The board of this episode, for inspection; an agent that learns from it cheats."""
         return self._board
 
     def reset(
@@ -103,7 +103,7 @@ class Tracking(gymnasium.Env[FloatArray, FloatArray]):
 
 
 def _observation(sample: Sample) -> FloatArray:
-    """Return what is observed, within the space."""
+    """Return the observation, within the space."""
     seen = np.array([getattr(sample, name) for name in OBSERVED])
     within: FloatArray = np.clip(np.nan_to_num(seen), -FARTHEST, FARTHEST)
     return within

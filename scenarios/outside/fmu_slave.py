@@ -1,6 +1,6 @@
-"""What runs inside an exported FMU: a device, exact from sample to sample under a held voltage.
+"""The code inside an exported FMU: a device, exact from sample to sample under a held voltage.
 
-It goes into the FMU as it stands, with its numbers in ``device.json`` beside it, and needs nothing but Python there.
+The file goes into the FMU unchanged, with its numbers in ``device.json``, and needs only Python there.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pythonfmu3.variables import Float64
 NEAR = 1e-6
 """How far a step may be from a whole number of samples, relative."""
 TICKS_OF_CLOCK, SHARE = 2.0, 0.1
-"""The same for the difference of two large times: so many of their last digits, and at most this share of a sample."""
+"""The same for the difference of two large times: in units of their last digit, and at most this share of a sample."""
 
 
 class CombBenchDevice(Fmi3Slave):  # type: ignore[misc]

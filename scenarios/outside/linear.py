@@ -17,7 +17,7 @@ from scenarios.schema import Scenario
 
 MS_PER_S = 1e3
 READABLE = ("error", "reference", "model", "measured", "applied")
-"""What a linear controller may read; the error is that of the model minus what is measured."""
+"""The inputs that a linear controller may read; the error is the model minus the measurement."""
 
 
 def device(scenario: Scenario) -> Any:
@@ -25,8 +25,8 @@ def device(scenario: Scenario) -> Any:
 
     .. math:: \ddot y=-\tfrac{\beta}{m}\dot y-\tfrac km y+\tfrac Fm u
 
-    Mass, damping and stiffness are those in its environment, without faults; the states are displacement and velocity.
-    A plant of first order has one state.
+    Mass, damping and stiffness are the values in its environment, without faults; the states are displacement and
+    velocity. A plant of first order has one state.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def device(scenario: Scenario) -> Any:
 
 
 def sampled_device(scenario: Scenario) -> Any:
-    """Return the device with the voltage held from sample to sample: exactly what the linear plant does."""
+    """Return the device with the voltage held from sample to sample: exactly the linear plant."""
     return control.sample_system(device(scenario), interval_s(scenario), "zoh", name="sampled_device")
 
 
@@ -95,7 +95,7 @@ def closed_loop(scenario: Scenario, controller: Any) -> Any:
     scenario : Scenario
         The bench.
     controller : control.StateSpace or control.TransferFunction
-        From the error (um) to the voltage (V), sampled as the scenario is: `pid`, or one's own.
+        From the error (um) to the voltage (V), sampled as the scenario is: `pid`, or a user's own.
 
     Raises
     ------
@@ -154,7 +154,7 @@ class LinearLaw:
     scenario : Scenario
         The bench it is for.
     reads : tuple of str
-        What its inputs are, in their order.
+        Its inputs, in their order.
     method : str
         How a continuous system is sampled: ``tustin``, or ``zoh``, its inputs held.
 

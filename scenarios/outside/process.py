@@ -27,8 +27,8 @@ ENDS_S = 2.0
 class Process:
     """A law that a process computes: nine little-endian doubles on its input, one on its output, sample by sample.
 
-    A context, at whose end the input of the process is closed; what has not ended soon after is killed. What it writes
-    to its error output is shown as it is.
+    A context, at whose end the input of the process is closed; a process that does not end soon after is killed. Its
+    error output is shown unchanged.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class Process:
             process.wait(0.0 if kind is not None else ENDS_S)
         except subprocess.TimeoutExpired:
             pass
-        try:  # what it has started goes with it
+        try:  # its child processes end with it
             os.killpg(process.pid, signal.SIGKILL)
         except ProcessLookupError:
             pass

@@ -40,7 +40,7 @@ def time_scale(span_ms: float) -> UnitScale:
 
 @dataclass(frozen=True)
 class Axis:
-    """What an axis shows, in which unit its values come; its range follows from the values unless it is given."""
+    """Quantity of an axis and unit of its values; its range follows from the values unless it is given."""
 
     title: str
     unit: str = ""
@@ -49,12 +49,12 @@ class Axis:
 
 
 class Scale:
-    """An axis over its range: where a value lies, its ticks, its title with the unit they are in.
+    """An axis over its range: the place of a value, its ticks, its title with their unit.
 
     Parameters
     ----------
     axis : Axis
-        What it shows.
+        Its quantity.
     values : sequence of float
         The values it must show where the axis has no range of its own.
     """
@@ -69,13 +69,13 @@ class Scale:
         self.title = f"{axis.title}, {unit}" if unit and axis.title else unit or axis.title
 
     def place(self, value: float) -> float:
-        """Return where a value lies, from 0 to 1 of the axis."""
+        """Return the place of a value, from 0 to 1 of the axis."""
         if self._axis.is_log:
             return math.log(max(value, 1e-300) / self.low) / math.log(self.high / self.low)
         return (value - self.low) / (self.high - self.low)
 
     def ticks(self, count: float) -> list[tuple[float, str]]:
-        """Return about so many ticks, two at least, each with its label."""
+        """Return about this number of ticks, two at least, each with its label."""
         factor = self._unit.factor
         found = decade_ticks(self.low * factor, self.high * factor) if self._axis.is_log else []
         if len(found) > 1:

@@ -22,7 +22,7 @@ NONE = "-"
 
 
 def benchmark_text(results: Results, tracks: dict[str, Track]) -> str:
-    """Return all tracks that were measured, what recomputes them, and the diagnosers that are left out."""
+    """Return all measured tracks, the data to recompute them, and the diagnosers that are left out."""
     lines = []
     for name, track in tracks.items():
         rows = results.ranked(name)

@@ -48,7 +48,7 @@ def campaign_report(
     sweep : Sweep
         The campaign.
     points : sequence of PointTally
-        Its results, those that are there.
+        Its finished results.
     name : str
         The name that it was given; empty: its title.
     everything : mapping, optional

@@ -1,4 +1,4 @@
-"""Figures of a campaign: which are shown, which varies most, over what range an axis shows one."""
+"""Figures of a campaign: the shown figures, the figure with the largest variation, the range of an axis for it."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ def shown_figures(sweep: Sweep, measured: Iterable[str]) -> list[str]:
 def by_variation(points: Iterable[PointTally], names: Iterable[str]) -> list[str]:
     """Return figures in the order of how much they vary, the most first.
 
-    A figure varies by the standard deviation of its means from row to row, over the deviation within a row: the root
-    of the mean square over rows, and at least `LEAST_SHARE` of the mean size. So without seeds the order is that of
-    deviation over mean size, and a figure that is the same in all rows comes last.
+    A figure varies by the standard deviation of its means from row to row, over the deviation within a row: the root of
+    the mean square over rows, and at least `LEAST_SHARE` of the mean size. So without seeds the order is by deviation
+    over mean size, and a figure that is the same in all rows comes last.
     """
     rows = list(points)
 

@@ -30,7 +30,7 @@ BY_NUMBERS: tuple[Kind, ...] = ("rows", "lines", "map")
 
 
 class Part(BaseModel):
-    """A figure over what was varied, for one combination of the rest: variants, texts of the grid."""
+    """A figure over a varied quantity, for one combination of the rest: variants, texts of the grid."""
 
     labels: Labels
     x: list[float] = Field(description="Values across; none for rows")
@@ -40,7 +40,7 @@ class Part(BaseModel):
 
 
 class Rank(BaseModel):
-    """How closely a figure goes with a number that was varied."""
+    """Correlation of a figure with a number that was varied."""
 
     name: str
     correlation: float = Field(description="Rank correlation by Spearman, -1 to 1")
@@ -81,11 +81,12 @@ def campaign_picture(
     sweep : Sweep
         The campaign.
     points : mapping
-        Results by the number of the point, with the figures that may come first, and with the one asked for.
+        Results by the number of the point, with the figures that may come first, and with the requested figure.
     measured : iterable of str
         All figures that a run has.
     figure, across : str
-        What is wanted in place of the figure that varies most, and of the number that it goes with most closely.
+        The chosen figure in place of the figure that varies most, and the chosen quantity in place of the number with
+        the closest correlation.
 
     Raises
     ------
@@ -134,7 +135,7 @@ def _is_varied(choices: Sequence[object]) -> bool:
 
 
 def _ranking(values: Mapping[str, FloatArray], means: FloatArray) -> list[Rank]:
-    """Return how closely means go with each number; what does not vary goes with nothing."""
+    """Return the correlation of means with each number; a constant number has none."""
     found = []
     for name, at in values.items():
         is_flat = len(means) < 3 or np.ptp(at) == 0.0 or np.ptp(means) == 0.0
@@ -143,7 +144,7 @@ def _ranking(values: Mapping[str, FloatArray], means: FloatArray) -> list[Rank]:
 
 
 def _parts(points: Sequence[PointTally], figure: str, axes: Mapping[str, FloatArray], kind: Kind) -> list[Part]:
-    """Divide the points by what is on no axis, each part in the order of its axes."""
+    """Divide the points by the labels that are on no axis, each part in the order of its axes."""
     places: list[tuple[float, ...]] = list(zip(*(column.tolist() for column in axes.values()), strict=True))
     parts: dict[str, Part] = {}
     for place, point in sorted(zip(places or [()] * len(points), points, strict=True), key=lambda one: one[0]):

@@ -1,8 +1,8 @@
-"""The figure of a run: what its scenario is about, in its own shape, as on a card of the gallery.
+"""The figure of a run: the subject of its scenario, in its own shape, as on a card of the gallery.
 
-A study shows its curves, or its figures beside what is expected of them. A bench shows what its expectations speak of:
-the Allan deviation, the locus, two devices in step, the verdicts of diagnosers, the error of identifiers, what a sensor
-says, how far the shuttle moves aside, how well it follows.
+A study shows its curves, or its figures with the expected values. A bench shows the subject of its expectations: the
+Allan deviation, the locus, two devices in step, the verdicts of diagnosers, the error of identifiers, the output of a
+sensor, the lateral motion of the shuttle, the tracking error.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ PERIODS = 3
 MANY = 8
 """Periods of a motion above which one sees no more than a block on a card."""
 LEAST_ERROR_UM = 1e-6
-"""Errors below it are drawn as it: what is left in the end is the rounding of the computer."""
+"""Smaller errors are drawn as this value: the final rest is the rounding of the computer."""
 DONE = ("inject", "heal", "set", "switch", "reset_trip", "tripped", "make_safe")
 """Kinds of log entries that are marked."""
 TIME = "time"
@@ -60,7 +60,7 @@ def figure(result: Result) -> Chart:
 
 
 def marks(result: Result) -> list[Mark]:
-    """Return what was done to the bench, each at its moment."""
+    """Return the events of the bench, each at its moment."""
     dt_ms = result.board.dt_ms
     return [Mark(one.tick * dt_ms, one.text) for one in result.board.log if one.kind in DONE and one.tick]
 
@@ -88,7 +88,7 @@ def _trace(result: Result, name: str, said: str = "", at: slice = slice(None), n
 
 
 def _last_periods(values: FloatArray, periods: int = PERIODS) -> slice:
-    """Return the last so many periods of a swing; all of it where it has fewer."""
+    """Return the last periods of a swing; all of it where it has fewer."""
     centre, rising = mean(values[-len(values) // 4 :]), deque[int](maxlen=periods + 1)
     for number, (block,) in enumerate(blocks(values, more=1)):
         rising.extend((number * BLOCK + np.flatnonzero((block[:-1] < centre) & (block[1:] >= centre))).tolist())
@@ -111,7 +111,7 @@ def _study(result: Result) -> Chart | None:
 
 
 def _expected(result: Result) -> Chart:
-    """Show each measured figure beside its expectation."""
+    """Show each measured figure with its expectation."""
     bars = list[Bar]()
     for entry in result.scenario.head.expect:
         value = result.metrics.get(entry.metric, math.nan)
@@ -166,7 +166,7 @@ def _in_step(result: Result) -> Chart | None:
 
 
 def _rate(result: Result) -> Chart:
-    """Show the true rate and what is read, on the bench and on its twins."""
+    """Show the true rate and the reading, on the bench and on its twins."""
     spec = result.board.spec
     shown = [(f"{spec.active}.rate", "read"), ("rate.rate", "true")]
     shown += [
@@ -175,7 +175,7 @@ def _rate(result: Result) -> Chart:
     ]
     lines = [_trace(result, name, said) for name, said in shown if name in _names(result)]
     settled = [value for one in lines for value in one.y[len(one.y) // 4 :] if math.isfinite(value)]
-    span = (min(settled), max(settled)) if settled else (0.0, 0.0)  # what the start makes of it is cut off
+    span = (min(settled), max(settled)) if settled else (0.0, 0.0)  # the transient of the start is cut off
     air = 0.08 * (span[1] - span[0]) or 1.0
     ends = span[0] - air, span[1] + air
     lines = [replace(one, y=np.clip(one.y, *ends).tolist()) for one in lines]
@@ -183,7 +183,7 @@ def _rate(result: Result) -> Chart:
 
 
 def _lanes(result: Result) -> Chart | None:
-    """Show the truth, and below it what each of the first diagnosers concluded, over time."""
+    """Show the truth, and below it the verdicts of the first diagnosers, over time."""
     scores = {name: one for name, one in result.board.scores().items() if f"{name}.winner" in _names(result)}
     if not scores:
         return None
@@ -224,7 +224,7 @@ def _identified(result: Result) -> Chart | None:
 
 
 def _motion(result: Result) -> Chart:
-    """Show some periods of the motion: of the model, the shuttle, and what is measured."""
+    """Show some periods of the motion: of the model, the shuttle, and the measurement."""
     at = _last_periods(result.signal("plant.displacement"))
     shown = [("plant.displacement", "shuttle"), ("model.displacement", "model"), ("sensor.displacement", "measured")]
     lines = [_trace(result, name, said, at) for name, said in shown]
@@ -257,7 +257,7 @@ def _aside(result: Result) -> Chart | None:
 
 
 def _followed(result: Result) -> Chart:
-    """Show the model and the shuttle; where their periods cannot be told apart, the error or the amplitudes."""
+    """Show the model and the shuttle; where their periods are indistinguishable, the error or the amplitudes."""
     names, time = _names(result), Axis(TIME, "ms")
     periods = _periods(result.signal("plant.displacement"))
     if periods <= MANY:
@@ -295,4 +295,4 @@ SHAPES: tuple[tuple[tuple[str, ...], Callable[[Result], Chart | None]], ...] = (
     (("sensing.",), _sensed),
     (("lateral.",), _aside),
 )
-"""What an expectation begins with, and the shape that shows it; the first that fits is taken."""
+"""The beginning of an expectation, and the shape that shows it; the first that fits is taken."""

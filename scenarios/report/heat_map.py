@@ -19,7 +19,7 @@ APART = 16
 
 @dataclass(frozen=True)
 class Cell:
-    """A figure at one pair of numbers, and what the pointer reads there."""
+    """A figure at one pair of numbers, and its text under the pointer."""
 
     column: int
     row: int

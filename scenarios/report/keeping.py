@@ -1,4 +1,4 @@
-"""Files kept of a run beside its trace: its summary, a report, a drawing, and a script that repeats it."""
+"""Files kept of a run in addition to its trace: its summary, a report, a drawing, and a script that repeats it."""
 
 from __future__ import annotations
 

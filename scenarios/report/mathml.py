@@ -12,11 +12,11 @@ KEPT = frozenset(
     "separator largeop movablelimits symmetric accent accentunder minsize maxsize lspace rspace width height depth "
     "voffset linethickness columnalign columnlines columnspacing rowalign rowlines rowspacing frame notation".split()
 )
-"""Attributes that say how mathematics is set; the converter also takes addresses, styles and classes from LaTeX."""
+"""Attributes for the setting of mathematics; the converter also takes addresses, styles and classes from LaTeX."""
 
 
 def mathml(latex: str, *, is_block: bool) -> str:
-    """Return mathematics as MathML; what LaTeX says is never markup of its own.
+    """Return mathematics as MathML; LaTeX cannot insert markup of its own.
 
     Parameters
     ----------

@@ -42,7 +42,7 @@ def paint_campaign(shown: CampaignPicture) -> list[str]:
 
 
 def _ranking(shown: CampaignPicture, scale: MetricScale) -> str:
-    """Paint how closely the figure goes with each number."""
+    """Paint the correlation of the figure with each number."""
     rows = [Row(label_scale(one.name, []).name, one.correlation) for one in shown.ranking]
     axis = Axis("rank correlation (grey: by chance)", "", (-1.0, 1.0))
     return paint_rows(RowChart(f"{scale.name}: what it goes with", axis, rows, True, shown.chance))

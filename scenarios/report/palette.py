@@ -1,4 +1,4 @@
-"""Colours and dashes of lines, as on the page: Okabe and Ito's colours, which all people can tell apart."""
+"""Colours and dashes of lines, as on the page: Okabe and Ito's colours, which all people can distinguish."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Look:
 
 
 def style() -> str:
-    """Return the style of every chart: colours of the palette in the scheme of whoever looks at it."""
+    """Return the style of every chart: colours of the palette in the scheme of the reader."""
     light, dark = (_colours(PALETTE["colours"][scheme]) for scheme in ("light", "dark"))
     return f"{CHART_STYLE}{light}@media (prefers-color-scheme: dark) {{ svg {{ color: #e8ecf1 }} {dark}}}\n"
 
@@ -72,7 +72,7 @@ def hypothesis(index: int) -> Look:
 
 
 def signal(name: str, number: int) -> Look:
-    """Return the look of a signal: its own, or that of its place among others."""
+    """Return the look of a signal: its own, or the look of its place among others."""
     known = PALETTE["signals"].get(name)
     return Look.of(*known) if known else line(number)
 

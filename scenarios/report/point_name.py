@@ -20,7 +20,7 @@ def label_scale(path: str, values: Iterable[str | float]) -> MetricScale:
 
 
 def label_text(scale: MetricScale, value: str | float) -> str:
-    """Return a value that points differ by; a number is cut to what tells it from others."""
+    """Return a value that differs between points; a number is cut to its distinctive digits."""
     return value if isinstance(value, str) else format_short(scale.shown(value), "")
 
 

@@ -1,4 +1,4 @@
-"""The painter of named rows over one axis as SVG text: dots with what they may be off by, or bars from zero."""
+"""The painter of named rows over one axis as SVG text: dots with their error bars, or bars from zero."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class RowChart:
     is_from_zero: bool = False
     """Bars from zero in place of dots."""
     chance: float = 0.0
-    """Values nearer to zero say nothing: they are marked."""
+    """Values nearer to zero are not significant: they are marked."""
 
 
 def paint_rows(shown: RowChart, width: int = REPORT.width) -> str:

@@ -22,7 +22,7 @@ MOST_EVENTS = 300
 CLOSE_UP = 300
 """Number of ticks at the end that are drawn one by one."""
 OTHERS = ("open_loop", "pid")
-"""Controllers in place of those of the scenario, whose figures stand beside its own."""
+"""Controllers in place of the controllers of the scenario, whose figures are printed next to its own."""
 CHARTS = (
     ("Displacement", ("model.displacement", "plant.displacement", "sensor.displacement")),
     ("Voltage", ("reference.voltage", "drive.voltage")),
@@ -95,7 +95,7 @@ def _expectation(entry: dict[str, Any]) -> list[str]:
 
 
 def _comparator(entry: dict[str, Any]) -> str:
-    """Name the PID of a row, and say whether it meets the claim."""
+    """Name the PID of a row, and whether it meets the claim."""
     name: str = entry.get("comparator", "")
     return f"{name} meets the claim too" if entry.get("pid_too") else name
 

@@ -119,7 +119,7 @@ def campaign_script(document: dict[str, Any], file: str) -> str:
 
 
 def _recorded(document: dict[str, Any]) -> list[str]:
-    """Return the signals whose trace is written: the motion of the plant, and what drives it."""
+    """Return the signals whose trace is written: the motion of the plant, and its drive."""
     axes = plant_of(document).axes
     if not axes:
         return ["plant.displacement", "drive.voltage"]

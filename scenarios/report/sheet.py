@@ -39,7 +39,7 @@ def markdown(text: str) -> Markup:
 def sheet_html(
     view: Mapping[str, Any], traces: Mapping[str, Any], recordings: Sequence[str], student: str, begun: datetime
 ) -> str:
-    """Return a sheet as somebody has filled it in.
+    """Return a filled-in sheet.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def sheet_html(
     recordings : sequence of str
         Those handed in, in words.
     student : str
-        Who filled it in; empty for somebody alone.
+        Name of the student; empty outside a class.
     begun : datetime
         When the bench was begun.
     """

@@ -1,4 +1,4 @@
-"""The one painter of charts as SVG text: lines, lanes and bars over two axes, in colours all people can tell apart.
+"""The one painter of charts as SVG text: lines, lanes and bars over two axes, in colours all people can distinguish.
 
 A chart is described first and painted in the size of its place: large in a report, small on a card of the gallery.
 """
@@ -19,7 +19,7 @@ from scenarios.report.axis import Axis, Scale
 from scenarios.report.palette import Look, line, style
 
 LETTER = 5.9
-"""Width of a letter, px; what decides where a legend goes on in the next row."""
+"""Width of a letter, px; it decides where a legend starts its next row."""
 ROW = 15
 NOTHING = Axis("")
 
@@ -47,7 +47,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class Lane:
-    """A named row of areas: from, to, look, and whether it is the thin strip of what is true."""
+    """A named row of areas: from, to, look, and whether it is the thin strip of the truth."""
 
     name: str
     areas: Sequence[tuple[float, float, Look, bool]]
@@ -55,7 +55,7 @@ class Lane:
 
 @dataclass(frozen=True)
 class Bar:
-    """A measured figure beside what is expected of it, each row in a scale of its own."""
+    """A measured figure with its expectation, each row in a scale of its own."""
 
     name: str
     value: float
@@ -67,7 +67,7 @@ class Bar:
 
 @dataclass(frozen=True)
 class Chart:
-    """What a chart shows: lines over two axes, or lanes over the x axis, or bars."""
+    """Content of a chart: lines over two axes, or lanes over the x axis, or bars."""
 
     title: str
     x: Axis = NOTHING
@@ -77,7 +77,7 @@ class Chart:
     lanes: Sequence[Lane] = ()
     bars: Sequence[Bar] = ()
     keys: Sequence[tuple[str, Look]] = ()
-    """Names of a legend where it is not that of the lines."""
+    """Names of a legend where they differ from the names of the lines."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ REPORT, CARD = Size(460, 300), Size(400, 180, has_title=False)
 
 
 def thin(of: Callable[..., FloatArray], *columns: FloatArray, most: int = 400) -> tuple[IntArray, list[float]]:
-    """Return the smallest and the largest value of each of so many columns of a picture, in order, and their samples.
+    """Return the smallest and the largest value of each column of a picture, in order, and their samples.
 
     Parameters
     ----------
@@ -206,7 +206,7 @@ def _field(chart: Chart, size: Size, top: int) -> list[str]:
 
 
 def _lanes(lanes: Sequence[Lane], across: Callable[[float], float], left: int, top: int, bottom: int) -> list[str]:
-    """Paint lanes below each other; the strip of the truth is thin and above what was concluded."""
+    """Paint lanes below each other; the strip of the truth is thin and above the verdicts."""
     parts: list[str] = []
     height = (bottom - top) / max(1, len(lanes))
     for number, lane in enumerate(lanes):
@@ -220,7 +220,7 @@ def _lanes(lanes: Sequence[Lane], across: Callable[[float], float], left: int, t
 
 
 def _bars(bars: Sequence[Bar], size: Size, top: int) -> list[str]:
-    """Paint a row for each figure: its name, what is expected as a bar, what was measured as a dot, its number."""
+    """Paint a row for each figure: its name, the expectation as a bar, the measurement as a dot, its number."""
     left, right = round(0.45 * size.width), round(0.83 * size.width)
     height = (size.height - top - 6) / max(1, len(bars))
     parts = []

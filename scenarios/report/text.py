@@ -9,7 +9,7 @@ from core.format import format_in, format_short, format_si, format_spread
 from scenarios.metric_name import metric_text, metric_unit
 
 BESIDE = ("measured", "open_loop", "pid")
-"""Figures of one expectation: its own, and those of other controllers in the same scenario."""
+"""Figures of one expectation: its own, and the figures of other controllers in the same scenario."""
 WIDTH = 100
 """Columns of the gallery."""
 
@@ -35,7 +35,7 @@ def run_text(summary: dict[str, Any]) -> str:
 
 
 def gallery_text(summary: dict[str, Any]) -> str:
-    """Return what a scenario claims, its verdict, its warnings and its expectations, at most `WIDTH` wide."""
+    """Return the claim of a scenario, its verdict, its warnings and its expectations, at most `WIDTH` wide."""
     mark = "ok  " if summary["ok"] else "MISS"
     lines = [_ended(f"{mark} {summary['scenario']}", summary["verdict"]), *_wrapped(summary["claim"], 5)]
     lines += [line for text in summary["warnings"] for line in _wrapped(f"warning: {text}", 5)]
@@ -59,7 +59,7 @@ def _row(entry: dict[str, Any]) -> str:
 
 
 def _figures(entry: dict[str, Any]) -> str:
-    """Return what was expected, what was measured, what other controllers give, and what was published."""
+    """Return the expected figure, the measured figure, the figures of other controllers, and the published figure."""
     figures = {name: entry[name] for name in BESIDE if entry.get(name) is not None}
     names = {"measured": "measured", "open_loop": "open loop", "pid": f"{entry.get('comparator')} gives"}
     said = [f"{names[name]} {metric_text(entry['metric'], value, 6)}" for name, value in figures.items()]

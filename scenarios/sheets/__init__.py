@@ -1,4 +1,4 @@
-"""Lab sheets: Markdown with steps that the server checks; one file each, shown beside the bench."""
+"""Lab sheets: Markdown with steps that the server checks; one file each, shown next to the bench."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ class Beginning:
 
 
 def begin(sheet: Sheet, drawn: Callable[[str], int]) -> Beginning:
-    """Draw what varies with the student, and work out the facts.
+    """Draw the varying numbers of a student, and work out the facts.
 
     Parameters
     ----------

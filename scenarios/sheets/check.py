@@ -1,4 +1,4 @@
-"""Reads a sheet and tries all of it on the bench it begins with, before anybody sees it."""
+"""Reads a sheet and tries all of it on the bench it begins with, before a student sees it."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def check(text: str, name: str) -> Sheet:
 
 
 def _try(sheet: Sheet, lines: list[str], section: Section, facts: dict[str, float], board: Board) -> None:
-    """Try the formulas, signals and settings of a section; facts that its step leaves are there from then on."""
+    """Try the formulas, signals and settings of a section; the facts of its step exist from then on."""
     step = section.step
     try:
         inserted(section.text, facts)

@@ -74,11 +74,11 @@ def inserted(text: str, facts: Mapping[str, float], field: str = "text", missing
     text : str
         The text.
     facts : mapping
-        What its formulas name.
+        Facts in its formulas.
     field : str
-        Where it stands, for errors.
+        Its place, for errors.
     missing : str, optional
-        What stands for a number that has no value, such as one of a step left out; without it that is an error.
+        Replaces a number without a value, such as the result of a step left out; without it such a number is an error.
     """
 
     def number(found: re.Match[str]) -> str:

@@ -1,4 +1,4 @@
-"""Judges an answer: it earns all points of a step, a part of them or none, for a reason."""
+"""Judges an answer: it earns all points of a step, a part of them or none, with a reason."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def judge(step: Answered, text: str, facts: Mapping[str, float]) -> Verdict:
 
 
 def can_judge(step: Answered, facts: Mapping[str, float]) -> bool:
-    """Return whether an answer can be judged: not if that takes what a step that was left out would have measured."""
+    """Return whether an answer can be judged: not if it needs the measurement of a step that was left out."""
     asked = step.asks
     if isinstance(asked, Number):
         try:
@@ -48,7 +48,7 @@ def can_judge(step: Answered, facts: Mapping[str, float]) -> bool:
 
 
 def solution(step: Answered, facts: Mapping[str, float]) -> str:
-    """Return the right answer in words; told once the step is closed."""
+    """Return the right answer in words; shown once the step is closed."""
     asked = step.asks
     if isinstance(asked, Choice):
         return ", ".join(option.text for option in asked.options if option.share == 1.0)
@@ -99,7 +99,7 @@ def _near(value: float, right: float, relative: float, absolute: float) -> bool:
 
 
 def _is_prefix_away(value: float, right: float, relative: float) -> bool:
-    """Whether a number is right but for a prefix of its unit."""
+    """Whether a number is right except for a prefix of its unit."""
     if value == 0.0 or right == 0.0 or value * right < 0.0:
         return False
     power = 3 * round(math.log10(value / right) / 3.0)

@@ -1,4 +1,4 @@
-"""Looks at a bench at the end of a window: measures each condition of a step, and says whether it holds."""
+"""Looks at a bench at the end of a window: measures each condition of a step, and decides whether it holds."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ REFERENCE = "reference.voltage"
 
 
 class Window(Protocol):
-    """A bench over the last so many ticks."""
+    """A bench over the last ticks of a window."""
 
     dt_ms: float
 
@@ -87,7 +87,7 @@ def known_limits(step: Hold, facts: Mapping[str, float]) -> list[tuple[float, fl
 
 
 def measure(condition: Limits, window: Window) -> Value:
-    """Return what a condition is about."""
+    """Return the value of a condition."""
     board = window.board
     if condition.verdict is not None:
         score = board.scores().get(condition.verdict)
@@ -108,7 +108,7 @@ def measure(condition: Limits, window: Window) -> Value:
 
 
 def setting_of(spec: Spec, path: str) -> float | str:
-    """Return a setting of a bench as it is now, one that was never written too.
+    """Return a setting of a bench as it is now, also a setting that was never written.
 
     Raises
     ------
@@ -163,7 +163,7 @@ def _measured(kind: str, signal: str, window: Window) -> float:
 
 
 def wanted_text(condition: Limits, ends: tuple[float, float] | None) -> str:
-    """Say the value that a condition asks for; nothing if the sheet does not tell."""
+    """Return the required value of a condition as text; empty if the sheet hides it."""
     if not condition.told:
         return ""
     if ends is None:

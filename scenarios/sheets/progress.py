@@ -1,4 +1,4 @@
-"""How far somebody has come with a sheet: the open step, the answers, the points won and lost."""
+"""The progress of a student with a sheet: the open step, the answers, the points won and lost."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ AnyStep = Hold | Question | Prediction | Blind
 
 
 class Given(BaseModel):
-    """An answer, and what it was worth."""
+    """An answer and its points."""
 
     text: str
     share: float
@@ -46,7 +46,7 @@ class StepProgress(BaseModel):
 
 
 class Progress(BaseModel):
-    """How far somebody has come."""
+    """The progress of a student."""
 
     facts: dict[str, float] = {}
     steps: dict[str, StepProgress] = {}
@@ -57,11 +57,11 @@ class Progress(BaseModel):
         return self.steps.setdefault(step.id, StepProgress())
 
     def open_step(self, sheet: Sheet) -> AnyStep | None:
-        """Return the first step that is not done; the ones behind it are closed."""
+        """Return the first step that is not done; later steps are closed."""
         return next((step for step in sheet.steps if not self.of(step).done), None)
 
     def is_told(self, sheet: Sheet, step: AnyStep) -> bool:
-        """Whether it may be said what a step was worth: of a prediction, once the run it was made for is done."""
+        """Whether the points of a step may be shown: of a prediction, once the run it was made for is done."""
         if not isinstance(step, Prediction):
             return True
         run = sheet.step(step.until)
@@ -108,7 +108,7 @@ class Progress(BaseModel):
         state.hints += 1
 
     def go_on(self, sheet: Sheet, step_id: str, tick: int) -> None:
-        """Close the step that is open with what it has earned.
+        """Close the open step with its points.
 
         Raises
         ------

@@ -22,11 +22,11 @@ class Quantity(NamedTuple):
     value: float
     base: str
     factor: float
-    """What the number typed was multiplied with."""
+    """Multiplier of the typed number."""
 
 
 def unit_of(text: str) -> tuple[float, str]:
-    """Return the factor of a unit to its base, and the base; any prefix is read, other units stand for themselves."""
+    """Return the factor of a unit to its base, and the base; any prefix is read, other units are their own base."""
     plain = _tidy(text)
     known = {_tidy(name): found for name, found in UNITS.items()} | {_tidy(unit_text(n)): f for n, f in UNITS.items()}
     if plain in known:

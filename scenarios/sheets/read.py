@@ -92,7 +92,7 @@ def _table(name: str, step: str, lines: list[str], start: int, stop: int, valida
 
 
 def line_of(lines: list[str], start: int, stop: int, path: str) -> int:
-    """Return the line where a field stands, as near as it can be told; counted from 1."""
+    """Return the line of a field, as near as possible; counted from 1."""
     words = [part for part in path.split(".") if not part.isdigit()]
     for word in reversed(words):
         form = re.compile(rf'(^|[\s{{,.\[])"?{re.escape(word)}"?\s*(=|\])')
@@ -109,7 +109,7 @@ def _id_of(lines: list[str], start: int, stop: int) -> str:
 
 
 def _is_fenced(lines: list[str], start: int, line: int) -> bool:
-    """Whether a line stands inside a block of code."""
+    """Whether a line is inside a block of code."""
     return sum(text.lstrip().startswith("```") for text in lines[start:line]) % 2 == 1
 
 

@@ -14,7 +14,7 @@ Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,31}$")]
 Words = Annotated[str, Field(min_length=1, max_length=400)]
 Share = Annotated[float, Field(ge=0, le=1)]
 NUMBER_COSTS = 0.25
-"""Share of the points of a number that a wrong answer costs unless the sheet says otherwise."""
+"""Share of the points of a number that a wrong answer costs by default."""
 
 
 class Part(BaseModel):
@@ -52,7 +52,9 @@ class Bench(Part):
     scenario: str = Field(description="Id of a scenario of the library")
     drawn_device: bool = Field(False, description="Draw the device from the process spread, one for each student")
     set: dict[str, float | bool | str | dict[str, Any] | list[Any]] = Field({}, description="Written over the scenario")
-    time_scale: float | None = Field(None, gt=0, le=1, description="Device seconds per wall second; that of the device")
+    time_scale: float | None = Field(
+        None, gt=0, le=1, description="Device seconds per wall second; the device's usual scale"
+    )
 
 
 class Head(Part):
@@ -68,7 +70,7 @@ class Head(Part):
 
 
 class Hint(Part):
-    """Help, and what it costs; the price is said before."""
+    """Help, and its cost; the price is shown before."""
 
     text: Words
     costs: float = Field(ge=0, description="Points")
@@ -83,7 +85,7 @@ class Step(Part):
 
 
 class Limits(Part):
-    """A quantity of the bench, and the value that the step asks for."""
+    """A quantity of the bench, and the value that the step requires."""
 
     label: Words
     name: Name | None = Field(None, description="Its value when the step is done is the fact <step>_<name>")
@@ -96,7 +98,7 @@ class Limits(Part):
     between: tuple[Formula, Formula] | None = None
     equals: str | None = None
     unit: str = ""
-    told: bool = Field(True, description="Whether the page says what it is to be")
+    told: bool = Field(True, description="Whether the page shows the limits")
 
     @model_validator(mode="before")
     @classmethod
@@ -126,7 +128,7 @@ class Hold(Step):
     for_ms: float = Field(gt=0, le=10_000)
     window_ms: float = Field(1.0, gt=0, le=1000, description="Looked at at the end of every so much device time")
     conditions: list[Limits] = Field(min_length=1, max_length=8)
-    trace: list[str] = Field([], max_length=3, description="Signals of which a small trace is kept")
+    trace: list[str] = Field([], max_length=3, description="Signals with a small stored trace")
 
 
 class Option(Part):
@@ -160,7 +162,7 @@ class Partly(Part):
 
 
 class Mistake(Part):
-    """A number that a known mistake leads to, the share it earns, and what went wrong."""
+    """A number that a known mistake leads to, the share it earns, and the name of the mistake."""
 
     value: Formula
     share: Share = 0.0
@@ -220,7 +222,7 @@ class Question(Answered):
 
 
 class Prediction(Answered):
-    """Answered once and for all before a run; what it was worth is told when a later step is done."""
+    """Answered once, before a run; its points are shown when a later step is done."""
 
     kind: Literal["prediction"]
     until: Name = Field(description="The step behind which it is judged")

@@ -55,7 +55,7 @@ NONLINEAR = {
 """Driven at 2 kHz, without noise."""
 
 HISTORY_MB = 72.0
-"""Memory of the history of a bench, that of the service unless it is set."""
+"""Memory of the history of a bench; the value of the service unless it is set."""
 
 NOISY = {"plant.drive_noise_v": 0.01}
 EVERYTHING = {

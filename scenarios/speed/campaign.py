@@ -18,7 +18,7 @@ from scenarios.speed.timing import cpu_ns
 
 SCENARIO = "ch5-seven-step"
 FEW, MANY = 500, 3000
-"""Runs of a short campaign and of a long one: the rate is that of the difference."""
+"""Runs of a short campaign and of a long campaign: the rate is the rate of the difference."""
 REPEATS = 5
 SPREAD = """
 [latin_hypercube]
@@ -99,7 +99,7 @@ def sweep_s(axes: str) -> float:
 def command_rates(axes: str, repeats: int = REPEATS) -> tuple[list[float], list[float]]:
     """Return the runs per second of the command on two processes, and its seconds for the longer campaign.
 
-    The rate is that of the runs that a longer campaign has more, so that what starting takes is not in it.
+    The rate is the rate of the additional runs of a longer campaign, so that it excludes the time of the start.
     """
     rates, whole = [], []
     for _ in range(repeats):

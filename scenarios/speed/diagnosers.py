@@ -1,4 +1,4 @@
-"""Cost of diagnosers, each beside the Kalman bank in the same run."""
+"""Cost of diagnosers, each together with the Kalman bank in the same run."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PEER = "mmae"
 
 
 def diagnoser_costs(units: Iterable[str], own: Document) -> dict[str, Cost]:
-    """Return what a sample costs on the bench of the seven steps, in ns and over the Kalman bank of six models."""
+    """Return the cost of a sample on the bench of the seven steps, in ns and over the Kalman bank of six models."""
     names = list(dict.fromkeys([PEER, *units]))
     board = seven_step_bench({"diagnosers": {name: {"kind": name} for name in names}, "units": own})
     ns = block_costs(board, *names)

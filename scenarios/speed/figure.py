@@ -7,7 +7,7 @@ from statistics import median
 from typing import Any
 
 Costs = Mapping[str, Sequence[float]]
-"""What each repeat gave, by what was measured; all in turn within a repeat."""
+"""Results of each repeat, by candidate; all in turn within a repeat."""
 
 
 def figure(
@@ -24,13 +24,13 @@ def figure(
     Parameters
     ----------
     name, unit : str
-        What is measured, with its set-up.
+        The measured quantity, with its set-up.
     values : sequence of float
-        One for each repeat.
+        A value for each repeat.
     least, most : float, optional
         The target.
     stretch : float, optional
-        What would be better still.
+        A still better value.
     """
     value, best = median(values), most if least is None else least
     sign = "<=" if least is None else ">="

@@ -1,7 +1,7 @@
 """The same loop as one writes it in an afternoon: numpy, one small array operation after the other.
 
-Plant, PID, direct MRAC and a bank of Kalman filters, in the equations of the text. It gives what the board gives (a
-test says so) and is the peer for the cost of a sample.
+Plant, PID, direct MRAC and a bank of Kalman filters, in the equations of the text. It gives the same results as the
+board (a test compares them) and is the peer for the cost of a sample.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from core.diagnose.hypothesis import assumed_noise
 from scenarios.speed.timing import cpu_ns
 
 KEYS = ("plant", "open_loop", "pid", "mrac", "kalman")
-"""Blocks of the board that the loop stands for."""
+"""Blocks of the board that the loop replaces."""
 
 
 def held(device: Oscillator, dt_ms: float) -> tuple[FloatArray, FloatArray]:
@@ -78,7 +78,7 @@ class NaiveLoop:
         return plant.a1, plant.a2, plant.gain  # type: ignore[attr-defined]
 
     def sample(self, reference: float, model: float, applied: float) -> tuple[float, float, float]:
-        """Advance by a sample with the voltage that was applied; return the displacement and what the laws ask for."""
+        """Advance by a sample with the applied voltage; return the displacement and the voltages of the laws."""
         if self.started:
             voltage = applied + self.noise * self.random.standard_normal()
             self.x = self.phi @ self.x + self.gamma * voltage
@@ -130,7 +130,7 @@ class NaiveLoop:
             self.covariances[k] = covariance - np.outer(gain, covariance[0])
             likelihood[k] = np.exp(-0.5 * residual**2 / psi) / np.sqrt(psi)
         self.is_driven = self.is_driven or applied != 0.0
-        if not self.is_driven:  # residuals of a device that stands still are no evidence
+        if not self.is_driven:  # residuals of a device without motion are no evidence
             return
         shares = self.probability * likelihood
         shares = np.maximum(shares / shares.sum(), self.floor)

@@ -76,7 +76,8 @@ def forced_response_sample(device: Oscillator, voltage: FloatArray) -> Callable[
 def solved(board: Board, samples: int, *, rtol: float = 1e-3, atol: float = 1e-6) -> FloatArray:
     """Return displacement and velocity of the nonlinear plant of a bench by ``solve_ivp``, sample by sample, from rest.
 
-    The voltage is that of its sine, held over each sample; the tolerances are those of scipy unless given.
+    The voltage is the sine of the reference, held over each sample; the tolerances are the defaults of scipy unless
+    given.
     """
     device, p = board.spec.context().device, board.wiring.packed(board.wiring.row("plant"))
     cubic = Nonlinear.Packed(p).cubic

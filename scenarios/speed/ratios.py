@@ -30,7 +30,7 @@ Figures = list[dict[str, Any]]
 
 
 class Speed:
-    """What is measured: the boards, the peers, and the table that is made of their costs."""
+    """The measurement: the boards, the peers, and the table of their costs."""
 
     def __init__(self) -> None:
         self.bench = boards.seven_step_bench(boards.NOISY)
@@ -97,7 +97,7 @@ class Speed:
         return [one.key for one in self.one.wiring.instances if one.block.family in ("control", "readout")]
 
     def table(self, costs: Costs) -> Figures:
-        """Return the rows of what was measured in turn."""
+        """Return the rows of the candidates measured in turn."""
         return [*self._boards(costs), *self._parts(costs), *self._gyroscopes(costs)]
 
     def _boards(self, costs: Costs) -> Figures:
@@ -173,7 +173,7 @@ class Speed:
                 rows.append(figure(name, ratio(costs, peer, own), "x", least=least))
         if "unit_walled" in costs:
             rows += [
-                figure("PID as a unit of one's own, per sample", scaled(costs, "unit", 1.0), "ns"),
+                figure("PID as a user unit, per sample", scaled(costs, "unit", 1.0), "ns"),
                 figure("the same behind the wall", scaled(costs, "unit_walled", 1.0), "ns"),
                 figure("behind the wall over machine code", ratio(costs, "unit_walled", "unit"), "x"),
             ]

@@ -24,7 +24,7 @@ def cpu_ns(work: Callable[[], Any], units: int) -> float:
 
 
 def interleaved(candidates: Mapping[str, Callable[[], float]], repeats: int = REPEATS) -> dict[str, list[float]]:
-    """Measure candidates in turn, so that drift affects all in the same way; return what each repeat gave."""
+    """Measure candidates in turn, so that drift affects all in the same way; return the results of each repeat."""
     costs: dict[str, list[float]] = {name: [] for name in candidates}
     for measure in candidates.values():
         measure()

@@ -1,4 +1,4 @@
-"""Cost of a unit of one's own, measured on a bench that has it, and what the wall adds."""
+"""Cost of a user unit, measured on a bench that has it, and the additional cost of the wall."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ WHERE = {
 
 
 def native_and_walled() -> tuple[Callable[[], float], Callable[[], float]]:
-    """Return what measures a sample of a PID as a unit, ns: in machine code and behind the wall.
+    """Return the measurements of a sample of a PID as a unit, ns: in machine code and behind the wall.
 
     Raises
     ------

@@ -28,7 +28,7 @@ def studies() -> dict[str, type[Study]]:
 
 
 def parse_study(table: dict[str, Any]) -> tuple[type[Study], BlockParams]:
-    """Return the study a table asks for, with its parameters.
+    """Return the study of a table, with its parameters.
 
     Raises
     ------

@@ -25,7 +25,7 @@ class BeamWidth(Study):
         """Which beams, and how much narrower."""
 
         widths_um: list[float] = parameter([5.0, 1.0], "widths of the beams", "um")
-        reduction_um: float = parameter(0.2, "what the width loses in all", "um", gt=0, le=10)
+        reduction_um: float = parameter(0.2, "total loss of the width", "um", gt=0, le=10)
 
     @classmethod
     def figures(cls, board: Board, params: Any) -> dict[str, float]:

@@ -19,7 +19,7 @@ WARM = 500
 
 
 class Detectors(Study):
-    """Sets the threshold of every statistic by the false alarms of a healthy device, then lets the fault happen.
+    """Sets the threshold of every statistic by the false alarms of a healthy device, then injects the fault.
 
     ``detectors.<signal>.delay`` is the mean delay of the runs that detected the fault in time, ``.missed`` the share of
     the others, ``.threshold`` the threshold in the end. ``roc.<signal>.area`` is the area under the curve of
@@ -112,7 +112,7 @@ def _characteristic(prefix: str, calm: list[FloatArray], faulty: list[FloatArray
     """Return the area and some points: largest values of windows, healthy ones against the first after the fault."""
     healthy = np.sort(np.concatenate([r[: len(r) // window * window].reshape(-1, window).max(axis=1) for r in calm]))
     wrong = np.array([record[:window].max() for record in faulty])
-    # the area is the chance that a window with the fault stands higher than one without
+    # the area is the chance that a window with the fault has a higher value than a window without
     below = np.searchsorted(healthy, wrong, side="left")
     equal = np.searchsorted(healthy, wrong, side="right") - below
     figures = {f"{prefix}.area": float(np.mean((below + 0.5 * equal) / len(healthy)))}

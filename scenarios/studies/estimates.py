@@ -1,4 +1,4 @@
-"""Coefficients that identifiers of the sampled plant find, against those of the device."""
+"""Coefficients that identifiers of the sampled plant find, against the coefficients of the device."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Estimates(Study):
     """Runs every identifier of the sampled plant and takes its coefficients b0, b1, a1, a2 over the second half.
 
     ``estimates.<id>.<coefficient>`` is the median, ``.<coefficient>_spread`` the range that holds the middle half of
-    the samples, and ``.<coefficient>_true`` what the device has at this sample interval.
+    the samples, and ``.<coefficient>_true`` the true coefficient of the device at this sample interval.
     """
 
     title = "Estimated coefficients"
@@ -60,7 +60,7 @@ class Estimates(Study):
 
 
 def _run(board: Board, samples: int) -> dict[str, tuple[FloatArray, FloatArray]]:
-    """Return, for each identifier, its coefficients at every sample and those of the device."""
+    """Return, for each identifier, its coefficients at every sample and the coefficients of the device."""
     fresh = again(board, board.spec.seed)
     names = [name for name, one in fresh.spec.identifiers.items() if issubclass(one.block, Discrete)]
     if not names:

@@ -26,7 +26,7 @@ class Flops(Study):
     """Counts the operations of every diagnoser by running it on numbers that count, and holds them against a board.
 
     ``flops.<id>.per_model`` is the number of additions, multiplications and divisions for each model and sample;
-    ``.functions`` that of exponentials, logarithms and the like for all models; ``.share`` the diagnoser's share of the
+    ``.functions`` of exponentials, logarithms and the like for all models; ``.share`` the diagnoser's share of the
     board's operations. ``.overrun`` is 1 if the diagnosers before it leave too few operations, and ``.models_that_fit``
     is the number of its models that would still be in time. ``flops.table.iteration_<n>`` is the number of operations
     by which the totals of table 5.5.1 grow in an iteration with n models.

@@ -1,4 +1,4 @@
-"""Free decay of a shuttle let go from a place."""
+"""Free decay of a shuttle that is released at a displacement."""
 
 from __future__ import annotations
 
@@ -24,7 +24,8 @@ class FreeDecay(Study):
 
     ``decay.rate_per_s`` is alpha, the slope of the logarithm of the peaks, and ``decay.bound`` the smallest m;
     ``decay.period_us`` is the time between two peaks on the same side and ``decay.log_decrement`` the loss between
-    them; ``decay.damping_ns_m`` is what this loss says of the damping, :math:`2m_s\alpha` with the mass of the device.
+    them; ``decay.damping_ns_m`` is the damping that follows from this loss, :math:`2m_s\alpha` with the mass of the
+    device.
     """
 
     title = "Free decay"
@@ -67,7 +68,7 @@ class FreeDecay(Study):
 
 
 def _let_go(board: Board, duration_ms: float) -> FloatArray:
-    """Run the board and return the true displacement from the moment it is let go."""
+    """Run the board and return the true displacement from the release on."""
     column = board.signals.index("plant.displacement")
     left, parts = math.ceil(duration_ms / board.dt_ms), []
     while left:

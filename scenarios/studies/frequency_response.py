@@ -19,10 +19,10 @@ FAR_HZ = 25_000.0
 
 
 class FrequencyResponse(Study):
-    """Bode figures of the device, what a change of each parameter does to them, and the band between two limits.
+    """Bode figures of the device, the effect of a change of each parameter, and the band between two limits.
 
-    ``bode.<parameter>_up.*`` are the figures with that one parameter higher; ``bode.low`` and ``bode.high`` those of
-    the two limiting devices; the band is the exact envelope of all devices between them.
+    ``bode.<parameter>_up.*`` are the figures with that one parameter higher; ``bode.low`` and ``bode.high`` are the
+    figures of the two limiting devices; the band is the exact envelope of all devices between them.
     """
 
     title = "Frequency response"

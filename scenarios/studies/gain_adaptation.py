@@ -22,9 +22,9 @@ class GainAdaptation(Study):
     """Runs the loop of the bench, and finds where its rule becomes unstable.
 
     ``adaptation.growth_per_s`` is the growth of the error from the second to the last quarter of the run,
-    ``growth_theory_per_s`` the largest real part of the eigenvalues; ``period_s`` that of its swing;
-    ``critical_gain`` and ``critical_gain_<frequency>`` the first adaptation gain that is unstable under a constant
-    and under a sine of that frequency (rad/s), on a plant whose damping coefficient is ``sine_b1``.
+    ``growth_theory_per_s`` the largest real part of the eigenvalues; ``period_s`` the period of its swing;
+    ``critical_gain`` and ``critical_gain_<frequency>`` the first adaptation gain that is unstable under a constant and
+    under a sine of that frequency (rad/s), on a plant whose damping coefficient is ``sine_b1``.
     """
 
     title = "Gain adaptation"

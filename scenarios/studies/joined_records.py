@@ -85,7 +85,7 @@ def _play(board: Board, name: str, hypothesis: str, record: dict[str, FloatArray
     dt = board.dt_ms
     for tick in range(len(probability)):
         wiring.w[TICK], wiring.w[TIME_MS] = tick, tick * dt
-        # the voltage of a sample is the one applied at the sample before
+        # the voltage of a sample is the voltage applied at the sample before
         wiring.w[places["sensor.displacement"]] = record["sensor.displacement"][tick]
         arrays = (table, wiring.p, wiring.s, wiring.w, wiring.io)
         program.run(1, tick, dt, *arrays, nothing, nothing, fold.begin(0), trip, watches)

@@ -1,4 +1,4 @@
-"""Gains of Kalman banks at rest, against the Riccati equation."""
+"""Steady gains of Kalman banks, against the Riccati equation."""
 
 from __future__ import annotations
 

@@ -20,15 +20,16 @@ class MonteCarlo(Study):
 
     ``diagnosis.<id>.*`` are means over the runs, a step that was never found counting with its whole length;
     ``.correct_fraction_std`` is the spread from run to run, ``.confusion.<truth>.<verdict>`` the share of the samples
-    of a truth, all runs together. ``compare.*`` are the means of the first of two diagnosers over those of the second.
+    of a truth, all runs together. ``compare.*`` are the means of the first of two diagnosers over the means of the
+    second.
     """
 
     title = "Monte Carlo"
 
     class Params(BlockParams):
-        """How many runs of what length."""
+        """The number of runs and their length."""
 
-        runs: int = parameter(40, "seeds, from that of the bench on", ge=1, le=10_000)
+        runs: int = parameter(40, "seeds, starting at the seed of the bench", ge=1, le=10_000)
         samples: int = parameter(9000, "length of a run", ge=1, le=10_000_000)
         compare: list[str] = parameter([], "two diagnosers whose means are divided")
 

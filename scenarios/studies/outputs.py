@@ -72,7 +72,7 @@ def _tone_hz(board: Board) -> float:
 
 
 def _stretches(board: Board, params: Any) -> list[tuple[str, int, FloatArray]]:
-    """Return what acts in each stretch, the first tick that is kept of it, and the motion from there on."""
+    """Return the active fault of each stretch, the first tick that is kept of it, and the motion from there on."""
     fresh = again(board, board.spec.seed)
     waiting = [entry for entry in fresh.pending.as_asked if entry.tick]
     edges = sorted({entry.tick for entry in waiting if entry.tick})

@@ -20,11 +20,11 @@ HARMONICS = 400
 
 
 class Persistency(Study):
-    """Says how well inputs tell kp, a1 and a2 of the device apart, in the steady state and in closed form.
+    """Measures how well inputs separate kp, a1 and a2 of the device, in the steady state and in closed form.
 
     ``persistency.<input>.smallest`` is the smallest eigenvalue of the mean of phi phi' in um, V and 1/w0, ``.relative``
-    that of the matrix scaled to a unit diagonal. Inputs: a step, each of the tones alone, the tones in pairs and
-    together, a square wave.
+    the smallest eigenvalue of the matrix scaled to a unit diagonal. Inputs: a step, each of the tones alone, the tones
+    in pairs and together, a square wave.
     """
 
     title = "Persistency of excitation"

@@ -28,8 +28,9 @@ class PositiveReal(Study):
     """Judges transfer functions: ``spr.<name>`` is 2 if strictly positive real, 1 if positive real, 0 if neither.
 
     With them the device of the bench in time of 1/w0: its displacement, its velocity, and displacement plus velocity
-    over nine tenths of the damping; a device of first order has none of these. With ``combine`` also what A.11 makes of
-    the first two cases: ``inverse`` of the first, their ``sum``, and ``feedback``, the first closed by the second.
+    over nine tenths of the damping; a device of first order has none of these. With ``combine`` also the combinations
+    of A.11 of the first two cases: ``inverse`` of the first, their ``sum``, and ``feedback``, the first closed by the
+    second.
     """
 
     title = "Positive real"

@@ -29,11 +29,11 @@ NAMES = {"mass": "mass_kg", "stiffness": "stiffness_n_m", "damping": "damping_ns
 
 
 class ProcessSpread(Study):
-    """Draws devices from a process and says how far their parameters lie apart (Table 2.1 with numbers).
+    """Draws devices from a process and gives the spread of their parameters (Table 2.1 with numbers).
 
     ``spread.<parameter>.cv_pct`` is the coefficient of variation, ``spread.sensitivity.<number>.<parameter>_pct`` the
     change for one step of a number of the drawing. ``spread.dots_printed`` and ``spread.dots_missing`` count the
-    dependences of Table 2.1, and those the text's own equations demand beside them.
+    dependences of Table 2.1, and the additional ones that the text's own equations demand.
     """
 
     title = "Process spread"

@@ -31,14 +31,14 @@ class Sensing(Study):
     title = "Sensor over seeds"
 
     class Params(BlockParams):
-        """How many runs of what length."""
+        """The number of runs and their length."""
 
-        runs: int = parameter(60, "seeds, from that of the bench on", ge=1, le=10_000)
+        runs: int = parameter(60, "seeds, starting at the seed of the bench", ge=1, le=10_000)
         duration_ms: float = parameter(20.0, "length of a run", "ms", gt=0, le=10_000)
 
     @classmethod
     def figures(cls, board: Board, params: Any) -> dict[str, float]:
-        """Return the share of runs that lost the direction, and the error of those that did not."""
+        """Return the share of runs that lost the direction, and the error of the other runs."""
         runs = [_run(board, board.spec.seed + i, params.duration_ms) for i in range(params.runs)]
         kept = [rms for lost, rms in runs if lost <= LOST]
         figures = {"sensing.lost_share": 1.0 - len(kept) / len(runs)}
@@ -48,7 +48,7 @@ class Sensing(Study):
 
     @classmethod
     def picture(cls, board: Board, params: Any) -> Picture:
-        """Return the motion and what the sensor makes of it, over four periods of the first run."""
+        """Return the motion and the output of the sensor, over four periods of the first run."""
         trace = _trace(board, params.duration_ms)
         shown = slice(0, min(len(trace[TRACED[0]]), round(2.0 / board.dt_ms)))
         time_ms = (np.arange(len(trace[TRACED[0]]))[shown] * board.dt_ms).tolist()

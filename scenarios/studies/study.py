@@ -1,4 +1,4 @@
-"""Base of the studies: parameters, figures from the bench of a scenario, and a picture where one says more."""
+"""Base of the studies: parameters, figures from the bench of a scenario, and a picture where it helps."""
 
 from __future__ import annotations
 
@@ -44,5 +44,5 @@ class Study:
 
     @classmethod
     def picture(cls, board: Board, params: Any) -> Picture | None:  # noqa: ARG003
-        """Return what the figures were read from, or None where they say it all; it is made from a fresh bench."""
+        """Return the curves behind the figures, or None where the figures are enough; it is made from a fresh bench."""
         return None

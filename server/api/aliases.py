@@ -33,7 +33,7 @@ class DriveTone(Body):
 
 
 class AliasSource(Body):
-    """Hypotheses and a drive; those of the diagnoser and of the bench unless given."""
+    """Hypotheses and a drive; the defaults are the hypotheses of the diagnoser and the drive of the bench."""
 
     hypotheses: list[Hypothesis] | None = Field(None, min_length=2, max_length=MOST_HYPOTHESES)
     tones: list[DriveTone] | None = Field(None, min_length=1, max_length=32)
@@ -57,7 +57,7 @@ class AliasSweep(BaseModel):
 
 
 class AliasReport(BaseModel):
-    """The hypotheses that lie apart and those that coincide, now and at other drive frequencies."""
+    """The separate hypotheses and the coinciding hypotheses, now and at other drive frequencies."""
 
     map: AliasMap
     sensor_noise_um: float

@@ -1,4 +1,4 @@
-"""What people did, in a class or to a bench."""
+"""The actions of users, in a class or on a bench."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ Limit = Annotated[int, Query(ge=1, le=10_000)]
 
 
 class AuditList(BaseModel):
-    """What people did, newest first."""
+    """The actions of users, newest first."""
 
     entries: list[AuditEntry]
 
 
 @router.get("/classes/{class_id}/audit")
 async def get_class_audit(class_id: str, service: ServiceDep, limit: Limit = 1000) -> AuditList:
-    """List what people did in a class."""
+    """List the actions of users in a class."""
     await service.classes.row(class_id)
     return AuditList(entries=await service.audit.entries(class_id=class_id, limit=limit))
 
 
 @router.get("/benches/{bench_id}/audit")
 async def get_bench_audit(bench_id: str, service: ServiceDep, limit: Limit = 1000) -> AuditList:
-    """List what people did to a bench, also to one that is gone."""
+    """List the actions of users on a bench, also on a deleted bench."""
     return AuditList(entries=await service.audit.entries(bench_id=bench_id, limit=limit))

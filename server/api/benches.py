@@ -32,12 +32,12 @@ class NewBench(StrictBody):
     set: dict[str, Any] = Field({}, description="Values by dotted path, written over the scenario")
     seed: int | None = Field(None, ge=0, le=2**53)
     paused: bool = False
-    keep: bool = Field(False, description="Never let it go, however long nobody watches it or asks for it")
+    keep: bool = Field(False, description="Keep it open, however long it is unused")
     time_scale: float | None = Field(
         DEFAULT_SCALE,
         ge=MIN_SCALE,
         le=MAX_SCALE,
-        description="Device seconds per wall second; null: as fast as possible. Unless given, that of the device",
+        description="Device seconds per wall second; null: as fast as possible. Unless given, the device's own",
     )
     quiet_lead: bool = Field(
         False,
@@ -49,7 +49,7 @@ class NewBench(StrictBody):
     )
 
     def wanted(self) -> dict[str, Any]:
-        """Return what `Benches.create` takes."""
+        """Return the arguments of `Benches.create`."""
         return {
             "source": self.scenario,
             "values": self.set,
@@ -63,7 +63,7 @@ class NewBench(StrictBody):
     @model_validator(mode="after")
     def _has_a_pace(self) -> Self:
         if self.quiet_lead and self.time_scale is None:
-            raise ValueError("quiet_lead needs a time_scale to go on at")
+            raise ValueError("quiet_lead needs a time_scale to continue at")
         return self
 
 
@@ -101,12 +101,12 @@ class ForkFrom(StrictBody):
 
     snapshot: str | None = Field(None, description="A snapshot of the bench; null: this moment, or the tick")
     tick: int | None = Field(None, ge=0, le=2**53, description="A tick of the past, computed again; null: the snapshot")
-    before: bool = Field(False, description="Leave out what was done at that very tick")
+    before: bool = Field(False, description="Leave out the commands at that very tick")
     window_ticks: int = Field(
         20_000, ge=0, le=1_000_000, description="Ticks before it that are computed too, for its panels"
     )
     paused: bool = Field(False, description="It waits, and may seek other ticks until something is done on it")
-    name: str = Field("", max_length=MAX_NAME, description="What it is called beside its title")
+    name: str = Field("", max_length=MAX_NAME, description="Its name, in addition to its title")
 
     @model_validator(mode="after")
     def _has_one_moment(self) -> Self:
@@ -118,7 +118,7 @@ class ForkFrom(StrictBody):
 
 
 class BenchName(StrictBody):
-    """What a bench is called."""
+    """Name of a bench."""
 
     name: str = Field(max_length=MAX_NAME, description="Empty: by the title of its scenario alone")
 
@@ -127,7 +127,7 @@ class Variant(StrictBody):
     """How the second bench differs."""
 
     set: dict[str, Any] = Field({}, description="Values by dotted path; a whole table may be one")
-    repeat: bool = Field(False, description="What was done on this bench is done again, to its tick; there it stands")
+    repeat: bool = Field(False, description="The commands to this bench are repeated, to its tick; there it pauses")
 
 
 @router.post("", status_code=201, dependencies=[RateLimited])
@@ -140,7 +140,7 @@ async def create_bench(body: NewBench, service: ServiceDep, person: PersonDep, r
         blind = (await service.student_benches.get(person)).hiding.blind  # it may be on its way back
         if blind is not None and blind.question.game is None:  # a game may be left
             raise ApiError(409, "blind", "a fault is hidden on your bench", hint=HINT)
-        service.driving.check(service.people.bench_of(person), person)  # the one before is gone with it
+        service.driving.check(service.people.bench_of(person), person)  # the bench before is closed with it
         session = await service.student_benches.replace(person, body.wanted())
     else:
         session = await service.benches.create(**body.wanted())
@@ -151,7 +151,7 @@ async def create_bench(body: NewBench, service: ServiceDep, person: PersonDep, r
 
 @router.get("")
 async def list_benches(service: ServiceDep, person: PersonDep) -> BenchList:
-    """List the live benches without those of students, which their class lists; a student sees the own bench."""
+    """List the live benches without the benches of students, which their class lists; a student sees the own bench."""
     if person.is_teacher:
         return BenchList(benches=service.views.all(person))
     found = service.benches.find(service.people.bench_of(person))
@@ -166,20 +166,20 @@ async def get_bench(session: SessionDep, service: ServiceDep, person: PersonDep)
 
 @router.patch("/{bench_id}", dependencies=[RateLimited])
 async def name_bench(body: BenchName, session: SessionDep, service: ServiceDep, person: PersonDep) -> Bench:
-    """Call a bench something, as a branch by what differs in it."""
+    """Name a bench, for example a branch by its difference."""
     session.name = body.name
     return service.views.of(session, person)
 
 
 @router.delete("/{bench_id}", status_code=204, dependencies=[RateLimited])
 async def delete_bench(session: SessionDep, service: ServiceDep) -> None:
-    """Close a bench; what it recorded stays."""
+    """Close a bench; its recordings stay."""
     await service.close_bench(session)
 
 
 @router.post("/{bench_id}/reopen", dependencies=[RateLimited])
 async def reopen_bench(bench_id: str, service: ServiceDep, person: PersonDep) -> Bench:
-    """Return a bench; one that was let go is opened again by the same id, with the same bits, standing or running."""
+    """Return a bench; a closed idle bench is opened again under its id, with the same bits, paused or running."""
     session = await service.reopening.bring_back(bench_id)
     service.idling.saw(bench_id)
     return service.views.of(session, person)
@@ -206,14 +206,14 @@ async def list_events(
     after: Annotated[int, Query(ge=0, le=2**53)] = 0,
     limit: Annotated[int | None, Query(ge=1, le=100_000)] = None,
 ) -> EventList:
-    """List what happened after an event."""
+    """List the events after an event."""
     lost, events = session.events.after(after, limit)
     return EventList(events=events, last=session.events.last, lost=lost)
 
 
 @router.get("/{bench_id}/scenario", response_class=Response, responses={200: {"content": {"text/plain": {}}}})
 async def save_scenario(session: SessionDep, service: ServiceDep) -> Response:
-    """Return what happened as a scenario in TOML.
+    """Return the history of a bench as a scenario in TOML.
 
     It begins with the digest. Run headless, it gives the same bits.
     """
@@ -237,7 +237,7 @@ async def get_digest(session: SessionDep, service: ServiceDep) -> Digest:
 async def fork_bench(
     body: ForkFrom, session: SessionDep, service: ServiceDep, person: PersonDep, response: Response
 ) -> Bench:
-    """Make a second bench that goes on from this moment, a snapshot or a tick of the past, bit for bit."""
+    """Make a second bench that continues from this moment, a snapshot or a tick of the past, bit for bit."""
     forks = service.benches.forks
     if body.tick is None:
         twin = await forks.now(session, body.snapshot, paused=body.paused)
@@ -254,7 +254,7 @@ async def vary_bench(
 ) -> Bench:
     """Make a second bench from tick 0, set as this one is now but for some values; other signals are allowed.
 
-    With ``repeat`` it begins as this one began, but for the values, and what was done on this one is done again.
+    With ``repeat`` it begins as this bench began, but with the values, and the commands to this bench are repeated.
     """
     forks = service.benches.forks
     made = await (forks.repeated if body.repeat else forks.variant)(session, body.set)

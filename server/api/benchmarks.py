@@ -34,7 +34,7 @@ class BenchmarkList(BaseModel):
 
 
 class TrackResults(BaseModel):
-    """A track, and the diagnosers it scores, best first; those that say no probabilities are last."""
+    """A track, and the diagnosers it scores, best first; diagnosers without probabilities are last."""
 
     id: str
     title: str

@@ -27,14 +27,14 @@ RULE = (
 
 
 class Hide(Body):
-    """A fault to hide on a bench of one's own."""
+    """A fault to hide on the user's own bench."""
 
     seed: int = Field(ge=0, le=2**53, description="The same one hides the same fault, but for students of a class")
     shows: bool = Field(False, description="The diagnosers may be looked at: whether to trust them is the question")
 
 
 class Said(Body):
-    """What somebody takes the device for, and how sure that is."""
+    """The presumed fault of the device, and the confidence."""
 
     said: str = Field(max_length=24)
     confidence: float = Field(ge=0, le=1)
@@ -61,7 +61,7 @@ class BlindClass(BaseModel):
 
     rule: str
     hidden: int = Field(description="How many have not answered yet")
-    answers: list[Answer] = Field(description="Oldest first, those that are hidden still among them")
+    answers: list[Answer] = Field(description="Oldest first, including faults that are still hidden")
 
 
 @router.get(BENCH)
@@ -77,18 +77,18 @@ async def get_blind(session: SessionDep, service: ServiceDep, person: PersonDep)
 
 @router.post(BENCH, status_code=201, dependencies=[RateLimited])
 async def hide_fault(body: Hide, session: SessionDep, service: ServiceDep, person: PersonDep) -> Blindness:
-    """Hide a fault on a bench, or none; until somebody answers, the bench serves nothing that tells it."""
+    """Hide a fault on a bench, or none; until the answer, the bench serves nothing that reveals it."""
     if session.class_id and person.is_teacher:
         raise ApiError(409, "conflict", "this is the bench of a student", hint="hide one for the class")
     secret = (await service.classes.row(person.class_id)).secret if person.class_id else ""
     await service.blinds.begin(session, person, body.seed, body.shows, secret)
-    await service.checkpoints.write()  # that of a student is blind after a crash too
+    await service.checkpoints.write()  # the bench of a student is blind after a crash too
     return await get_blind(session, service, person)
 
 
 @router.post(f"{BENCH}/answer", dependencies=[RateLimited])
 async def answer(body: Said, session: SessionDep, service: ServiceDep, person: PersonDep) -> Answer:
-    """Answer what the device is; the reply tells the hidden fault, and the bench serves everything again."""
+    """Name the state of the device; the reply reveals the hidden fault, and the bench serves everything again."""
     if session.class_id and person.is_teacher:
         raise ApiError(403, "forbidden", "only the student whose bench it is may answer")
     return await service.blinds.commit(session, person, body.said, body.confidence)
@@ -120,7 +120,7 @@ async def get_class_blind(class_id: str, service: ServiceDep) -> BlindClass:
 
 @router.delete(CLASS, dependencies=[RateLimited])
 async def reveal_class(class_id: str, service: ServiceDep, person: PersonDep) -> Outcomes:
-    """Reveal their faults to all students of a class; those who have not answered get no points."""
+    """Reveal their faults to all students of a class; students without an answer get no points."""
     await service.classes.row(class_id)
     done, failed = 0, []
     for student in service.people.students(class_id):
@@ -132,5 +132,5 @@ async def reveal_class(class_id: str, service: ServiceDep, person: PersonDep) ->
             done += 1
         except REFUSED as error:
             failed.append(f"{student.name}: {why(error)}")
-    service.audit.add("teacher", "blind", f"showed {done} students what was hidden", class_id)
+    service.audit.add("teacher", "blind", f"showed the hidden faults to {done} students", class_id)
     return Outcomes(done=done, failed=failed)

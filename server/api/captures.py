@@ -46,7 +46,7 @@ class TriggerCaptures(BaseModel):
 
 
 class BenchCaptures(BaseModel):
-    """The captures of a bench, by trigger; the one whose scope was opened last comes last."""
+    """The captures of a bench, by trigger; the trigger of the scope that was opened last comes last."""
 
     triggers: list[TriggerCaptures]
 

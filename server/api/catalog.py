@@ -26,7 +26,7 @@ class Catalogue(BaseModel):
 
 @router.get("/catalog", response_model=Catalogue)
 def get_catalog(request: Request, family: str | None = None) -> Response:
-    """List every block, or those of one family."""
+    """List every block, or the blocks of one family."""
     headers = {"Vary": "Accept-Encoding"}
     if not takes_gzip(request.headers):
         return Response(_written(family), media_type="application/json", headers=headers)
@@ -36,7 +36,7 @@ def get_catalog(request: Request, family: str | None = None) -> Response:
 
 @cache
 def _written(family: str | None) -> bytes:
-    """Return the catalogue as text; making it takes 0.1 s, and every page that opens asks for it."""
+    """Return the catalogue as text; making it takes 0.1 s, and every page that opens requests it."""
     return Catalogue(version=VERSION, blocks=catalog(family)).model_dump_json().encode()
 
 

@@ -1,4 +1,4 @@
-"""The claims of a live bench: what is printed, what is expected, and what is measured over what has run."""
+"""The claims of a live bench: the printed, the expected and the measured figures of its run so far."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class ClaimList(BaseModel):
     seed: int
     version: str
     tick: int = Field(description="Ticks that are measured")
-    ends_at: int = Field(description="Tick at which a headless run ends; what runs beyond it does not count")
+    ends_at: int = Field(description="Tick at which a headless run ends; later ticks do not count")
     is_over: bool = Field(description="Whether the run has come to its end; until then nothing is ticked or crossed")
     reason: str = Field(description="Why nothing is measured; empty if it is")
     verdict: Verdict | None = Field(description="Null until the run has come to its end")
@@ -43,20 +43,20 @@ class ClaimList(BaseModel):
 
 
 class MarkList(BaseModel):
-    """What is printed of the figure of a bench, to be drawn under its traces; also what no claim judges."""
+    """The printed marks of the figure of a bench, to be drawn under its traces; also marks that no claim judges."""
 
     marks: list[Mark]
 
 
 @router.get("/printed")
 async def list_printed(session: SessionDep) -> MarkList:
-    """List what is printed of the figure, with the ticks at which it is drawn."""
+    """List the printed marks of the figure, with the ticks at which they are drawn."""
     return MarkList(marks=marks(session.scenario, session.signals))
 
 
 @router.get("/claims")
 async def list_claims(session: SessionDep, service: ServiceDep) -> ClaimList:
-    """Measure the claims of a bench over what it has run since tick 0, with the bits of a headless run."""
+    """Measure the claims of a bench over its run since tick 0, with the bits of a headless run."""
     run = await service.engine.call(Run.of, session)
     figures = await asyncio.to_thread(session.measuring.figures, run)
     scenario, signals = run.scenario, session.signals

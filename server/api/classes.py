@@ -33,7 +33,7 @@ class Minutes(Body):
 
 
 class NewClass(Body):
-    """A class, and what the benches of its students begin with."""
+    """A class, and the start of the benches of its students."""
 
     name: str = Field(min_length=1, max_length=100)
     bench: NewBench = Field(default_factory=lambda: NewBench(scenario="first-look"))
@@ -48,7 +48,7 @@ class ClassList(BaseModel):
 
 
 class Join(Body):
-    """What a student gives."""
+    """Code and name of a student."""
 
     code: str = Field(max_length=40)
     name: str = Field(max_length=200)
@@ -117,7 +117,7 @@ async def make_code(class_id: str, body: Minutes, service: ServiceDep, request: 
 
 @router.delete("/{class_id}/code", dependencies=[RateLimited])
 async def end_code(class_id: str, service: ServiceDep, request: Request) -> Class:
-    """Let nobody else join; students who are there stay."""
+    """End the code, so that no further student joins; joined students stay."""
     return _addressed(await service.classes.close_joining(class_id), service, request)
 
 
@@ -137,7 +137,7 @@ async def join_class(class_id: str, body: Join, request: Request, response: Resp
 
 @router.get("/{class_id}/members", response_model=Members)
 async def list_members(class_id: str, service: ServiceDep) -> Response:
-    """Show every student: name, bench, state, verdict beside truth, a small trace."""
+    """Show every student: name, bench, state, verdict and truth, a small trace."""
     await service.classes.row(class_id)
     found = Members(members=[_tile(service, person) for person in service.people.students(class_id)])
     # written at once: checking sixty tiles again takes the loop ten times as long
@@ -179,7 +179,7 @@ async def begin_scenario(class_id: str, body: NewBench, service: ServiceDep) -> 
 def _tile(service: Service, person: Person) -> Tile:
     """Show a student."""
     session = service.student_benches.find(person)
-    # a student who looks at a bench that is shown to all is there too
+    # a student who watches a bench that is shown to all is present too
     watchers = max(service.hub.watchers(session.id) if session is not None else 0, service.hub.pages_of(person))
     work = service.sheets.current(person)
     tile = tile_of(person, session, watchers, hand=person.id in service.people.hands)

@@ -31,7 +31,7 @@ SocketServiceDep = Annotated[Service, Depends(get_socket_service)]
 
 
 def get_identity(request: Request) -> Identity:
-    """Return what knows the access token, and secrets that are made from it."""
+    """Return the holder of the access token, and of secrets that are made from it."""
     return cast(Identity, request.app.state.identity)
 
 
@@ -39,7 +39,7 @@ IdentityDep = Annotated[Identity, Depends(get_identity)]
 
 
 def get_session(bench_id: str, service: ServiceDep) -> Session:
-    """Return the bench in the path, which somebody asks for so, or refuse with 404."""
+    """Return the bench in the path and note its use, or refuse with 404."""
     session = service.benches.get(bench_id)
     service.idling.saw(bench_id)
     return session

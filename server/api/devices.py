@@ -1,4 +1,4 @@
-"""Devices: those of the catalogue, and any that somebody designs."""
+"""Devices: the devices of the catalogue, and any design."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class BodeOf(Design):
 
 
 class Curve(BaseModel):
-    """A quantity over frequency, and the band it lies in."""
+    """A quantity over frequency, and its band."""
 
     low: list[float]
     nominal: list[float]
@@ -90,7 +90,7 @@ class Curve(BaseModel):
 
 
 class Bode(BaseModel):
-    """Displacement per volt over that of the nominal device at rest; the sign of the force is left out."""
+    """Displacement per volt over the static gain of the nominal device; the sign of the force is left out."""
 
     frequency_hz: list[float]
     magnitude_db: Curve

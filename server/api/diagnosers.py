@@ -84,7 +84,7 @@ def map_bench_aliases(
 
 
 def kept_tick(session: Session, tick: int | None) -> int:
-    """Return the tick asked for, the last one unless one is; an error if it is not kept."""
+    """Return the requested tick, or the last tick by default; an error if it is not kept."""
     first, end = session.history.first_tick, session.history.end_tick
     asked = end - 1 if tick is None else tick
     if not first <= asked < end:

@@ -15,15 +15,15 @@ router = APIRouter(prefix="/benches/{bench_id}/driving", tags=["classes"], route
 
 
 class DrivingTurn(Body):
-    """What is asked for."""
+    """The requested change of the driver."""
 
     do: Literal["ask", "hand_over", "refuse", "take", "leave"] = Field(
         description=(
-            "ask the driver for the bench; hand it over to somebody, or refuse a person who has asked; take it (the "
-            "teacher, or a student who handed over the own bench); leave it: the next person who does something drives"
+            "ask the driver for the bench; hand it over to a person, or refuse a request; take it (the teacher, or a "
+            "student who handed over the own bench); leave it: the next person who gives a command drives"
         )
     )
-    to: str = Field("", max_length=32, description="Id of whom it is handed over to, or who is refused")
+    to: str = Field("", max_length=32, description="Id of the person who gets it, or is refused")
 
     @model_validator(mode="after")
     def _has_a_person(self) -> Self:
@@ -33,7 +33,7 @@ class DrivingTurn(Body):
 
 
 class Drives(BaseModel):
-    """Who is at the bench now."""
+    """The users of the bench now."""
 
     company: Company | None = Field(description="Null while it is one person")
 

@@ -59,7 +59,7 @@ class MeasuredTone(BaseModel):
 
 
 class FittedCurve(BaseModel):
-    """The response of the device found, and that of the nominal one."""
+    """The response of the device found, and the response of the nominal device."""
 
     frequency_hz: list[float]
     found_um_per_v: list[float]
@@ -155,7 +155,7 @@ async def flops(
 
 
 async def _on_copy(session: Session, service: Service, work: Callable[..., T], *settings: Any) -> T:
-    """Run one experiment at a time on a copy of a bench, beside the event loop and the engine."""
+    """Run one experiment at a time on a copy of a bench, in parallel with the event loop and the engine."""
     async with service.experiment_turn:
         with kept():
             copy = await service.engine.call(_copied, session)

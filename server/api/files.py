@@ -34,14 +34,14 @@ def file_name(name: str, kind: str) -> str:
 
 
 async def table_response(service: Service, table: pa.Table, name: str, kind: Format) -> StreamingResponse:
-    """Send a table in the format asked for."""
+    """Send a table in the requested format."""
     return await written_response(service, lambda file: write(table, file, kind), name, kind)
 
 
 async def written_response(
     service: Service, put: Callable[[BinaryIO], None], name: str, kind: Format
 ) -> StreamingResponse:
-    """Send what is written into a file."""
+    """Send the content that a function writes into a file."""
     try:
         file = tempfile.TemporaryFile(prefix="combbench-")
     except FileNotFoundError as error:  # Python raises this if no temporary folder has room

@@ -39,7 +39,9 @@ class Expected(BaseModel):
     published_value: float | None
     expected: str
     expected_words: str = Field(description="The same for readers, with a unit and its prefix")
-    verdict: Verdict | None = Field(description="That of the measured value; until it is run, if the expectation holds")
+    verdict: Verdict | None = Field(
+        description="The word of the measured value; before a run, the word if the expectation holds"
+    )
     fitted: list[str] = Field(description="Fields of the scenario that were chosen so that it agrees")
     reason: str = Field(description="Why nothing is said by comparing it with the open loop")
     note: str
@@ -66,7 +68,7 @@ class GalleryCard(BaseModel):
     problem: str = Field(description="Why it has no figure, if it cannot be made")
     study: str | None = Field(description="Kind of the study; null for a scenario that runs on a bench")
     run: str | None = Field(description="Its run: trace, report, thumbnail and script are at /runs/{id}/...")
-    state: str = Field(description="new until it has been asked for, then as that of a run")
+    state: str = Field(description="new until it has been requested, then the state of a run")
     progress: float
     elapsed_s: float | None
     digest: str
@@ -75,7 +77,7 @@ class GalleryCard(BaseModel):
 
 
 class FigureProgress(BaseModel):
-    """How many figures are there."""
+    """Number of finished figures."""
 
     made: int
     total: int
@@ -139,7 +141,7 @@ async def run_gallery(body: Chosen, service: ServiceDep) -> Gallery:
 
 @cache
 def _topics(scenario: Scenario) -> list[str]:
-    """Return what a scenario is about, in the words of the catalogue."""
+    """Return the topics of a scenario, in the words of the catalogue."""
     controllers, faults = blocks("control"), blocks("faults")
     specs: list[Spec] = [scenario.spec, *scenario.twins.values()]
     topics = [str(scenario.document.get("device", {}).get("id", ""))]

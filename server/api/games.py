@@ -1,4 +1,4 @@
-"""Games with the bank: list them, play one at a seed, hand in, see the table; the teacher sees that of a class."""
+"""Games with the bank: list them, play at a seed, hand in, see the table; the teacher sees the table of a class."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class GameCard(BaseModel):
     rule: str = Field(description="How points are counted")
     equations: list[EquationCard]
     attempts: int = Field(description="How often one person may hand in at one seed")
-    hand_in: list[ParameterCard] = Field(description="What is handed in")
+    hand_in: list[ParameterCard] = Field(description="The values of the answer")
     live: list[str] = Field(description="What of it can be set on the bench while it runs")
 
 
@@ -50,10 +50,10 @@ class Begin(Body):
 
 
 class HandIn(Body):
-    """What somebody hands in."""
+    """Values of an answer."""
 
     seed: int = Field(ge=0, le=MOST)
-    hand_in: dict[str, float | str] = Field(max_length=20, description="What is left out has its default")
+    hand_in: dict[str, float | str] = Field(max_length=20, description="Missing fields have their defaults")
 
 
 class Look(Body):
@@ -85,19 +85,19 @@ async def list_games() -> GameList:
 
 @router.get("/games/{game_id}")
 async def get_game(game_id: GameId, service: ServiceDep, person: PersonDep, seed: Seed = 1) -> Play:
-    """Show a game at a seed: own attempts, the table, and what is hidden once nothing can be handed in any more."""
+    """Show a game at a seed: own attempts, the table, and the hidden values once the game is over."""
     _must_play(person)
     return await service.games.view(person, game_id, seed)
 
 
 @router.post("/games/{game_id}/begin", status_code=201, dependencies=[RateLimited])
 async def begin_game(game_id: GameId, body: Begin, service: ServiceDep, person: PersonDep) -> Play:
-    """Begin the bench of a game, in place of the one before: it hides what the game hides."""
+    """Begin the bench of a game, in place of the bench before; it hides the values of the game."""
     _must_play(person)
     if person.role == "student":
-        service.driving.check(service.people.bench_of(person), person)  # the one before is gone with it
+        service.driving.check(service.people.bench_of(person), person)  # the bench before is closed with it
     begun = await service.games.begin(person, game_id, body.seed, body.hand_in)
-    await service.checkpoints.write()  # that of a student hides it after a crash too
+    await service.checkpoints.write()  # the bench of a student hides them after a crash too
     return begun
 
 
@@ -113,7 +113,7 @@ async def hand_in(game_id: GameId, body: HandIn, service: ServiceDep, person: Pe
 
 @router.post("/games/{game_id}/reveal", dependencies=[RateLimited])
 async def reveal_game(game_id: GameId, body: Look, service: ServiceDep, person: PersonDep) -> Play:
-    """Show what a seed hides; the caller cannot hand in at it any more."""
+    """Show the hidden values of a seed; the caller cannot hand in at it any more."""
     _must_play(person)
     return await service.games.look(person, game_id, body.seed)
 
@@ -128,6 +128,6 @@ async def get_class_game(
 
 
 def _must_play(person: Person) -> None:
-    """Refuse a watcher, who has no bench of a game."""
+    """Refuse a watcher, because watchers have no bench of a game."""
     if person.role == "watcher":
         raise ApiError(409, "conflict", "who watches a bench plays no game")

@@ -24,7 +24,7 @@ router = APIRouter(include_in_schema=False)
 LONGEST_FORM = 4096
 """Bytes of the form that are read: a code and a name."""
 FORM = {"Cache-Control": "no-store", "Referrer-Policy": "same-origin"}
-"""Without a referrer a browser says that the form comes from nowhere (`Origin: null`), and it would be refused."""
+"""Without a referrer a browser gives the form no origin (`Origin: null`), and it would be refused."""
 NO_WATCHING = ApiError(
     403,
     "wrong_link",
@@ -69,8 +69,8 @@ async def watch(secret: str, request: Request, service: ServiceDep, identity: Id
 async def watch_by_link(
     link: Annotated[str, Query(max_length=64)], request: Request, service: ServiceDep, identity: IdentityDep
 ) -> Response:
-    """Let a person without the token watch the bench of a shared link, if the teacher lets people."""
-    if request.scope["person"] == TEACHER:  # the refusal asked for the token, and got it
+    """Let a person without the token watch the bench of a shared link, if the teacher allows it."""
+    if request.scope["person"] == TEACHER:  # the refusal required the token, and got it
         return RedirectResponse(f"/?{urlencode({'link': link})}", 303)
     return _let_watch(request, service, identity, identity.secret_of_link(link))
 

@@ -35,7 +35,7 @@ class LectureList(BaseModel):
 
 
 class CueDetail(BaseModel):
-    """A cue: the notes of the speaker, and what is shown of the bench."""
+    """A cue: the notes of the speaker, and the panels of the bench."""
 
     title: str
     minutes: float
@@ -64,7 +64,7 @@ class OnBench(Body):
 
 
 class Staged(BaseModel):
-    """The bench in the state of a cue; a fresh one where the one given has other signals."""
+    """The bench in the state of a cue; a fresh bench where the given bench has other signals."""
 
     bench: Bench
     tick: int

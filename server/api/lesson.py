@@ -78,8 +78,8 @@ async def lower_hand(class_id: str, member_id: str, service: ServiceDep) -> None
 async def start_all(class_id: str, body: Some, service: ServiceDep) -> Outcomes:
     """Start the benches of all students or of some together, from tick 0.
 
-    A bench that does not stand there already is reset. When all stand, they begin between the same two slices of the
-    engine: those of the same time scale are at the same tick from then on.
+    A bench that is not paused at tick 0 is reset. When all are paused there, they begin between the same two slices of
+    the engine: benches of the same time scale are at the same tick from then on.
     """
     students = await students_of(service, class_id, body.members)
     sessions = [service.student_benches.find(person) for person in students]

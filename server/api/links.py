@@ -1,4 +1,4 @@
-"""Links: an experiment or a layout of the page by a short id, for ever."""
+"""Links: an experiment or a layout of the page by a permanent short id."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ LONGEST_TITLE, LONGEST_NOTE = 200, 2000
 
 
 class NewLink(Body):
-    """What a link is to lead to: a bench as it is now, a scenario, or a layout of the page alone."""
+    """The target of a link: a bench as it is now, a scenario, or a layout of the page alone."""
 
-    bench: str | None = Field(None, description="Id of a live bench; what was done to it is kept")
+    bench: str | None = Field(None, description="Id of a live bench; the commands to it are kept")
     scenario: str | dict[str, Any] | None = Field(None, description="Library id, TOML text, or document")
     layout: Layout = Field(None, description="Layout of the page, its cursors in it")
-    title: str = Field("", max_length=LONGEST_TITLE, description="That of the scenario unless given")
+    title: str = Field("", max_length=LONGEST_TITLE, description="The scenario's title unless given")
     note: str = Field("", max_length=LONGEST_NOTE)
 
 
 class Words(Body):
-    """What can be changed of a link."""
+    """The editable fields of a link."""
 
     title: str | None = Field(None, min_length=1, max_length=LONGEST_TITLE)
     note: str | None = Field(None, max_length=LONGEST_NOTE)
@@ -77,7 +77,7 @@ async def list_links(service: ServiceDep, kind: Literal["experiment", "layout"] 
 
 @router.get("/{link_id}")
 async def get_link(link_id: str, service: ServiceDep) -> LinkDetail:
-    """Return a link and what it leads to."""
+    """Return a link and its target."""
     return await service.links.get(link_id)
 
 
@@ -97,9 +97,9 @@ async def delete_link(link_id: str, service: ServiceDep, identity: IdentityDep) 
 
 @router.post("/{link_id}/open", status_code=201, dependencies=[RateLimited])
 async def open_link(link_id: str, service: ServiceDep, person: PersonDep, response: Response) -> Bench:
-    """Open a fresh bench that repeats an experiment to its tick, and goes on or stands as it did.
+    """Open a fresh bench that repeats an experiment to its tick, and is then running or paused as the original was.
 
-    `opened` says whether its bits are those of then.
+    `opened` says whether its bits equal the original bits.
     """
     session = await service.reopening.open_link(await service.links.get(link_id))
     response.headers["Location"] = f"/api/v1/benches/{session.id}"

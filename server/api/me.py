@@ -1,4 +1,4 @@
-"""Who is asking: the page shows a teacher, a student and a watcher what each may do."""
+"""The user: the page shows the rights of a teacher, a student and a watcher."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ router = APIRouter(prefix="/me", tags=["classes"], route_class=StrictRoute)
 
 
 class Me(BaseModel):
-    """The person who asks."""
+    """The user of the request."""
 
     id: str = Field(description="As the company of a bench names people")
     role: Role
@@ -38,7 +38,7 @@ class Hand(Body):
 
 @router.get("")
 async def get_me(person: PersonDep, service: ServiceDep) -> Me:
-    """Say who is asking; a student whose bench is not there gets it here."""
+    """Return the user; a student whose bench is missing gets it here."""
     if person.role != "student":
         return Me(id=person.id, role=person.role, name=person.name, bench=service.people.bench_of(person) or None)
     given = service.lesson.layout_for(person)

@@ -1,4 +1,4 @@
-"""What the narrator says of a live bench."""
+"""The sentences of the narrator about a live bench."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ router = APIRouter(prefix="/benches", tags=["benches"], route_class=StrictRoute)
 
 
 class NarrationList(BaseModel):
-    """Sentences of the present run of a bench behind a number; those of a recording are there from its beginning."""
+    """Sentences of the present run of a bench after a number; a recording has all its sentences at once."""
 
     sentences: list[Sentence]
-    after: int = Field(description="Number before the first of them: what the caller asked for, 0 after a jump")
+    after: int = Field(description="Number before the first of them: the number of the request, 0 after a jump")
     last: int = Field(description="Number of the last sentence")
-    jumps: int = Field(description="How often the bench was reset or went back; what was said before a jump is void")
+    jumps: int = Field(description="How often the bench was reset or went back; sentences before a jump are void")
 
 
 @router.get("/{bench_id}/narration")
 async def list_narration(
     session: SeenDep,
     after: Annotated[int, Query(ge=0, le=2**53)] = 0,
-    jumps: Annotated[int | None, Query(ge=0, le=2**53, description="Those of the answer before")] = None,
+    jumps: Annotated[int | None, Query(ge=0, le=2**53, description="The numbers of the answer before")] = None,
 ) -> NarrationList:
-    """List what the narrator has said after a sentence; all of it if the bench has jumped since."""
+    """List the sentences of the narrator after a sentence; all sentences if the bench has jumped since."""
     known = Mark(session.narration.mark.jumps if jumps is None else jumps, after)
     mark, first, sentences = session.narration.after(known)
     return NarrationList(sentences=sentences, after=first, last=mark.last, jumps=mark.jumps)

@@ -1,4 +1,4 @@
-"""Named sets of parameters: keep those of a bench, put them on another, see how two differ."""
+"""Named sets of parameters: save the parameters of a bench, apply them to another, compare two sets."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Difference(BaseModel):
 
 
 class Applied(BaseModel):
-    """What a set has changed on a bench."""
+    """The changes of a bench by a set."""
 
     result: CommandResult | None = Field(description="Null: the bench had these values already")
     left_out: list[str] = Field(description="Paths of the set that this bench does not have")
@@ -105,7 +105,7 @@ async def compare_parameter_sets(
         second = (await service.parameter_sets.get(other)).values
     else:
         if not service.people.may(person, Need.WATCH, bench or ""):
-            raise ApiError(403, "forbidden", "only the person who has this bench may do that", "bench")
+            raise ApiError(403, "forbidden", "only the owner of this bench may do that", "bench")
         session = service.views.whole(bench or "", person)
         second = await service.engine.call(lambda: tuned(session.board.spec))
     rows = [

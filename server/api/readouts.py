@@ -1,4 +1,4 @@
-"""Read-outs of a live bench: the Allan deviation of the rate so far, and the noises that it tells."""
+"""Read-outs of a live bench: the Allan deviation of the rate so far, and the estimates of its noises."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ router = APIRouter(prefix="/benches/{bench_id}/readouts", tags=["readouts"], rou
 
 
 class Octave(BaseModel):
-    """The Allan deviation over one averaging time, from so many pairs of means."""
+    """The Allan deviation over one averaging time, from a number of pairs of means."""
 
     tau_s: float
     deviation_deg_h: float
@@ -29,14 +29,14 @@ class Octave(BaseModel):
 
 
 class NoiseFigure(BaseModel):
-    """One of the three noises: what the record tells of it, and what the bench was given."""
+    """One of the three noises: its estimate from the record, and its parameter on the bench."""
 
     name: str
     letter: str
     unit: str
     value: float | None = Field(description="Null where the record does not tell")
     error: float | None = Field(description="Standard error; without a value the most it may be, null if unknown")
-    reason: str = Field(description="Why there is no value, and what it takes")
+    reason: str = Field(description="Why there is no value, and how to get one")
     true: float = Field(description="The noise of the angular rate itself; a sensor adds its own")
 
 
@@ -45,7 +45,7 @@ class RateReadout(BaseModel):
 
     tick: int
     record_s: float
-    octaves: list[Octave] = Field(description="Those that have a pair, by rising averaging time")
+    octaves: list[Octave] = Field(description="Octaves with a pair, by rising averaging time")
     figures: list[NoiseFigure]
     from_s: float = Field(description="The shortest averaging time of the fit; 0 without one")
     to_s: float

@@ -68,7 +68,7 @@ async def list_bench_recordings(session: SessionDep, service: ServiceDep) -> Rec
 
 @router.get("/recordings")
 async def list_recordings(service: ServiceDep, person: PersonDep) -> RecordingList:
-    """List all recordings, also of benches that are gone; a student sees those of the own benches."""
+    """List all recordings, also of deleted benches; a student sees the recordings of the own benches."""
     benches = None if person.is_teacher else service.people.benches_of(person)
     return RecordingList(recordings=await service.recordings.all(benches))
 

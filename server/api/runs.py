@@ -35,8 +35,8 @@ class NewRun(Body):
     label: str = Field("", max_length=1000, description="Name for the run, at most 120 characters")
     all: bool = Field(
         False,
-        description="Also run the controllers that never drive, and keep all signals, those of sensors that are never "
-        "in use as well; no figure and no digest depends on it",
+        description="Also run the controllers that never drive, and keep all signals, also of sensors that are never "
+        "in use; no figure and no digest depends on it",
     )
     seeds: str | Annotated[list[int], Field(min_length=2, max_length=2)] | None = Field(
         None,
@@ -74,7 +74,7 @@ class RunList(BaseModel):
     "",
     status_code=202,
     dependencies=[RateLimited],
-    responses={200: {"model": Run, "description": "The same run is there already"}},
+    responses={200: {"model": Run, "description": "The same run existed already"}},
 )
 async def start_run(body: NewRun, service: ServiceDep, response: Response) -> Run:
     """Queue a headless run; it does not disturb the live benches."""
@@ -94,7 +94,7 @@ async def start_run(body: NewRun, service: ServiceDep, response: Response) -> Ru
 
 
 def _seeds(asked: str | list[int], most: int) -> list[int]:
-    """Return the seeds that are asked for."""
+    """Return the requested seeds."""
     if isinstance(asked, str):
         seeds = parse_seeds(asked, "seeds")
     else:
@@ -179,7 +179,7 @@ async def get_run_thumbnail(run_id: str, service: ServiceDep) -> Response:
 
 @router.get("/{run_id}/scenario", response_class=Response, responses={200: {"content": {"text/plain": {}}}})
 async def get_run_scenario(run_id: str, service: ServiceDep) -> Response:
-    """Return what a run carries out as a scenario in TOML; a bench made of it has the same bits."""
+    """Return the scenario of a run in TOML; a bench made of it has the same bits."""
     scenario = await service.jobs.scenario(run_id)
     name = f'attachment; filename="{scenario.id}.toml"'
     return Response(scenario.toml(), media_type="text/plain", headers={"Content-Disposition": name})

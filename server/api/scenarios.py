@@ -1,4 +1,4 @@
-"""The library of scenarios, and a check for one's own."""
+"""The library of scenarios, and a check for a user's own."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class ScenarioCard(BaseModel):
     source: str
     summary: str
     claim: str
-    verdict: Verdict | None = Field(description="If all expectations hold; it follows from what the rows state")
+    verdict: Verdict | None = Field(description="If all expectations hold; it follows from the rows")
     samples: int | None
     plant: str | None = Field(description="Plant of the bench; null for a study")
     study: str | None = Field(description="Kind of the study; null for a scenario that runs on a bench")
@@ -99,7 +99,7 @@ def get_scenario(scenario_id: str) -> ScenarioText:
 
 @router.post("/check", response_model=ScenarioText)
 async def check_scenario(body: ScenarioSource, computing: ComputingDep) -> Response:
-    """Check a scenario without running it; the answer 422 says what is wrong with it."""
+    """Check a scenario without running it; the answer 422 lists its errors."""
     return Response(await computing.call(_checked, body.scenario), media_type="application/json")
 
 

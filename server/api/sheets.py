@@ -37,7 +37,7 @@ class SheetCard(BaseModel):
     minutes: int
     points: float
     steps: int
-    own: bool = Field(description="Somebody opened it; the others are those of the library")
+    own: bool = Field(description="A user opened it; the others belong to the library")
     work: SheetBrief | None = Field(description="How far the caller has come")
 
 
@@ -68,7 +68,7 @@ class SheetForAll(Body):
 
 
 class Grades(BaseModel):
-    """What the students of a class have done at sheets."""
+    """The work of the students of a class at sheets."""
 
     grades: list[Grade]
 
@@ -99,7 +99,7 @@ async def list_sheets(person: PersonDep, service: ServiceDep) -> SheetList:
 
 @router.post("/sheets", status_code=201, dependencies=[RateLimited])
 async def open_sheet(body: NewSheet, person: PersonDep, service: ServiceDep, response: Response) -> SheetView:
-    """Open a sheet of one's own; one that is not right is refused with its line and field."""
+    """Open a user's own sheet; a faulty sheet is refused with its line and field."""
     sheet = await service.sheets.shelf.open(body.text)
     response.headers["Location"] = f"/api/v1/sheets/{sheet.id}"
     return await service.sheets.view(person, sheet.id)
@@ -113,13 +113,13 @@ async def get_sheet(sheet_id: Id, person: PersonDep, service: ServiceDep) -> She
 
 @router.delete("/sheets/{sheet_id}", status_code=204, dependencies=[RateLimited])
 async def delete_sheet(sheet_id: Id, service: ServiceDep) -> None:
-    """Delete a sheet that somebody opened, and what was done at it."""
+    """Delete a user's own sheet, and the work at it."""
     await service.sheets.delete(sheet_id)
 
 
 @router.post("/sheets/{sheet_id}/begin", dependencies=[RateLimited])
 async def begin_sheet(sheet_id: Id, person: PersonDep, service: ServiceDep) -> SheetView:
-    """Begin a sheet, or go on with it on a new bench; answers stay."""
+    """Begin a sheet, or continue it on a new bench; answers stay."""
     _must_work(person)
     await service.sheets.begin(person, sheet_id)
     return await service.sheets.view(person, sheet_id)
@@ -127,7 +127,7 @@ async def begin_sheet(sheet_id: Id, person: PersonDep, service: ServiceDep) -> S
 
 @router.delete("/sheets/{sheet_id}/progress", status_code=204, dependencies=[RateLimited])
 async def start_over(sheet_id: Id, person: PersonDep, service: ServiceDep) -> None:
-    """Forget one's own answers at a sheet."""
+    """Forget the caller's answers at a sheet."""
     await service.sheets.start_over(person, sheet_id)
 
 
@@ -146,7 +146,7 @@ async def hide_in_step(sheet_id: Id, step_id: Id, person: PersonDep, service: Se
     """Hide the fault of the step that is open, on a new bench of the sheet; the answer to it closes the step."""
     _must_work(person)
     if person.role == "student":
-        service.driving.check(service.people.bench_of(person), person)  # the one before is gone with it
+        service.driving.check(service.people.bench_of(person), person)  # the bench before is closed with it
     await service.sheets.hide(person, sheet_id, step_id)
     await service.checkpoints.write()  # the bench of a student hides it after a crash too
     return await service.sheets.view(person, sheet_id)
@@ -162,7 +162,7 @@ async def take_hint(sheet_id: Id, step_id: Id, person: PersonDep, service: Servi
 
 @router.post("/sheets/{sheet_id}/steps/{step_id}/close", dependencies=[RateLimited])
 async def close_step(sheet_id: Id, step_id: Id, person: PersonDep, service: ServiceDep) -> SheetView:
-    """Close the step that is open with what it has earned; the right answer is told."""
+    """Close the open step with its points; the reply has the right answer."""
     _must_work(person)
     await service.sheets.change(person, sheet_id, lambda progress, sheet, tick: progress.go_on(sheet, step_id, tick))
     return await service.sheets.view(person, sheet_id)
@@ -170,7 +170,7 @@ async def close_step(sheet_id: Id, step_id: Id, person: PersonDep, service: Serv
 
 @router.put("/sheets/{sheet_id}/recordings/{recording_id}", dependencies=[RateLimited])
 async def add_recording(sheet_id: Id, recording_id: Id, person: PersonDep, service: ServiceDep) -> SheetView:
-    """Hand a recording of one's own in with the sheet."""
+    """Hand in one of the student's recordings with the sheet."""
     _must_work(person)
     recording = await service.recordings.get(recording_id)
     if not service.people.may_see_recordings(person, recording.bench_id):
@@ -187,7 +187,7 @@ async def get_report(sheet_id: Id, person: PersonDep, service: ServiceDep) -> Re
 
 @router.post("/classes/{class_id}/sheet", dependencies=[RateLimited])
 async def begin_for_all(class_id: Id, body: SheetForAll, service: ServiceDep) -> Outcomes:
-    """Begin a sheet with all students of a class, also those who join later, or with some; each gets its bench."""
+    """Begin a sheet with all students of a class, also with later students, or with some; each gets its bench."""
     service.sheets.get(body.sheet)
     chosen = await students_of(service, class_id, body.members)
     if body.members is None:
@@ -252,6 +252,6 @@ def _recording(recording: Recording | None, recording_id: str) -> str:
 
 
 def _must_work(person: Person) -> None:
-    """Refuse a watcher, who has no bench on which a sheet could begin."""
+    """Refuse a watcher, because watchers have no bench for a sheet."""
     if person.role == "watcher":
         raise ApiError(409, "conflict", "who watches a bench has no sheet")

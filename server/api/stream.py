@@ -115,7 +115,7 @@ async def _close(socket: WebSocket, client: Client) -> None:
     try:
         async with asyncio.timeout(CLOSE_S):
             await socket.close(code, reason)
-        # The close may stand in a buffer that nobody empties; a line that ended meanwhile is not touched.
+        # The close may be in a buffer that is never emptied; a line that ended meanwhile is not touched.
         asyncio.get_running_loop().call_later(CLOSE_S, client.line.cut)
     except TimeoutError:
         client.line.cut()
@@ -283,5 +283,5 @@ class Conversation:
 
 
 def _line(error: ValidationError) -> ErrorBody:
-    """Say what is wrong with a message; the type of the message, which pydantic adds to the place, is left out."""
+    """Describe the error of a message; the type of the message, which pydantic adds to the place, is left out."""
     return clear_line([{**complaint, "loc": complaint["loc"][1:]} for complaint in error.errors(include_url=False)])

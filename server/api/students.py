@@ -8,7 +8,7 @@ from server.service import Service
 
 
 async def student_of(service: Service, class_id: str, member_id: str) -> Person:
-    """Return a student of a class; refuse an id of nobody."""
+    """Return a student of a class; refuse an unknown id."""
     await service.classes.row(class_id)
     for person in service.people.students(class_id):
         if person.id == member_id:
@@ -17,7 +17,7 @@ async def student_of(service: Service, class_id: str, member_id: str) -> Person:
 
 
 async def students_of(service: Service, class_id: str, members: list[str] | None) -> list[Person]:
-    """Return the students of a class, or some of them; refuse ids of nobody."""
+    """Return the students of a class, or some of them; refuse unknown ids."""
     await service.classes.row(class_id)
     students = service.people.students(class_id)
     if members is None:

@@ -60,7 +60,7 @@ class SweepPoints(BaseModel):
     found: int = Field(description="Points that have runs, on all pages")
     runs: int = Field(description="Runs in these results; until the campaign has ended, `sweep.done` may be ahead")
     figures: list[str] = Field(description="Figures that a run has")
-    quantities: list[str] = Field(description="What runs can be counted over: axes that are numbers, seed, figures")
+    quantities: list[str] = Field(description="Possible axes of a count of runs: numeric axes, seed, figures")
     words: dict[str, str] = Field(description="Diagnosers by their titles and hypotheses in words, by their names")
 
 
@@ -68,10 +68,10 @@ class SweepPoints(BaseModel):
     "",
     status_code=202,
     dependencies=[RateLimited],
-    responses={200: {"model": SweepRun, "description": "The same campaign is there already"}},
+    responses={200: {"model": SweepRun, "description": "The same campaign existed already"}},
 )
 async def start_sweep(body: NewSweep, service: ServiceDep, response: Response) -> SweepRun:
-    """Start a campaign, or go on with one that was stopped; a second request for a campaign returns the same one."""
+    """Start a campaign, or continue a stopped campaign; a second request for a campaign returns the same one."""
     document = body.sweep if isinstance(body.sweep, dict) else await asyncio.to_thread(read_toml, body.sweep, "sweep")
     label = clean_label(body.label)
     await service.keeping.room()
@@ -117,7 +117,7 @@ async def get_sweep_points(
     service: ServiceDep,
     offset: Annotated[int, Query(ge=0, description="Points to pass over")] = 0,
     limit: Annotated[
-        int | None, Query(ge=1, le=MOST_POINTS, description="Points at most: those that have runs. All if left out")
+        int | None, Query(ge=1, le=MOST_POINTS, description="Points at most, of the points with runs. All if left out")
     ] = None,
     sort: Annotated[str, Query(max_length=200, description="An axis, a figure, runs, ok or tripped")] = "",
     descending: bool = False,
@@ -154,10 +154,10 @@ async def get_sweep_distribution(
 async def get_sweep_picture(
     sweep_id: str,
     service: ServiceDep,
-    figure: Annotated[str, Query(max_length=200, description="A figure; none for the one that varies most")] = "",
+    figure: Annotated[str, Query(max_length=200, description="A figure; none for the figure that varies most")] = "",
     across: Annotated[str, Query(max_length=200, description="A number that varies, for the axis across")] = "",
 ) -> CampaignPicture:
-    """Return a figure over what was varied, and how to draw it: rows, lines, a map, or a ranking with dots."""
+    """Return a figure over the varied quantities, and its drawing: rows, lines, a map, or a ranking with dots."""
     return await service.sweeps.read(sweep_id, lambda survey: surveyed_picture(survey, figure, across))
 
 

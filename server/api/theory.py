@@ -74,7 +74,7 @@ class Line(Body):
 
 
 class ExcitationSource(Body):
-    """An input, and the second-order plant whose parameters it should tell apart, in one unit of time."""
+    """An input, and the second-order plant whose parameters it should separate, in one unit of time."""
 
     tones: list[Line] = Field(min_length=1, max_length=100)
     gain: float = Field(1.0, ge=-1e6, le=1e6)
@@ -122,7 +122,7 @@ class InstabilityMap(BaseModel):
 
 
 class HypothesesSource(Body):
-    """A device, what may be wrong with it, and the tones that drive it."""
+    """A device, its possible faults, and the tones that drive it."""
 
     device: dict[str, Any] = Field({}, description="Catalogue id, and values written over it")
     hypotheses: list[Hypothesis] = Field(min_length=2, max_length=16, description="Factors on the device")

@@ -34,7 +34,7 @@ class NewThreshold(Body, Wanted):
     "",
     status_code=202,
     dependencies=[RateLimited],
-    responses={200: {"model": ThresholdRun, "description": "The same search is there already"}},
+    responses={200: {"model": ThresholdRun, "description": "The same search existed already"}},
 )
 async def find_threshold(
     body: NewThreshold, service: ServiceDep, person: PersonDep, response: Response
@@ -55,7 +55,7 @@ async def find_threshold(
 
 @router.get("/{threshold_id}")
 async def get_threshold(threshold_id: str, service: ServiceDep) -> ThresholdRun:
-    """Return how far a search is, and what it found once it is done."""
+    """Return the progress of a search, and its result at the end."""
     return await service.thresholds.get(threshold_id)
 
 

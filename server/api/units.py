@@ -1,4 +1,4 @@
-"""Units of one's own: what one may begin with, a check as one types, those that this server keeps."""
+"""User units: texts for a start, a check during typing, the units that this server keeps."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class CheckedUnit(BaseModel):
 
 
 class UnitMistake(BaseModel):
-    """What is wrong with a text, and where; line and column begin with 1."""
+    """An error in a text, and its place; line and column begin with 1."""
 
     message: str
     line: int
@@ -86,7 +86,7 @@ class UnitMistake(BaseModel):
 
 
 class UnitCheck(BaseModel):
-    """A unit, or what is wrong with its text."""
+    """A unit, or the errors in its text."""
 
     unit: CheckedUnit | None
     error: UnitMistake | None
@@ -94,7 +94,7 @@ class UnitCheck(BaseModel):
 
 @router.get("")
 def list_units(service: ServiceDep) -> UnitList:
-    """List the units to begin with, and say whether this person may bring any."""
+    """List the units to begin with, and whether this person may bring any."""
     own = [_entry(one, "folder" if service.units.is_kept(one.name) else "command line") for one in service.units.all()]
     return UnitList(units=[*own, *(_entry(one, origin) for one, origin in _offered())], refusal=refusal())
 

@@ -29,7 +29,7 @@ class NewWatcher(Body):
 
 
 class Watcher(BaseModel):
-    """A link to watch; its address is told once."""
+    """A link to watch; its address is shown once."""
 
     id: str
     until: datetime

@@ -89,7 +89,7 @@ class Benches:
         session = self._sessions.get(bench_id)
         if session is None:
             raise not_found(
-                "bench", bench_id, "list the live ones at /api/v1/benches; one that was let go comes back by /reopen"
+                "bench", bench_id, "list the live ones at /api/v1/benches; a closed idle bench comes back by /reopen"
             )
         return session
 
@@ -114,8 +114,9 @@ class Benches:
     ) -> Session:
         """Make a bench from a library id, a TOML text or a document; with ``own_scale`` at the pace of its device.
 
-        With ``quiet_lead`` it begins as fast as possible, to shortly before the first command of the scenario. That of
-        a student of a class has less room for its history. ``hide`` chooses a fault that is hidden from the first tick.
+        With ``quiet_lead`` it begins as fast as possible, to shortly before the first command of the scenario. The
+        bench of a student of a class has less room for its history. ``hide`` chooses a fault that is hidden from the
+        first tick.
 
         Raises
         ------
@@ -148,14 +149,14 @@ class Benches:
         return await self.admit(asyncio.to_thread(self.maker.replay, recording, path, speed), not paused)
 
     async def repeat(self, experiment: Experiment, opened: Opened, bench_id: str | None = None) -> Session:
-        """Make a bench that has done what an experiment has, and goes on or stands as it did.
+        """Make a bench with the state of an experiment, running or paused as the original was.
 
         Parameters
         ----------
         experiment : Experiment
-            What to repeat.
+            The experiment to repeat.
         opened : Opened
-            What the bench says of where it comes from.
+            The origin of the bench.
         bench_id : str, optional
             The id of the bench it was.
 
@@ -176,12 +177,12 @@ class Benches:
         return await self.admit(asyncio.to_thread(made), experiment.running)
 
     async def revive(self, kept: Kept, before: Callable[[Session, KeptWatch | None], None]) -> Session:
-        """Make a bench that goes on from what was kept, by the same id; ``before`` is called before it does.
+        """Make a bench that continues from a checkpoint, under the same id; ``before`` is called before it continues.
 
         Raises
         ------
         InputError
-            If this version of the code cannot go on from it.
+            If this version of the code cannot continue from it.
         """
 
         def made() -> Session:
@@ -199,12 +200,12 @@ class Benches:
         return await self.admit(coming(), kept.head.running, is_counted=not class_id)
 
     async def admit(self, coming: Coroutine[Any, Any, Session], start: bool, *, is_counted: bool = True) -> Session:
-        """Take in a bench that is being made, if there is room; those of students are limited by their number."""
+        """Take in a bench that is being made, if there is room; the number of students' benches is limited."""
         try:
             with self._room.taken() if is_counted else nullcontext():
                 return await self._enter(await coming, start)
         finally:
-            coming.close()  # if there was no room, nobody has awaited it
+            coming.close()  # without room it was never awaited
 
     async def take_in(self, session: Session, start: bool) -> Session:
         """Take in a bench that is made already, if there is room."""

@@ -1,4 +1,4 @@
-"""What a bench hides until somebody answers, a fault or a game, and the signals that people see meanwhile."""
+"""The hidden part of a bench until the answer, a fault or a game, and the visible signals meanwhile."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ OF_A_DIAGNOSER = ("probability", "winner", "residual", "nis", "information", "un
 """Ports of a diagnoser that may be seen if the exercise adds it; its score knows the truth."""
 
 SHEET = ("sample_rate_khz", "device", "plant", "reference", "controller", "sensor", "sensors", "controllers", "slots")
-"""Tables of the bench that people see: those of the nominal device, not of the drawn one."""
+"""Visible tables of the bench: the tables of the nominal device, not of the drawn device."""
 
 REFUSAL = "a fault is hidden on this bench"
 HINT = "answer or give up first, under Lesson › Hidden fault"
@@ -81,7 +81,7 @@ class HiddenQuestion(BaseModel):
 
 
 class Blind(BaseModel):
-    """A hidden fault: the question, and what answers it."""
+    """A hidden fault: the question, and its possible answers."""
 
     question: HiddenQuestion
     truth: str
@@ -89,7 +89,7 @@ class Blind(BaseModel):
     faults: list[Document]
     sheet: Document
     may_set: list[str] = Field([], description="In a game: further parameters that may be set")
-    may_inject: list[str] = Field([], description="In a game without hidden faults: those that may be tried")
+    may_inject: list[str] = Field([], description="In a game without hidden faults: the faults that may be tried")
 
     def inject(self, board: TickSource) -> None:
         """Let the fault wait for its moment."""
@@ -104,7 +104,7 @@ class Blind(BaseModel):
         return block in SIGNALS or signal in SIGNALS
 
     def check(self, command: Command | commands.RunCommand) -> None:
-        """Refuse a command of anybody that would tell or change the hidden fault.
+        """Refuse a command that would reveal or change the hidden fault.
 
         Raises
         ------
@@ -126,7 +126,7 @@ class Blind(BaseModel):
 
 
 def refusal(what: str = "") -> ApiError:
-    """Refuse what would tell."""
+    """Refuse a request that would reveal the fault."""
     return ApiError(403, "blind", f"{REFUSAL}; {what}" if what else REFUSAL, hint=HINT)
 
 
@@ -199,7 +199,7 @@ def hide(board: TickSource, sheet: Document, id_: str, shows: bool, which: int, 
 
 
 def play(played: Played, id_: str, sheet: Document, may_set: list[str], may_inject: list[str], shows: str) -> Blind:
-    """Hide what a game hides: its bench has it from the first tick, and people see no more than of a hidden fault.
+    """Hide the values of a game: its bench has them from the first tick, and users see the same as with a hidden fault.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ class CapturedBench(Protocol):
         """The branch of time of now."""
 
     def has_in_past(self, branch: int, tick: int) -> bool:
-        """Whether what lies before a tick of a branch is of the past of now."""
+        """Whether the ticks before a tick of a branch are in the past of the present state."""
 
 
 class Finder(Protocol):
@@ -42,7 +42,7 @@ class Finder(Protocol):
 
 
 class Captured(NamedTuple):
-    """What is captured: signals, over a window of ticks around the crossings of a trigger."""
+    """Definition of a capture: signals, over a window of ticks around the crossings of a trigger."""
 
     signals: tuple[str, ...]
     trigger: str
@@ -52,11 +52,11 @@ class Captured(NamedTuple):
     hysteresis: float
     window: int
     before: int
-    """Ticks of the window that lie before the crossing."""
+    """Ticks of the window before the crossing."""
 
 
 class Crossing(NamedTuple):
-    """A crossing of a trigger: its tick, where it lies between ticks, and the branch of time it is of."""
+    """A crossing of a trigger: its tick, its place between ticks, and its branch of time."""
 
     tick: int
     at: float
@@ -84,7 +84,7 @@ class CaptureSet:
     Parameters
     ----------
     what : Captured
-        What is captured.
+        Definition of the captures.
     columns : sequence of int
         Columns of its signals in the history.
     """
@@ -95,7 +95,7 @@ class CaptureSet:
         self.coming: Capture | None = None
         self.waiting: deque[Crossing] = deque(maxlen=MOST)
         self.views: WeakSet[Finder] = WeakSet()
-        """Those that show it now."""
+        """Views that show it now."""
         self.edition = 0
         """Grows with each change."""
         self.is_short = False
@@ -161,7 +161,7 @@ class Captures:
         return list(self._sets.values())
 
     def open(self, what: Captured, columns: Sequence[int]) -> CaptureSet | None:
-        """Return the captures of a trigger; none if the bench keeps those of too many others that are shown."""
+        """Return the captures of a trigger; None if the bench has the visible captures of too many others."""
         if (known := self._sets.get(what)) is not None:
             self._sets.move_to_end(what)
             return known
@@ -173,7 +173,7 @@ class Captures:
         return self._sets.setdefault(what, CaptureSet(what, columns))
 
     def follow(self) -> None:
-        """Follow the bench: what lies ahead of it, after it went back, is of no past of now."""
+        """Follow the bench: after it went back, captures ahead of it are not in its past."""
         branch, head = self._bench.branch, self._bench.history.end_tick
         if branch != self._branch or head < self._head:
             for one in self._sets.values():
@@ -220,7 +220,7 @@ class Captures:
         return capture.stop <= head and self._bench.has_in_past(capture.crossing.branch, capture.stop)
 
     def _copy(self, one: CaptureSet, room: int) -> int:
-        """Copy at most so many samples; return how many more may be copied."""
+        """Copy at most a number of samples; return how many more may be copied."""
         history = self._bench.history
         while room > 0 and (one.coming is not None or one.waiting):
             coming = one.coming = one.coming or self._begin(one, history)

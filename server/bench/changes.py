@@ -17,7 +17,7 @@ from server.bench.moment import Moment
 from server.bench.status import Undoable
 
 MOST, MOST_MOMENTS = 100, 3
-"""Changes remembered; of those that take a whole moment to go back, which has a past, fewer."""
+"""Changes remembered; fewer of the changes that need a whole moment with a past."""
 AT_ONCE_S = 1.0
 """Values of the same parameters set within this time of each other, as by a slider, are one change."""
 
@@ -26,17 +26,17 @@ class ChangingBench(LiveBench, Protocol):
     """A bench whose changes can be taken back."""
 
     def moment(self, with_past: bool = False) -> Moment:
-        """Return what the bench is now, for a jump that empties the history with the past before it."""
+        """Return the present state of the bench, for a jump that empties the history with the past before it."""
 
     def go_to(self, moment: Moment) -> None:
-        """Be what the bench was."""
+        """Restore the state of the bench."""
 
     def done(self, deed: Deed) -> None:
-        """Note for the past what was done to the board."""
+        """Note an action on the board for the past."""
 
 
 Way = list[Command | Pending | Moment]
-"""What leads from one side of a change to the other: commands, some that wait no more, or a moment."""
+"""The way from one side of a change to the other: commands, commands that wait no more, or a moment."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Change:
 
 
 class Changes:
-    """The changes of a bench that can be taken back, and those that were.
+    """The changes of a bench that can be undone, and the undone changes.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ class Changes:
         return event, [tripped] if tripped is not None else [*inverse(command, event, before)]
 
     def _remember(self, event: Event, way: Way, paths: frozenset[str] = frozenset()) -> None:
-        """Put a change on top; what was taken back before it cannot be made again."""
+        """Put a change on top; changes that were undone before cannot be redone."""
         self._undone.clear()
         if not way:
             return

@@ -1,7 +1,7 @@
-"""Checkpoints of live benches on disk: after a crash each goes on at its tick, bit for bit, with its log.
+"""Checkpoints of live benches on disk: after a crash each continues at its tick, bit for bit, with its log.
 
-A bench has two files. One holds the board and is replaced as a whole, the other grows by the events. A crash loses what
-came after the last write: less than a second.
+A bench has two files. One holds the board and is replaced as a whole, the other grows by the events. A crash loses the
+part after the last write: less than a second.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class Kept:
     watch: KeptWatch | None = None
 
     def board_of(self) -> tuple[Scenario, Board]:
-        """Return the scenario, and the board that goes on.
+        """Return the scenario, and the board that continues.
 
         Raises
         ------
@@ -78,7 +78,7 @@ class Kept:
             return Scenario.load(self.head.scenario), revived(self.stored)
 
     def put_into(self, session: Session) -> None:
-        """Make a new bench the one that was kept."""
+        """Restore the stored state into a new bench."""
         session.id, session.created = self.head.id, self.head.created
         session.events.go_on(self.events)
         if (blind := self.head.blind) is not None:
@@ -135,7 +135,7 @@ class Checkpoints:
             except FileNotFoundError:
                 return None
             except Exception:
-                log.exception("what was kept of bench %s cannot be read", bench_id)
+                log.exception("the checkpoint of bench %s cannot be read", bench_id)
                 return None
 
     async def forget(self, bench_id: str) -> None:
@@ -197,7 +197,7 @@ class Checkpoints:
 
 
 def _taken(session: Session) -> Kept:
-    """Return what a bench is now, without its events (a job of the engine)."""
+    """Return the present state of a bench, without its events (a job of the engine)."""
     session.must_be_open()
     watch = session.watch.kept(session) if session.watch is not None else None
     head = Head(

@@ -19,7 +19,7 @@ MAX_PENDING = 100
 
 
 class RunCommand(BaseModel):
-    """A command that runs the bench; it changes no bit of what the board computes."""
+    """A command that controls the pace of the bench; it changes no bit of the board's results."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 
@@ -60,10 +60,10 @@ class Reset(RunCommand):
 
 
 class FastForward(RunCommand):
-    """Run as fast as possible for a while, then go on at the time scale.
+    """Run as fast as possible for a while, then continue at the time scale.
 
-    It ends shortly before a tick: the one given, else that of the next command that waits. If only commands wait whose
-    moment is not known, it ends once one of them has taken effect; if none waits, at the end of the scenario.
+    It ends shortly before a tick: the given tick, else the tick of the next command that waits. If only commands wait
+    whose moment is not known, it ends once one of them has taken effect; if none waits, at the end of the scenario.
     """
 
     kind: Literal["fast_forward"] = "fast_forward"

@@ -1,6 +1,6 @@
-"""The threads that turn the engine: one that keeps time, and helpers that advance benches beside it.
+"""The threads that turn the engine: one thread keeps time, and helpers advance benches in parallel.
 
-The watchdog leaves a crew behind that hangs, and another takes its place. Until then a thread has what it works on to
+The watchdog leaves a crew behind that hangs, and another takes its place. Until then a thread has its present work to
 itself. A thread of the old crew that wakes up ends before its next line.
 """
 
@@ -28,7 +28,7 @@ class Crew(Generic[T]):
     run : callable
         The work of the thread that keeps time.
     helpers : int
-        Threads beside it.
+        Threads in addition to the timing thread.
     """
 
     def __init__(self, run: Callable[[], None], helpers: int) -> None:
@@ -77,7 +77,7 @@ class Crew(Generic[T]):
                 raise error
 
     def leave(self) -> None:
-        """Let idle threads end now, and those that hang before they would run their next line."""
+        """End idle threads now, and end hanging threads before they would run their next line."""
         for thread in self.threads:
             if thread is self.main or thread.ident in self.in_hand:
                 number, error = ctypes.c_ulong(thread.ident or 0), ctypes.py_object(LeftBehind)

@@ -1,4 +1,4 @@
-"""The earlier notation of commands to a board, by a kind: still read, from clients and from what was stored."""
+"""The earlier notation of commands to a board, by a kind: still read, from clients and from the store."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ class Earlier(Timed):
     """A command that was written in the earlier notation."""
 
     names: ClassVar[Mapping[str, str]] = {}
-    """What it called the fields that have other names now."""
+    """Old names of fields that have other names now."""
     implied: ClassVar[Mapping[str, Any]] = {}
-    """What it left to the kind."""
+    """Fields that follow from the kind."""
 
 
 class EarlierInject(Inject, Earlier):
@@ -74,7 +74,7 @@ def parse_earlier(document: dict[str, Any]) -> Earlier:
 
 
 def as_written(error: InputError, model: type[Any]) -> InputError:
-    """Return the error with the field as the person wrote it, for a command of this sort."""
+    """Return the error with the field as the user wrote it, for a command of this sort."""
     head, dot, rest = error.field.partition(".")
     if issubclass(model, Earlier):
         head = model.names.get(head, head)

@@ -3,7 +3,7 @@
 The event loop serves clients; the engine thread advances boards. A busy loop or a slow client delays frames but no
 board. A command, a snapshot and a new bench are jobs: the engine runs them between two slices, and the loop awaits
 their results. The compiled ticks run without the interpreter's lock, so benches do not wait for each other. One thread
-at a time advances a bench. Where these threads hang, the watchdog lets others take their place.
+at a time advances a bench. Where these threads hang, the watchdog gives their place to others.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class Workload(Protocol):
         """Account for the round."""
 
     def fail(self, error: Exception) -> None:
-        """Stop after an error nobody expected."""
+        """Stop after an unexpected error."""
 
 
 class Engine:
@@ -77,7 +77,7 @@ class Engine:
     on_round : callable
         Called on the engine thread after every round and after every batch of jobs.
     clock : Clock, optional
-        Monotonic seconds; those of the machine by default.
+        Monotonic seconds; the clock of the machine by default.
     """
 
     def __init__(
@@ -160,12 +160,12 @@ class Engine:
             self._wake.notify()
 
     def take_over(self, lost: Callable[[list[Workload]], None]) -> None:
-        """Go on with other threads; called by another one, once those of the engine have ended or hang.
+        """Continue with other threads; called by another thread, once the threads of the engine have ended or hang.
 
         Parameters
         ----------
         lost : callable
-            Called with the benches that those have in hand, which are given up, before any other job is done.
+            Called with the benches of the lost threads, which are dropped, before any other job is done.
         """
         before = self.crew
         held = before.held
@@ -261,7 +261,7 @@ class Engine:
     def _round(self, now: float, end: float) -> bool:
         """Bring every paced bench to its target, slice by slice in turn, then spend the rest of the round on free ones.
 
-        A job may change what a bench should do, so the round ends there (false) and another begins.
+        A job may change the target of a bench, so the round ends after it (false) and another begins.
         """
         targets = [(work, work.target(now)) for work in self._work.values() if work.is_running]
         paced = [pair for pair in targets if pair[1] is not None]
@@ -276,7 +276,7 @@ class Engine:
         return True
 
     def _turns(self, pairs: list[tuple[Workload, int | None]], end: float) -> bool:
-        """Give each bench one slice in turn until all are there or the round is over; false after a job.
+        """Give each bench one slice in turn until all are at their targets or the round is over; false after a job.
 
         Every processor takes the next bench that is waiting: handing a bench to a thread costs more than a slice.
         """

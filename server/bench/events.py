@@ -31,7 +31,7 @@ class Event(LogEntry):
 class EventLog(Log):
     """The log of a live bench, to which its board adds too; the event loop reads it.
 
-    It keeps the last `KEPT` events, and goes on when the board goes back.
+    It keeps the last `KEPT` events, and continues when the board goes back.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class EventLog(Log):
         old: Any = None,
         new: Any = None,
     ) -> Event:
-        """Append an event, tell of it and return it with its number."""
+        """Append an event, report it and return it with its number."""
         event = self.keep(tick=tick, actor=actor, kind=kind, text=text, command=command, old=old, new=new)
         self._on_event(event)
         return event
@@ -69,7 +69,7 @@ class EventLog(Log):
         return event
 
     def take_over(self, board: TickSource) -> None:
-        """Add what a board has noted so far, and let it note here from now on."""
+        """Add the past notes of a board, and let it note here from now on."""
         for entry in board.log:
             self.add(entry.tick, entry.actor, entry.kind, entry.text, entry.command, entry.old, entry.new)
         board.log = self
@@ -85,7 +85,7 @@ class EventLog(Log):
         return Log()
 
     def after(self, seq: int, limit: int | None = None) -> tuple[int, list[Event]]:
-        """Return how many events behind ``seq`` are forgotten, and the oldest of those that are kept.
+        """Return how many events after ``seq`` are forgotten, and the oldest kept events.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""An experiment: a scenario and what was done on its bench up to a tick, from which the same bits come again."""
+"""An experiment: a scenario and the commands to its bench up to a tick, which give the same bits again."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ THIS_VERSION = f"{VERSION} {code_version()}"
 
 
 class Experiment(BaseModel):
-    """What a bench was made from, what was done to it, and how it stood."""
+    """The scenario of a bench, the commands to it, and its state."""
 
     scenario: dict[str, Any]
     events: list[dict[str, Any]]
@@ -35,7 +35,7 @@ class Experiment(BaseModel):
 
 
 def experiment_of(session: Session) -> Experiment:
-    """Return what happened on a bench (a job of the engine).
+    """Return the experiment of a bench (a job of the engine).
 
     Raises
     ------
@@ -47,7 +47,7 @@ def experiment_of(session: Session) -> Experiment:
     board = session.board
     document = {**session.scenario.document, **board.base}
     events = board.save()["events"]
-    if named := carried({**document, "events": events}).get(TABLE):  # what was done may name others
+    if named := carried({**document, "events": events}).get(TABLE):  # commands may name other packages
         document[TABLE] = named
     plain = json.loads(json.dumps({"scenario": document, "events": events}, default=str))
     return Experiment(
@@ -81,7 +81,7 @@ def rebuilt(experiment: Experiment, most_ticks: int, values: dict[str, Any] | No
     Raises
     ------
     InputError
-        If the values do not fit the scenario or what was done.
+        If the values do not fit the scenario or the commands.
     ApiError
         If it is longer than may be repeated, or this version cannot read it.
     """
@@ -101,7 +101,7 @@ def rebuilt(experiment: Experiment, most_ticks: int, values: dict[str, Any] | No
 
 
 def repeat(session: Session, experiment: Experiment) -> bool:
-    """Bring a bench that nobody has yet to the tick of an experiment; return whether its bits are those of then."""
+    """Bring a new bench to the tick of an experiment; return whether its bits equal the original bits."""
     board = session.board
     while board.tick < experiment.tick and session.advance(experiment.tick - board.tick):
         pass

@@ -8,7 +8,7 @@ from core.errors import InputError
 from server.bench.live_bench import LiveBench
 
 SHORTLY_S = 2.0
-"""Wall time at the time scale that is left before what waits, to see the moment before."""
+"""Wall time at the time scale that is left before the waiting command, to see the moment before."""
 CAREFUL_S = 0.05
 """The same for a condition, whose moment is not known: the longest it can be overrun."""
 NO_END = 2**53
@@ -17,7 +17,7 @@ Reason = Literal["quiet_lead", "skip"]
 
 
 class FastForwarding:
-    """Where a bench that runs as fast as possible goes on at its time scale; on the engine thread.
+    """The tick at which a fast-forwarding bench returns to its time scale; on the engine thread.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class FastForwarding:
                 self._bench.note("scenario", "fast_forward", f"quiet lead: {text}")
 
     def skip(self, before_tick: int | None, ends_at: int | None) -> str:
-        """Run on to shortly before a tick, what waits, or the end of the scenario; return that in words.
+        """Run on to shortly before a tick, a waiting command, or the end of the scenario; return that in words.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Forks: second benches that go on from a moment of another, or begin as it is set."""
+"""Forks: second benches that continue from a moment of another, or begin with its settings."""
 
 from __future__ import annotations
 
@@ -57,14 +57,14 @@ class Forks:
         self._benches, self._engine, self._most_ticks = benches, engine, most_ticks
 
     async def now(self, session: Session, snapshot_id: str | None, *, paused: bool = False) -> Session:
-        """Make a bench that goes on from this moment of another, or from a snapshot."""
+        """Make a bench that continues from this moment of another, or from a snapshot."""
         coming = self._engine.call(forked, session, snapshot_id, self._benches.maker)
         return await self._benches.admit(coming, session.is_started and not paused)
 
     async def at(
         self, session: Session, tick: int, window_ticks: int, *, is_before: bool = False, paused: bool = False
     ) -> Session:
-        """Make a bench that goes on from a tick of the past of another, computed again.
+        """Make a bench that continues from a tick of the past of another, computed again.
 
         Raises
         ------
@@ -76,7 +76,7 @@ class Forks:
         return await self._benches.admit(coming, session.is_started and not paused)
 
     async def seek(self, session: Session, tick: int, actor: str) -> Event:
-        """Show another tick of the past on a bench that shows one; what it computes for another is given up.
+        """Show another tick of the past on a bench that shows a past tick; a computation for another tick is cancelled.
 
         Raises
         ------
@@ -101,8 +101,8 @@ class Forks:
     ) -> T:
         """Compute a moment of the past while it is wanted, and give it to ``then`` (in a job of the engine).
 
-        The bench that was asked for it tells how far it is. All that follows the computing is one job: pages get a
-        picture after a job, and after several they would wait for the next one.
+        The bench of the request shows the progress. All steps after the computing are one job: pages get a picture
+        after a job, and after several they would wait for the next one.
         """
         travel = asked.travel = Travel(tick=past.origin.tick, share=0.0)
 
@@ -146,12 +146,12 @@ class Forks:
         return await self._benches.create(document, values, session.board.spec.seed, paused, scale)
 
     async def repeated(self, session: Session, values: dict[str, Any]) -> Session:
-        """Make a bench that has done what another has, with values written over its scenario; it stands there.
+        """Make a bench with the commands of another, with values written over its scenario; it is paused there.
 
         Raises
         ------
         InputError
-            If the values do not fit the scenario or what was done.
+            If the values do not fit the scenario or the commands.
         ApiError
             If there are too many benches, or the other has run for too long.
         """
@@ -167,7 +167,7 @@ class Forks:
 
 
 def forked(session: Session, snapshot_id: str | None, maker: Maker) -> Session:
-    """Return a bench that is what another is now, or was when a snapshot was taken (a job)."""
+    """Return a bench with the present state of another, or with the state of a snapshot (a job)."""
     moment = session.snapshots.get(snapshot_id).moment if snapshot_id else session.moment()
     board = Board.restore(moment.checkpoint)
     twin = maker.around(moment.scenario, board, session.pacer.scale)

@@ -1,4 +1,4 @@
-"""Hiding: a bench hides a fault, and people have a view of the bench that does not tell it."""
+"""Hiding: a bench hides a fault, and users have a view of the bench that does not reveal it."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from server.errors import ApiError
 from server.people.person import Person
 
 STOPPED = "the board has stopped itself"
-"""The only words about a trip: its reason and its signal would tell the fault."""
+"""The only words about a trip: its reason and its signal would reveal the fault."""
 
 RUNNING = ("opened", "start", "pause", "step", "step_period", "reset_trip", "finished", "blind")
 CHANGES, TRIED = ("time_scale", Set.kind, Switch.kind), (Inject.kind, Heal.kind)
-"""Kinds of events that people see; of changes with the values before, of a trip that the board has stopped. What was
-tried they see in a game that lets them try faults."""
+"""Kinds of visible events; changes without the values before, trips only as a stop of the board. In a game that allows
+faults, the tried faults are visible too."""
 
 STATUS = (
     *("state", "tick", "first_tick", "time_scale", "achieved_scale", "capped", "overruns", "given_up_ms"),
@@ -39,7 +39,7 @@ BENCH = (
     *("id", "title", "scenario_id", "source", "created", "dt_ms", "sample_rate_khz", "samples", "history_ticks"),
     *("drive_period_ticks", "axes", "controllers", "keep"),
 )
-"""Fields of a status and of a bench that people are told; they are told no others."""
+"""The visible fields of a status and of a bench; all others are hidden."""
 
 
 class HidingBench(ShownBench, CapturedBench, Protocol):
@@ -49,7 +49,7 @@ class HidingBench(ShownBench, CapturedBench, Protocol):
     captures: Captures
 
     def done_otherwise(self) -> None:
-        """Note for the past that the board has become another in a way that no command says."""
+        """Note for the past that the board has changed without a command."""
 
 
 class Hiding:
@@ -74,7 +74,7 @@ class Hiding:
         return self.view.blind if self.view is not None else None
 
     def hides_from(self, person: Person) -> bool:
-        """Whether somebody sees the view alone; a teacher sees all of the bench of a student."""
+        """Whether a person sees only the view; a teacher sees all of the bench of a student."""
         return self.view is not None and not (self._bench.class_id and person.is_teacher)
 
     def begin(self, blind: Blind, log: Sequence[Event] = ()) -> None:
@@ -85,7 +85,7 @@ class Hiding:
             self.hear(event)
 
     def clear(self) -> None:
-        """Heal the device, drop waiting commands and end recordings: all could tell the fault (a job of the engine)."""
+        """Heal the device, drop waiting commands and end recordings: all could reveal the fault (an engine job)."""
         bench = self._bench
         bench.running.fast_forward.end()
         bench.running.fast_forward.leads = False
@@ -106,7 +106,7 @@ class Hiding:
     def reveal(self, actor: str) -> None:
         """Serve everything again (a job of the engine)."""
         self.view = None
-        self._bench.note(actor, "revealed", "what was hidden was shown")
+        self._bench.note(actor, "revealed", "the hidden fault was shown")
         self._bench.refresh_status()
 
     def look(self, rows: Rows) -> None:
@@ -122,7 +122,7 @@ class Hiding:
 
 
 class BlindView:
-    """A bench as people see it while a fault is hidden on it: the server serves only what this class names.
+    """The visible part of a bench while a fault is hidden on it: the server serves only the names of this class.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ class BlindView:
         self._bench, self.blind = bench, blind
         self.events = EventLog(lambda _event: None)
         signals = bench.board.signals
-        # whether and when the measured error comes back differs with what is hidden
+        # the presence and the delay of the measured error depend on the hidden values
         told = [signal for signal in self.signals if signal.name != MEASURED]
         self.narration = Narration(bench.board.spec, told, signals.outputs)
         self.captures = Captures(bench, bench.captures.most_bytes)
@@ -165,12 +165,12 @@ class BlindView:
 
     @property
     def scenario_id(self) -> str:
-        """Of its scenario, for the names of files."""
+        """Id of its scenario, for the names of files."""
         return self._bench.scenario.id
 
     @property
     def about(self) -> Document:
-        """What a file of its trace says of it."""
+        """Description in a file of its trace."""
         return {"bench": self.id}
 
     @property
@@ -191,7 +191,7 @@ class BlindView:
         return device(self.blind.sheet["device"])
 
     def indices(self, names: Sequence[str]) -> list[int]:
-        """Return the columns of signals; one that may not be seen is unknown."""
+        """Return the columns of signals; a hidden signal is unknown."""
         known = {signal.name: signal.index for signal in self.signals}
         for name in names:
             if name not in known:

@@ -1,4 +1,4 @@
-"""A job: a function that the engine runs between two slices, and somebody waits for."""
+"""A job: a function that the engine runs between two slices, and a caller that awaits it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Job:
         self.future: Future[Any] = Future()
 
     def __call__(self) -> None:
-        """Run it, unless nobody waits any more."""
+        """Run it, unless its caller was cancelled."""
         if not self.future.set_running_or_notify_cancel():
             return
         try:

@@ -1,4 +1,4 @@
-"""Jumps of a bench in time: to its start, to another bench's moment, to one that was kept, to one of the past."""
+"""Jumps of a bench in time: to its start, to another bench's moment, to a snapshot, to a past moment."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from server.bench.watch import Watch
 
 
 class Jumping(Timeline):
-    """A bench that jumps in time; what belongs to it, as its log and its narrator, follows each jump."""
+    """A bench that jumps in time; its parts, such as its log and its narrator, follow each jump."""
 
     taken_over = 0
     """Number of the last event that is of the bench whose past it shows."""
@@ -49,7 +49,7 @@ class Jumping(Timeline):
         return event
 
     def become(self, other: Jumping, actor: str, text: str, start: bool) -> Event:
-        """Go on as another bench of the same signals that nobody has, with its past and its pace."""
+        """Continue as another, unpublished bench of the same signals, with its past and its pace."""
         assert isinstance(other.board, Board)
         before = self.moment(with_past=True)
         self._begin_again(other.scenario, other.board)
@@ -62,7 +62,7 @@ class Jumping(Timeline):
         return event
 
     def show(self, other: Jumping, actor: str) -> Event:
-        """Show another moment of the past, a bench that nobody has."""
+        """Show another moment of the past from an unpublished bench."""
         if not self.is_past:
             raise InputError("it has gone on from its past", "kind", "fork the bench at a tick", "conflict")
         assert isinstance(other.board, Board)
@@ -76,7 +76,7 @@ class Jumping(Timeline):
         return event
 
     def look_back(self, actor: str, *, is_before: bool = False) -> Event:
-        """Note which moment of the past it shows, or the one before what was done then; later events are not of it."""
+        """Note the visible past moment, or the moment before its commands; later events do not belong to it."""
         tick = self.board.tick
         end = tick if is_before else tick + 1
         led = [event.seq for event in self.events.after(0)[1] if event.seq <= self.taken_over and event.tick < end]
@@ -100,7 +100,7 @@ class Jumping(Timeline):
         return event
 
     def go_to(self, moment: Moment) -> None:
-        """Be what the bench was."""
+        """Restore the state of the bench."""
         self._be_again(moment)
         if moment.told is not None:
             self.narration.go_to(moment.told)
@@ -108,7 +108,7 @@ class Jumping(Timeline):
         self._jumped("the bench was restored", self.scenario.samples)
 
     def moment(self, with_past: bool = False) -> Moment:
-        """Return what the bench is now, for a jump that empties the history with the past before it."""
+        """Return the present state of the bench, for a jump that empties the history with the past before it."""
         return replace(super().moment(with_past), last_event=self.events.last, told=self.narration.told())
 
     def _jumped(self, why: str, ends_at: int | None) -> None:
@@ -120,7 +120,7 @@ class Jumping(Timeline):
             self.watch.jumped(self.board.tick)
 
     def done_otherwise(self) -> None:
-        """Note for the past that the board has become another in a way that no command says."""
+        """Note for the past that the board has changed without a command."""
         super().done_otherwise()
         self._remember()
 
@@ -134,5 +134,5 @@ class Jumping(Timeline):
         return self.events.add(self.board.tick if tick is None else tick, actor, kind, text, command)
 
     def refresh_status(self) -> None:
-        """Replace the status by that of now."""
+        """Replace the status by the present status."""
         raise NotImplementedError

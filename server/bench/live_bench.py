@@ -54,4 +54,4 @@ class LiveBench(Protocol):
         """Add an event of the bench itself, of now unless a tick is given."""
 
     def refresh_status(self) -> None:
-        """Replace the status by that of now."""
+        """Replace the status by the present status."""

@@ -1,4 +1,4 @@
-"""Puts benches around boards and recordings; nobody has them yet."""
+"""Puts benches around boards and recordings; they are not published yet."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Maker:
     def __init__(self, settings: Settings, metrics: Metrics, clock: Callable[[], float]) -> None:
         self._settings, self._metrics, self._clock = settings, metrics, clock
         self.units = Units(settings.data / FOLDER, settings.unit_files)
-        """Units that every new bench has beside the library's."""
+        """Units that every new bench has in addition to the library's."""
 
     def around(self, scenario: Scenario, board: Board, time_scale: float | None, class_id: str = "") -> Session:
         """Put a bench around a board; one for a student of a class has less room for its history."""
@@ -65,7 +65,7 @@ class Maker:
         return session
 
     def _kept(self, board: TickSource, megabytes: int, beside_bytes: int) -> int:
-        """Return for how many ticks the signals of a board are kept, beside what else is kept of its past."""
+        """Return for how many ticks the signals of a board are kept, in addition to the other memory of its past."""
         affordable = History.ticks_within(
             megabytes - beside_bytes * 1e-6, board.signals.outputs, len(board.signals.taps)
         )

@@ -53,7 +53,7 @@ def check(source: str | dict[str, Any], values: dict[str, Any], units: Document)
     values : dict
         Written over it.
     units : dict
-        Units of this server, which it has beside its own.
+        Units of this server, in addition to the document's own.
     """
     prepare(source, values, None, partial(beside, units), compiled=False)
 
@@ -78,8 +78,8 @@ def is_id(source: str | dict[str, Any]) -> TypeGuard[str]:
 def usual_scale(board: TickSource) -> float:
     """Return the time scale that suits a device.
 
-    That of a resonator; near real time for a plant in seconds; between them for a plant with axes, whose amplitude and
-    rate take some hundred periods to settle.
+    The scale of a resonator; near real time for a plant in seconds; between them for a plant with axes, whose amplitude
+    and rate take some hundred periods to settle.
     """
     if board.spec.axes:
         return AXES_SCALE

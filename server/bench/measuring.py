@@ -1,4 +1,4 @@
-"""Measures what a live bench has run by the figures of a headless run: computed again beside it, so with its bits."""
+"""Measures the run of a live bench by the figures of a headless run: computed again in parallel, so with its bits."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from server.bench.narration import Narration
 from server.bench.portrait import ShownBench
 
 MOST_TICKS = 2_000_000
-"""Longest run that is measured beside its bench."""
+"""Longest run that is measured next to its bench."""
 AT_ONCE = 200_000
 """Ticks that are computed for one answer."""
 
 
 class MeasuredBench(ShownBench, Protocol):
-    """What measuring needs of a bench."""
+    """The part of a bench that measuring needs."""
 
     narration: Narration
 
@@ -42,7 +42,7 @@ class Run:
     tick : int
         Where it is.
     digest : str
-        Of what it has put out so far.
+        Digest of its outputs so far.
     is_stopped : bool
         Whether a trip has stopped it.
     """
@@ -70,7 +70,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Figures:
-    """Figures of the first ticks of a run; ``reason`` says why there are none."""
+    """Figures of the first ticks of a run; ``reason`` explains missing figures."""
 
     tick: int = 0
     metrics: dict[str, float] | None = None
@@ -79,7 +79,7 @@ class Figures:
 
 
 class Measuring:
-    """Follows the run of a bench on a board of its own; nothing is kept until somebody asks."""
+    """Follows the run of a bench on a board of its own, from the first request on."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -90,7 +90,7 @@ class Measuring:
         self._figures = Figures()
 
     def figures(self, run: Run) -> Figures:
-        """Return the figures of what has run, of so many ticks more than at the last call at most (in a thread)."""
+        """Return the figures of the run, at most a number of ticks further than at the last call (in a thread)."""
         with self._lock:
             if run.track is None:
                 return Figures(reason="a recording that is played is measured by the run it is of")
@@ -133,7 +133,7 @@ class Measuring:
 
     @staticmethod
     def _is_same(run: Run, track: Track, board: Board) -> bool:
-        """Whether a board has put out what the bench had by then, as far as it can be told."""
+        """Whether a board has the same outputs as the bench by then, as far as they can be compared."""
         if board.tick == run.tick:
             return board.digest() == run.digest
         return board.tick < run.ends_at or board.digest() == track.to(board.tick).board().digest()

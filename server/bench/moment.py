@@ -1,4 +1,4 @@
-"""Moments: what a bench is at a tick edge, and which of its past still belongs to it."""
+"""Moments: the state of a bench at a tick edge, and the part of its past that still belongs to it."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ class Moment:
     checkpoint : Checkpoint
         Its board.
     branch : int
-        The branch of time it lies on.
+        Its branch of time.
     past : Rows, optional
         The ticks before it, for when the history has them no more.
     last_event : int
         Number of the last event before it.
     told : Told, optional
-        What the narrator had said by then.
+        State of the narrator by then.
     """
 
     scenario: Scenario
@@ -55,7 +55,7 @@ class Branches:
         self._began.append((parent, tick))
 
     def share(self, branch: int, tick: int) -> bool:
-        """Whether what lies before a tick of a branch is what the history of now has there."""
+        """Whether the ticks before a tick of a branch are the ticks in the present history."""
         at, shared = self.current, math.inf
         while at >= 0:
             if at == branch:

@@ -1,4 +1,4 @@
-"""What the narrator says of a live bench; the event loop reads it."""
+"""The sentences of the narrator about a live bench; the event loop reads them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ KEPT = 2000
 
 @dataclass(frozen=True)
 class Told:
-    """What was said up to a moment, and a narrator that goes on from there.
+    """The sentences up to a moment, and a narrator that continues from there.
 
     Parameters
     ----------
@@ -51,14 +51,14 @@ class Mark:
 
 
 class Narration:
-    """The sentences of the present run of a bench, numbered 1, 2, 3, ...; a jump takes back what it undoes.
+    """The sentences of the present run of a bench, numbered 1, 2, 3, ...; a jump removes the sentences that it undoes.
 
     Parameters
     ----------
     spec : Spec
         The bench as it begins.
     signals : sequence of Signal
-        The signals that may be told of.
+        The signals that sentences may use.
     outputs : int
         How many of the columns of its rows are outputs.
     """
@@ -76,17 +76,17 @@ class Narration:
         self._narrator.hear(event)
 
     def look(self, rows: Rows) -> None:
-        """Say what is to be said after some rows more."""
+        """Write the sentences after some more rows."""
         if said := self._narrator.look(rows):
             self.say(said)
 
     def follow(self, log: Log, rows: Rows | None = None) -> None:
-        """Say what is to be said after some rows more of a board that is computed again, which has a log of its own."""
+        """Write the sentences after some more rows of a board that is computed again, which has a log of its own."""
         if said := self._narrator.follow(log, rows):
             self.say(said)
 
     def tell(self) -> None:
-        """Say at once what waits for no row, as that the board was stopped."""
+        """Write sentences at once that wait for no row, for example that the board was stopped."""
         if said := self._narrator.tell():
             self.say(said)
 
@@ -101,23 +101,23 @@ class Narration:
         self._jump(Told(Narrator(spec, self._signals, self._outputs), (), 0, {}))
 
     def remember(self, tick: int, kept: Collection[int]) -> None:
-        """Remember how far it is at a tick; of the ticks before, those that are kept."""
+        """Remember the sentences at a tick; of the ticks before, only the kept ticks."""
         earlier = {one: known for one, known in self._earlier.items() if one in kept and one < tick}
         self._earlier = {**earlier, tick: (self._narrator.copy(), self.mark.last)}
 
     def told(self) -> Told:
-        """Return what was said so far, to go on from."""
+        """Return the sentences so far, to continue from."""
         return Told(self._narrator.copy(), tuple(self._sentences), self.mark.last, self._earlier)
 
     def told_at(self, tick: int) -> Told:
-        """Return what was said by a tick that is remembered, to go on from there."""
+        """Return the sentences up to a remembered tick, to continue from there."""
         narrator, last = self._earlier[tick]
         known = last - (self.mark.last - len(self._sentences))
         earlier = {one: then for one, then in self._earlier.items() if one <= tick}
         return Told(narrator, tuple(islice(self._sentences, max(known, 0))), last, earlier)
 
     def go_to(self, told: Told) -> None:
-        """Go on from what was said at a moment."""
+        """Continue from the sentences at a moment."""
         self._jump(replace(told, narrator=told.narrator.copy()))
 
     def _jump(self, told: Told) -> None:
@@ -133,7 +133,7 @@ class Narration:
         Parameters
         ----------
         known : Mark
-            How far the caller is; after a jump it knows nothing.
+            The progress of the caller; after a jump it has nothing.
         """
         with self._lock:
             have = known.last if known.jumps == self.mark.jumps else 0

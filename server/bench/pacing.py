@@ -6,7 +6,7 @@ import math
 from collections import deque
 
 CATCH_UP_S = 0.05
-"""Wall time a bench may be behind. Time beyond it is given up, counted and shown."""
+"""Wall time a bench may be behind. More lag is dropped, counted and shown."""
 
 WINDOW_S = 1.0
 """Wall time over which the achieved rate is measured."""
@@ -21,8 +21,8 @@ CAPPED_AFTER_S = 3.0
 class Pacer:
     """Turns wall time into a tick to reach.
 
-    The target is the integer part of ``(now - anchor) * rate`` and never a sum of steps, so it does not
-    drift. Time more than `CATCH_UP_S` behind is given up: the anchor moves and the loss is counted.
+    The target is the integer part of ``(now - anchor) * rate`` and never a sum of steps, so it does not drift. Time
+    more than `CATCH_UP_S` behind is dropped: the anchor moves and the loss is counted.
 
     Parameters
     ----------

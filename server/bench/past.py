@@ -1,4 +1,4 @@
-"""The past of a bench: what it takes to compute a moment of it again, away from the engine."""
+"""The past of a bench: the data to compute a moment of it again, away from the engine."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ class Past:
     Parameters
     ----------
     of : Session
-        The bench, which goes on.
+        The bench, which continues.
     scenario : Scenario
         The scenario of the bench.
     passage : Passage
-        The way to the moment. What is to be seen before it comes from ``seen``, or the way begins as much earlier.
+        The way to the moment. The visible part before it comes from ``seen``, or the way begins as much earlier.
     track : Track
         The track of the bench, not followed any further.
     events : list of Event
-        What has happened on the bench, also after the moment.
+        The events of the bench, also after the moment.
     told : Told
-        What the narrator had said where the way begins.
+        The sentences of the narrator at the beginning of the way.
     time_scale : float or None
         Its pace.
     origin : Origin
@@ -45,7 +45,7 @@ class Past:
     jumps : int
         How often the bench had jumped in time; samples that are read after one more may be of another past.
     is_before : bool
-        What was done at that very tick is left out.
+        The commands at that very tick are left out.
     """
 
     of: Session
@@ -62,7 +62,7 @@ class Past:
 
     @classmethod
     def take(cls, session: Session, tick: int, window_ticks: int, *, is_before: bool = False) -> Past:
-        """Take what is needed of a bench (a job of the engine).
+        """Take the necessary data of a bench (a job of the engine).
 
         Parameters
         ----------
@@ -71,9 +71,9 @@ class Past:
         tick : int
             The moment, with all that was done at that tick unless it is before it.
         window_ticks : int
-            Ticks before the moment that are there too.
+            Ticks before the moment that are included.
         is_before : bool
-            Leave out what was done at that very tick.
+            Leave out the commands at that very tick.
 
         Raises
         ------
@@ -108,7 +108,7 @@ class Past:
         return self.seen is None or (self.of.history is self.seen and self.of.narration.mark.jumps == self.jumps)
 
     def session(self, maker: Maker, on_share: Callable[[float], None]) -> Session:
-        """Compute the moment again, and return a bench that is there and can go on.
+        """Compute the moment again, and return a bench that can continue from it.
 
         Parameters
         ----------

@@ -169,7 +169,7 @@ def factors_of(section: Section) -> list[dict[str, float]]:
 
 
 def document_of(bench: ShownBench) -> dict[str, Any]:
-    """Return what happened on a bench as a scenario; run headless it gives the same bits."""
+    """Return the history of a bench as a scenario; run headless it gives the same bits."""
     title = bench.scenario.head.title or bench.scenario.id
     head = {
         "schema": 1,

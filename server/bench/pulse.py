@@ -1,9 +1,9 @@
 """The pulse of threads: whether they work, or wait for something that may never come.
 
-Linux tells of each thread how long it has run and whether it sleeps. A thread that waits for a processor or for a disk
-is at work, however long that takes, and so is one that waits for the interpreter's lock, for which it asks again and
-again. It may also wait for a lock of another thread that waits for a processor: while threads of this process do that,
-they are crowded. Other systems tell nothing, and a thread that has not ended is at work there.
+Linux reports for each thread its running time and whether it sleeps. A thread that waits for a processor or for a disk
+is at work, however long that takes, and so is a thread that waits for the interpreter's lock, because it requests the
+lock again and again. It may also wait for a lock of another thread that waits for a processor: while threads of this
+process do that, they are crowded. Other systems report nothing, and every thread that has not ended is at work there.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Pulse:
     worked_s: float
     """Processor time of all of them, or the whole time if one of them slept in between."""
     is_crowded: bool = False
-    """They are blocked, but other threads wait for a processor or a disk, and may hold what these need."""
+    """They are blocked, but other threads wait for a processor or a disk, and may hold their locks."""
 
 
 class Finger:
@@ -42,7 +42,7 @@ class Finger:
         self._waited_ns: dict[str, int] = {}
 
     def feel(self, threads: Sequence[threading.Thread], passed_s: float) -> Pulse:
-        """Return what threads have done in the time that has passed since the last call."""
+        """Return the activity of threads in the time since the last call."""
         before, states = self._ran, {}
         self._ran = {}
         for thread in threads:
@@ -74,12 +74,12 @@ class Finger:
 
 
 def _state(folder: Path) -> str:
-    """Return the letter by which the system tells what a thread does."""
+    """Return the letter of the system for the state of a thread."""
     return (folder / "stat").read_text().rpartition(") ")[2][:1]
 
 
 def _others_work(numbers: Sequence[int]) -> bool:
-    """Whether one of these threads is inside a package that lets others work."""
+    """Whether one of these threads is inside a package that releases the interpreter's lock."""
     frames = sys._current_frames()
     for number in numbers:
         frame = frames.get(number)

@@ -1,6 +1,6 @@
 """Records every signal of a live bench at full rate, in a thread of its own.
 
-The engine hands over copies and goes on; it never waits for the disk. If the disk cannot follow, or a limit is
+The engine hands over copies and continues; it never waits for the disk. If the disk cannot follow, or a limit is
 reached, the recording ends there, whole and readable, and the event log says so. This thread also reads from the
 history the ticks before the recording began.
 """
@@ -33,7 +33,7 @@ COMPLETE = "it is as long as it was meant to be"
 FULL = "it reached its size limit"
 CLOSED = "the bench was closed"
 WANTED = (STOPPED, COMPLETE, FULL, CLOSED)
-"""Ends that somebody asked for or set; any other end is an alarm."""
+"""Ends by a request or a setting; any other end is an alarm."""
 
 Samples = NDArray[np.float32]
 
@@ -94,7 +94,7 @@ class Recorder:
         return not self.reason
 
     def begin(self, past: Past, ticks: int | None) -> None:
-        """Take a span of the past; end the recording so many ticks behind it."""
+        """Take a span of the past; end the recording a number of ticks after it."""
         length = past.end - past.first
         if ticks is not None and length + ticks <= self._left:
             self._left, self._full = length + ticks, COMPLETE
@@ -125,7 +125,7 @@ class Recorder:
             self._queue.put(line)
 
     def stop(self, reason: str = STOPPED) -> None:
-        """End the recording behind what has been taken; returns at once."""
+        """End the recording after the rows taken so far; returns at once."""
         if self.is_open:
             self.reason = reason
             self._queue.put(None)

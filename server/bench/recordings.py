@@ -1,4 +1,4 @@
-"""Recordings of one bench: those under way, and those that wait for a condition."""
+"""Recordings of one bench: active recordings, and recordings that wait for a condition."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _concerning(events: Sequence[Event], first: int) -> list[Event]:
 
 
 def _of_this_run(events: Sequence[Event]) -> list[Event]:
-    """Return the events since the last reset; of those before a return to a moment, the ones that led to it."""
+    """Return the events since the last reset; of the events before a return to a moment, only those of its past."""
     jumps = [at for at, event in enumerate(events) if event.kind in ("reset", "restored")]
     if not jumps:
         return list(events)
@@ -89,7 +89,7 @@ class Wanted(BaseModel):
 
 
 class Recordings:
-    """Begins recordings, passes them the rows of their bench and forgets those that have ended; on the engine thread.
+    """Begins recordings, passes them the rows of their bench and forgets ended recordings; on the engine thread.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ class Recordings:
         return self._begin(recorder, bench.board.tick, past, ticks)
 
     def stop(self, recording_id: str, reason: str = STOPPED) -> Recorder:
-        """End a recording here, or one that waits."""
+        """End a recording here, or a waiting recording."""
         waiting = self.armed.pop(recording_id, None)
         recorder = waiting.recorder if waiting is not None else self.under_way.get(recording_id)
         if recorder is None:
@@ -183,7 +183,7 @@ class Recordings:
         return first
 
     def _record_rows(self, rows: Rows) -> None:
-        """Pass copies of rows to the recordings, and forget those that have ended by themselves."""
+        """Pass copies of rows to the recordings, and forget recordings that have ended by themselves."""
         samples = np.hstack((rows.outputs, rows.taps)).astype(np.float32).T
         for key, recorder in list(self.under_way.items()):
             recorder.append(rows.first_tick, samples)

@@ -36,7 +36,7 @@ LEAST_LOOP = 100
 
 
 def narrated(tape: Tape, path: Path, events: list[dict[str, Any]]) -> list[Sentence]:
-    """Return what the narrator says of a recording, made of its samples and its events.
+    """Return the sentences of the narrator about a recording, made from its samples and its events.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ class Playing(Running):
         start = tape.first if command.start_tick is None else command.start_tick
         end = tape.end if command.end_tick is None else command.end_tick
         if not tape.first <= start < end <= tape.end or end - start < LEAST_LOOP:
-            text = f"must lie in {tape.first} to {tape.end} and have at least {LEAST_LOOP} ticks"
+            text = f"must be within {tape.first} to {tape.end} and have at least {LEAST_LOOP} ticks"
             raise InputError(text, "end_tick")
         had_ended = tape.tick >= tape.end
         self._loop_start, self.ends_at = start, end
@@ -136,7 +136,7 @@ class Playing(Running):
             self._jump()
         text = f"plays ticks {start} to {end} again and again"
         done = self._bench.note(actor, "loop", text, command.model_dump())
-        if had_ended:  # what has stopped by itself goes on; what somebody has paused stays
+        if had_ended:  # a replay that stopped at its end continues; a replay that a user paused stays paused
             self.carry_out(Start(), actor)
         return done
 
@@ -158,7 +158,7 @@ class Playing(Running):
 
 
 class Transcript(Narration):
-    """What the narrator says of a whole recording; playing it adds nothing."""
+    """The sentences of the narrator about a whole recording; playing it adds nothing."""
 
     def hear(self, event: Event) -> None:
         """Leave it as it is."""
@@ -173,7 +173,7 @@ class Replay(Session):
     Parameters
     ----------
     recording : RecordingDetail
-        The recording to play; its events become those of the bench.
+        The recording to play; its events become the events of the bench.
     scenario : Scenario
         The scenario of the recording.
     tape : Tape
@@ -187,7 +187,7 @@ class Replay(Session):
     clock : callable
         The engine's clock.
     sentences : list of Sentence
-        What the narrator says of it, from its beginning to its end.
+        The sentences of the narrator about it, from its beginning to its end.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""The resonance of a device, as a sweep shows it: what tells a fault that was hidden."""
+"""The resonance of a device, as a sweep shows it: the measurement that shows a fault that was hidden."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def resonance_of(spec: Spec, factors: Mapping[str, float]) -> Resonance | None:
     spec : Spec
         The bench.
     factors : mapping
-        Mass, stiffness, damping and gain over those of the device, where a fault changes them.
+        Mass, stiffness, damping and gain over the values of the device, where a fault changes them.
     """
     device = spec.device
     if device.usual_plant != "linear":

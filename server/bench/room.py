@@ -12,7 +12,7 @@ from server.settings import Settings
 
 
 class Room:
-    """Counts the benches that are live and those that are being made.
+    """Counts the live benches and the benches that are being made.
 
     Parameters
     ----------
@@ -49,4 +49,4 @@ class Room:
         after = format_count(math.ceil(minutes), "minute")
         wait = f"; a bench without watchers is closed after {after}" if minutes else ""
         text = f"the server is full: {most} of {most} benches are live (max_benches)"
-        raise ApiError(409, "too_many_benches", text, hint=f"join one that runs, or close one{wait}")
+        raise ApiError(409, "too_many_benches", text, hint=f"use a running bench, or close one{wait}")

@@ -1,7 +1,7 @@
 """Takes care of benches when the engine hangs: safe outputs, a recording of the last seconds, an end for a stuck one.
 
-Only the engine changes a bench. So the status says at once that it has tripped, and the outputs go to their safe
-values by a command, at the tick where the bench stands and before any other one: the run repeats with the same bits.
+Only the engine changes a bench. So the status shows the trip at once, and the outputs go to their safe values by a
+command, at the present tick of the bench and before any other tick: the run repeats with the same bits.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ class Safety:
             if isinstance(session, Session):
                 self._engine.interrupt(lambda one=session: _shut(one))  # type: ignore[misc]
                 self._on_loop(lambda one=session: self._begin(self._end(one)))  # type: ignore[misc]
-                log.error("bench %s hangs and is given up", session.id)
+                log.error("bench %s hangs and is closed", session.id)
 
     def _on_loop(self, function: Callable[[], None]) -> None:
         """Let the event loop do something."""
@@ -108,7 +108,7 @@ class Safety:
         task.add_done_callback(self._tasks.discard)
 
     async def _keep(self, sessions: Sequence[Session], why: str) -> None:
-        """Record the last seconds of some benches; where a fault is hidden, a file would tell it."""
+        """Record the last seconds of some benches, except where a fault is hidden, because a file would reveal it."""
         kept = [one for one in sessions if one.hiding.view is None and one.history.end_tick > one.history.first_tick]
         for session in kept[:MOST_KEPT]:
             try:
@@ -131,7 +131,7 @@ class Safety:
 
 
 def show_trip(session: Session, reason: str) -> None:
-    """Let the status of a bench say that it has tripped, although nobody may change the bench now."""
+    """Show in the status of a bench that it has tripped, although the bench itself cannot be changed now."""
     if session.status.trip is None:
         tick = session.board.tick
         trip = Trip(tick=tick, time_ms=tick * session.dt_ms, reason=reason, signal="", value=None)
@@ -139,7 +139,7 @@ def show_trip(session: Session, reason: str) -> None:
 
 
 def make_safe(session: Session, reason: str) -> None:
-    """Take the outputs of a bench to their safe values at the tick where it stands (urgent)."""
+    """Take the outputs of a bench to their safe values at its present tick (urgent)."""
     try:
         if session.board.trip is None:
             session.execute(MakeSafe(make_safe=reason), "board")
@@ -155,7 +155,7 @@ def make_safe(session: Session, reason: str) -> None:
 def _shut(session: Session) -> None:
     """Refuse all further commands to a bench (urgent)."""
     session.close()
-    show_trip(session, "the bench hung and has been given up")
+    show_trip(session, "the bench hung and was closed")
 
 
 def _with_outputs(benches: Sequence[Workload]) -> list[Session]:

@@ -63,13 +63,13 @@ class Session(Jumping):
     """
 
     name = ""
-    """What people call it, beside the title of its scenario."""
+    """Name given by users, in addition to the title of its scenario."""
     replay_of = ""
     """The recording it plays, if it does."""
     recorded_scale: float | None = None
     """Device seconds per wall second of the recording."""
     sought: object = None
-    """The moment of the past that was asked for last."""
+    """The moment of the past that was requested last."""
     travel: Travel | None = None
     """The moment of its past that is being computed, if one is."""
     opened: Opened | None = None
@@ -196,8 +196,8 @@ class Session(Jumping):
         return self.recordings.close()
 
     def advance(self, ticks: int) -> int:
-        """Run ticks, as many as a slice has; keep them, record them, note what happened; return how many there were."""
-        watch = self.watch if self.hiding.blind is None else None  # what holds would tell what is hidden
+        """Run ticks, at most one slice; keep them, record them, note the events; return their number."""
+        watch = self.watch if self.hiding.blind is None else None  # a condition would reveal hidden values
         rows = self._advance_slice(ticks if watch is None else watch.room(self.board.tick, ticks))
         self.narration.look(rows)
         self._remember()
@@ -213,7 +213,7 @@ class Session(Jumping):
         return rows.count
 
     def _happened(self, event: Event) -> None:
-        """Count an event, tell of it, and write it into the recordings under way."""
+        """Count an event, report it, and write it into the active recordings."""
         if not self.hiding.hear(event):
             self._metrics.events.labels(event.kind).inc()
         self.narration.hear(event)
@@ -228,7 +228,7 @@ class Session(Jumping):
 
     @property
     def scenario_id(self) -> str:
-        """Of its scenario, for the names of files."""
+        """Id of its scenario, for the names of files."""
         return self.scenario.id
 
     @property
@@ -241,9 +241,9 @@ class Session(Jumping):
         return bench_of(self, around, view3d)
 
     def refresh_status(self) -> None:
-        """Replace the status by that of now."""
+        """Replace the status by the present status."""
         self.status = status_of(self)
 
 
 Seen = Session | BlindView
-"""A bench as somebody sees it."""
+"""A bench as a user sees it."""

@@ -1,4 +1,4 @@
-"""Staging puts a bench into the exact state of a cue of a lecture. What people did to it before leaves no trace."""
+"""Staging puts a bench into the exact state of a cue of a lecture. Earlier commands to it leave no trace."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ class Staging:
         state : State
             The state of the cue.
         pace : float, optional
-            Device seconds per wall second; that of the device without one.
+            Device seconds per wall second; the scale of the device by default.
         actor, text : str
-            Who does it, and what the log says.
+            The user, and the text of the log.
         """
 
         def made() -> Session:
@@ -59,7 +59,7 @@ class Staging:
 
 
 def _advance(session: Session, board: Board, tick: int) -> None:
-    """Bring a bench that nobody has to a tick, and carry out what waits for it."""
+    """Bring an unpublished bench to a tick, and carry out its waiting commands."""
     while board.tick < tick and session.advance(tick - board.tick):
         pass
     board.apply_due()

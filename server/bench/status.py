@@ -54,29 +54,29 @@ class Undoable(BaseModel):
 
 
 class Somebody(BaseModel):
-    """Somebody at a bench."""
+    """A person at a bench."""
 
     id: str
     name: str
 
 
 class Company(BaseModel):
-    """Who is at a bench that several have open."""
+    """The users of a bench that several have open."""
 
     is_leased: bool = Field(description="Two or more who may drive have it open, so only one of them does")
     driver: Somebody | None = Field(
-        description="Who drives; null: nobody, and the next person who does something drives"
+        description="The driver; null: none, and the next person who gives a command drives"
     )
-    drivers: list[Somebody] = Field(description="Who is there and may drive")
-    asking: list[Somebody] = Field(description="Who has asked for the bench")
-    lent_by: str = Field(description="Id of the person who handed it over and may take it back; empty: nobody did")
-    watching: list[str] = Field(description="Names of students who look on")
+    drivers: list[Somebody] = Field(description="Present persons who may drive")
+    asking: list[Somebody] = Field(description="Persons who have requested the bench")
+    lent_by: str = Field(description="Id of the person who handed it over and may take it back; empty: none")
+    watching: list[str] = Field(description="Names of students who watch")
     more_watching: int = Field(description="And so many more")
     links: int = Field(description="Pages opened by links to watch")
 
 
 class Origin(BaseModel):
-    """The moment of another bench that a bench goes on from."""
+    """The moment of another bench from which a bench continues."""
 
     bench: str = Field(description="The other bench, which may be gone by now")
     tick: int
@@ -85,10 +85,10 @@ class Origin(BaseModel):
 
 
 class Travel(BaseModel):
-    """A moment of the past that is computed again now, because it was asked for."""
+    """A requested moment of the past that is computed again now."""
 
     tick: int
-    share: float = Field(description="Of the ticks that it takes, those that are done")
+    share: float = Field(description="Finished ticks of the ticks that it takes")
 
 
 class BenchStatus(BaseModel):
@@ -104,7 +104,7 @@ class BenchStatus(BaseModel):
     )
     capped: bool = Field(description="The machine has been below 80 % of the rate for 3 s")
     overruns: int = Field(description="Rounds that missed their target")
-    given_up_ms: float = Field(description="Wall time given up catching up")
+    given_up_ms: float = Field(description="Wall time dropped while catching up")
     controller: str = Field(description="The controller that drives, of the last slot where there are several")
     slots: dict[str, str] = Field(description="The controller that drives in each slot, in their order")
     faults: list[ActiveFault]
@@ -117,12 +117,12 @@ class BenchStatus(BaseModel):
     recording: list[str] = Field(description="Recordings under way")
     armed: list[str] = Field(description="Recordings that wait for their condition")
     earliest_tick: int | None = Field(None, description="The first tick that can be computed again; null: none can")
-    origin: Origin | None = Field(None, description="Where it goes on from, if it was forked at a tick")
+    origin: Origin | None = Field(None, description="Its first moment, if it was forked at a tick")
     travel: Travel | None = Field(
         None, description="A moment of its past that is being computed; seeking another ends it"
     )
     watchers: int = 0
-    company: Company | None = Field(None, description="Who is there; null while it is one person")
+    company: Company | None = Field(None, description="Its users; null while it is one person")
     loop_lag_ms: float = Field(0.0, description="99th percentile of the event loop's lateness, last minute")
     wake_late_ms: float = Field(0.0, description="99th percentile of the engine's lateness, last minute")
 
@@ -130,7 +130,7 @@ class BenchStatus(BaseModel):
 class Opened(BaseModel):
     """How a bench came from an experiment that was kept."""
 
-    link: str | None = Field(description="The link it was opened by; null: it had been let go and came back")
+    link: str | None = Field(description="The link it was opened by; null: it was closed while idle and came back")
     note: str
     version: str = Field(description="Version of the program and hash of the code the experiment was made with")
     version_now: str
@@ -172,8 +172,6 @@ class Bench(BenchStatus):
     blind: HiddenQuestion | None = Field(
         None, description="Asked while a fault is hidden here; little else is served then"
     )
-    name: str = Field("", description="What people call it beside the title, as a branch: with PID")
-    keep: bool = Field(False, description="It is never let go")
-    let_go_in_s: float | None = Field(
-        None, description="Until it is let go if nobody watches it or asks for it; null: it stays"
-    )
+    name: str = Field("", description="Its name in addition to the title, such as a branch: with PID")
+    keep: bool = Field(False, description="It stays open while unused")
+    let_go_in_s: float | None = Field(None, description="Time until it is closed if unused; null: it stays")

@@ -1,4 +1,4 @@
-"""Steps of a bench: a number of ticks, taken in the same slices of the engine as those of a bench that runs."""
+"""Steps of a bench: a number of ticks, taken in the same slices of the engine as the ticks of a running bench."""
 
 from __future__ import annotations
 

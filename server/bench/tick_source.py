@@ -21,7 +21,7 @@ class TickSource(Protocol):
     """A live bench needs this of its board or of its tape."""
 
     log: Log
-    """Where it notes what happens."""
+    """Log of its events."""
 
     @property
     def tick(self) -> int:
@@ -79,4 +79,4 @@ class TickSource(Protocol):
         """Return everything it is at this tick edge."""
 
     def save(self) -> Document:
-        """Return as a scenario document where it started and what was done to it."""
+        """Return as a scenario document its start and its commands."""

@@ -21,12 +21,12 @@ from server.bench.tick_source import TickSource
 PAST_TICKS = 20_000
 """Ticks of the past that a fork brings along, or a jump that is undone."""
 TRACK_BYTES = 8_000_000
-"""Memory of the checkpoints from which the past is computed again; that of the history is so much less."""
+"""Memory of the checkpoints from which the past is computed again; it is subtracted from the memory of the history."""
 CAPTURE_BYTES = 2_500_000
-"""Memory of the captures of those who see all of the bench, and as much of those from whom a fault is hidden; that of
-the history is so much less."""
+"""Memory of the captures of users who see all of the bench, and the same again for users from whom a fault is hidden;
+it is subtracted from the memory of the history."""
 SLICE_S = 0.005
-"""Longest slice, by what a tick takes; other benches and commands wait for it."""
+"""Longest slice, by the time of a tick; other benches and commands wait for it."""
 MOST_SLOWER = 4.0
 """Most by which the estimated time of a tick grows at once: a longer tick has waited for a processor."""
 
@@ -37,7 +37,7 @@ class Timeline:
     Parameters
     ----------
     scenario : Scenario
-        What the board was built from.
+        The scenario of the board.
     board : TickSource
         A board, or a recording that is played.
     history_ticks : int
@@ -47,7 +47,7 @@ class Timeline:
     """
 
     origin: Origin | None = None
-    """The moment of another bench that it goes on from."""
+    """The moment of another bench from which it continues."""
     past_ticks = PAST_TICKS
     track_bytes = TRACK_BYTES
 
@@ -75,7 +75,7 @@ class Timeline:
         return self._branches.current
 
     def has_in_past(self, branch: int, tick: int) -> bool:
-        """Whether what lies before a tick of a branch is of the past of now."""
+        """Whether the ticks before a tick of a branch are in the past of the present state."""
         return self._branches.share(branch, tick)
 
     @property
@@ -96,7 +96,7 @@ class Timeline:
 
     @property
     def geometry(self) -> Geometry:
-        """The drawing of the device with its own gap; that of the reference device if it has none."""
+        """The drawing of the device with its own gap; the drawing of the reference device if it has none."""
         return self.board.spec.device.drawing
 
     @property
@@ -134,12 +134,12 @@ class Timeline:
         return rows
 
     def done(self, deed: Deed) -> None:
-        """Note for the past what was done to the board."""
+        """Note an action on the board for the past."""
         if self.track is not None:
             self.track.note(deed)
 
     def done_otherwise(self) -> None:
-        """Note for the past that the board has become another in a way that no command says."""
+        """Note for the past that the board has changed without a command."""
         if self.track is not None and isinstance(self.board, Board):
             self.track.mark(self.board, is_fixed=True)
 
@@ -161,12 +161,12 @@ class Timeline:
             self.history = self._empty_history()
 
     def moment(self, with_past: bool = False) -> Moment:
-        """Return what the bench is now, for a jump that empties the history with the past before it."""
+        """Return the present state of the bench, for a jump that empties the history with the past before it."""
         past = self._past(self.board.tick) if with_past else None
         return Moment(self.scenario, self.board.checkpoint(), self._branches.current, past)
 
     def track_to(self, moment: Moment) -> Track | None:
-        """Return the track if it leads to a moment, so that what is kept is the past of the moment."""
+        """Return the track if it leads to a moment, so that the kept checkpoints are the past of the moment."""
         return self.track if self._branches.share(moment.branch, moment.checkpoint.tick) else None
 
     def _past(self, tick: int) -> Rows | None:
@@ -178,7 +178,7 @@ class Timeline:
         return Rows.of(first, past, self.board.signals.outputs)
 
     def _be_again(self, moment: Moment) -> None:
-        """Be what the bench was; of the past the history keeps what is that moment's own."""
+        """Restore the state of the bench; of the past the history keeps the part that belongs to that moment."""
         board = Board.restore(moment.checkpoint)
         self.scenario, self.board, tick = moment.scenario, board, board.tick
         if self._branches.share(moment.branch, tick):

@@ -14,7 +14,7 @@ from server.bench.live_bench import LiveBench
 
 @dataclass(frozen=True)
 class KeptWatch:
-    """How far a watch has come, as plain data: from it another watch goes on at the same tick.
+    """The progress of a watch, as plain data: from it another watch continues at the same tick.
 
     Parameters
     ----------

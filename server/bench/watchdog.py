@@ -1,4 +1,4 @@
-"""The watchdog over the engine: it looks on from a thread of its own and acts when the engine gives no sign of life.
+"""The watchdog over the engine: it watches from a thread of its own and acts when the engine shows no activity.
 
 It adds up silence: the time after a round was due in which the threads of the engine neither ran nor wanted to. A busy
 machine delays the looks too, so a late look counts little, and a tenth of that while other threads of this process wait
@@ -120,7 +120,7 @@ class Watchdog:
             log.warning("the engine turns again")
 
     def _bark(self, why: str) -> None:
-        """Take what runs to safe outputs, once for each time that the engine hangs."""
+        """Take running benches to safe outputs, once for each time that the engine hangs."""
         if self.barks:
             return
         self.barks = True

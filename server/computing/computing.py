@@ -112,7 +112,7 @@ class Computing:
 
 
 async def _done(worker: Processes, most_s: float, function: Callable[..., Any], *arguments: Any) -> Done:
-    """Have a function called in a process; end the process if the request is given up."""
+    """Call a function in a process; end the process if the request is cancelled."""
     too_much = InputError(
         f"takes more than {most_s:g} s of processor time or {MOST_BYTES >> 20} MB of memory", code="too_much"
     )
@@ -131,7 +131,7 @@ async def _done(worker: Processes, most_s: float, function: Callable[..., Any], 
     except TimeoutError:
         raise too_much from None
     finally:
-        if not future.done():  # out of patience, or the request is given up
+        if not future.done():  # out of patience, or the request is cancelled
             worker.kill()
             await asyncio.wait([asyncio.wrap_future(future)])
 

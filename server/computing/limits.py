@@ -15,7 +15,7 @@ from core.errors import InputError
 from core.own.admission import Terms, admit
 
 MOST_BYTES = 1 << 30
-"""Memory that a process may take beyond that of its beginning."""
+"""Memory that a process may take beyond its memory at the beginning."""
 
 _limited: list[bool] = []
 
@@ -45,7 +45,7 @@ def within(most_s: float, terms: Terms, function: Callable[..., Any], *arguments
     Raises
     ------
     RuntimeError
-        When the function failed; it says where.
+        When the function failed, with its place.
     """
     _limit_memory()
     admit(terms)
@@ -66,7 +66,7 @@ def within(most_s: float, terms: Terms, function: Callable[..., Any], *arguments
 
 
 def _end_after(seconds: float) -> None:
-    """Let the system end this process after so much processor time, also within a single instruction of Python."""
+    """Let the system end this process after an amount of processor time, also within a single instruction of Python."""
     if sys.platform != "win32":
         signal.setitimer(signal.ITIMER_PROF, seconds)
 

@@ -1,4 +1,4 @@
-"""The public keys of platforms: asked for in threads of their own, once for all who wait, and kept for some minutes."""
+"""The public keys of platforms: fetched in threads of their own, once for all who wait, and kept for some minutes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from server.lti.tool import Web
 KEPT_S = 300.0
 """How long the keys of a platform are good for."""
 AGAIN_S = 5.0
-"""A key that is not among them, or an answer that is none, is asked for again after so long."""
+"""Time until the next request for an unknown key, or after an invalid answer."""
 LONGEST_S, LONGEST = 20.0, 256 << 10
 """Most time and most bytes of an answer."""
 THREADS = 2

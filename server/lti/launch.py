@@ -50,7 +50,7 @@ class Launch:
 
     @property
     def name(self) -> str:
-        """The name of the person, if the platform tells it."""
+        """The name of the person, if the platform gives it."""
         return self.text("name") or " ".join(filter(None, (self.text("given_name"), self.text("family_name"))))
 
     @property

@@ -88,10 +88,10 @@ class Members:
         return person, secret
 
     def _free_name(self, given: str, class_id: str) -> str:
-        """Return a name as the class has names: cleaned, not too long, and nobody else's."""
+        """Return a name in the form of the class: cleaned, short enough, and unique."""
         try:
             name = clean(in_one_line(given)[:LONGEST_NAME])
-        except ApiError:  # none is told, or logs use it for somebody else
+        except ApiError:  # there is no name, or logs use it for another person
             name = "Student"
         free, number = name, 1
         while self._service.classes.is_called(class_id, free):

@@ -1,8 +1,8 @@
 """The messages of a launch, as pylti1p3 checks them: an adapter whose memory is a store of single use.
 
 The library keeps states in cookies and nonces in sessions. In a frame of another site there are no cookies, so that
-here both are kept by the server, behind the state, which is a secret that works once and for a short time. Whether the
-browser that ends a launch is the one that began it is checked by a third secret, which the page keeps.
+here both are kept by the server, behind the state, which is a secret that works once and for a short time. The server
+checks by a third secret, which the page keeps, that the same browser began and ended a launch.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ SIGNATURE_ALONE: Any = {f"verify_{name}": False for name in ("aud", "iss", "sub"
 
 @dataclass(frozen=True)
 class Login:
-    """A launch that has begun: whose it is, and what has to come back."""
+    """A launch that has begun: its platform, and the values that have to come back."""
 
     platform: Platform
     nonce: str
@@ -77,7 +77,7 @@ class _Memory(SessionService, CookieService):
         self.nonce = nonce
 
     def check_nonce(self, nonce: str) -> bool:
-        """Whether it is that of the login whose state came back."""
+        """Whether it belongs to the login whose state came back."""
         return bool(nonce) and nonce == self.nonce
 
     def get_cookie(self, name: str) -> str | None:
@@ -88,11 +88,11 @@ class _Memory(SessionService, CookieService):
         """Keep no cookie: the state is a secret of ours."""
 
     def check_state_is_valid(self, *_: Any) -> bool:
-        """Take no state for one that was checked before."""
+        """Never count a state as checked before."""
         return False
 
     def save_launch_data(self, *_: Any) -> None:
-        """Keep nothing of what the platform says."""
+        """Store nothing from the platform."""
 
     def set_state_valid(self, *_: Any) -> None:
         """Keep nothing: a state works once."""
@@ -123,7 +123,7 @@ class _Message(MessageLaunch[_Parameters, Tool, _Memory, _Memory]):
         return self._request.get_param(key)
 
     def key_id(self) -> str:
-        """Return the id of the key that signed; the algorithm is ours to say, not the message's."""
+        """Return the id of the key that signed; this server sets the algorithm, not the message."""
         self.validate_jwt_format()
         header, body = self._jwt.get("header"), self._jwt.get("body")
         if not isinstance(header, dict) or not isinstance(body, dict):
@@ -185,7 +185,7 @@ class Messages:
         """Seconds since 1970, by which messages are too old or too new."""
 
     def begin(self, given: Mapping[str, str], launch_url: str) -> tuple[str, str, str]:
-        """Return where a browser goes to be told who it is, the state, and the secret that this browser keeps.
+        """Return the address at which a browser learns its user, the state, and the secret that this browser keeps.
 
         Raises
         ------

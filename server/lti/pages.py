@@ -17,7 +17,7 @@ STORED = "combbench.lti."
 
 
 def _page(title: str, body: str, status: int = 200, nonce: str = "", referrer: str = "same-origin") -> HTMLResponse:
-    """Build a page; without a referrer a browser would say that its forms come from nowhere."""
+    """Build a page; without a referrer a browser would give its forms no origin."""
     script = f"script-src 'nonce-{nonce}'; " if nonce else ""
     forms = "https: http:" if nonce else "'self'"
     policy = (
@@ -35,7 +35,7 @@ def _page(title: str, body: str, status: int = 200, nonce: str = "", referrer: s
 def login_page(address: str, state: str, browser: str, again: str) -> HTMLResponse:
     """Let this browser remember that it began the launch, and send it to the platform.
 
-    One that keeps nothing for pages in a frame is offered a tab of its own, where it does.
+    A browser without storage for pages in a frame is offered a tab of its own, where it has storage.
     """
     nonce = secrets.token_urlsafe(16)
     body = (
@@ -61,7 +61,7 @@ def refusal_page(status: int, error: ErrorBody) -> HTMLResponse:
 
 
 def instructor_page(course: str, students: int) -> HTMLResponse:
-    """Say where an instructor finds the class; a launch gives nobody the rights of the teacher of this server."""
+    """Tell an instructor where the class is; a launch never gives the rights of the teacher of this server."""
     there = "1 student has" if students == 1 else f"{students} students have"
     body = (
         f"<p>The class <strong>{html.escape(course)}</strong> is open, and {there} come from your course so far. "

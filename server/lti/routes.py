@@ -63,7 +63,7 @@ class Lti:
 
 
 def install(app: FastAPI, service: Service) -> Frames:
-    """Add the doors to the application; return what the gate and the headers need to know of them."""
+    """Add the doors to the application; return the data for the gate and the headers."""
     settings = service.settings
     tool = Tool(settings.lti, settings.data)
     origins = sorted({origin for platform in settings.lti for origin in platform.frames})
@@ -89,7 +89,7 @@ def install(app: FastAPI, service: Service) -> Frames:
 
 
 def get_lti(request: Request) -> Lti:
-    """Return what the doors share."""
+    """Return the shared state of the doors."""
     return cast(Lti, request.app.state.lti)
 
 
@@ -108,26 +108,26 @@ class NewSession(Body):
 
 
 class NewTicket(Body):
-    """What a browser is to load by itself."""
+    """A path that a browser is to load by itself."""
 
     path: str = Field(pattern="^/(api|benches)/", max_length=400, description="Without a query")
 
 
 class Session(BaseModel):
-    """A session; its secret is told to a page in a frame alone, others get a cookie."""
+    """A session; only a page in a frame gets its secret, others get a cookie."""
 
     session: str | None
 
 
 @pages.get("")
 async def show_page(request: Request) -> Response:
-    """Return the page, which exchanges what a launch gave it for a session."""
+    """Return the page, which exchanges the code of a launch for a session."""
     return cast(Page, request.app.state.page).shown(request.scope)
 
 
 @pages.api_route("/login", methods=["GET", "POST"])
 async def begin_launch(request: Request, lti: LtiDep) -> Response:
-    """Send a browser to the platform that began a launch, to be told who it is."""
+    """Send a browser to the platform that began a launch, to learn its user."""
     try:
         given = await _parameters(request, lti)
         again = f"{lti.service.public.prefix}{LTI}/login?{urlencode(given)}"
@@ -138,7 +138,7 @@ async def begin_launch(request: Request, lti: LtiDep) -> Response:
 
 @pages.post("/launch")
 async def end_launch(request: Request, lti: LtiDep) -> Response:
-    """Take what the platform signed, and lead on: a learner to the bench, an instructor to a choice."""
+    """Take the signed message of the platform, and lead on: a learner to the bench, an instructor to a choice."""
     try:
         given = await _parameters(request, lti)
         launch, login = await lti.messages.end(given)
@@ -153,14 +153,14 @@ async def end_launch(request: Request, lti: LtiDep) -> Response:
         status = error.status_code if isinstance(error, ApiError) else 422
         return refusal_page(status, body_of(error))
     code = lti.launches.put((launch, login))
-    layout = "?layout=lab" if launch.sheet else ""  # where the sheet stands beside the bench
+    layout = "?layout=lab" if launch.sheet else ""  # the layout with the sheet next to the bench
     # behind the hash, where no log sees it
     return RedirectResponse(f"{LTI}{layout}#launch={code}&state={given['state']}", 303)
 
 
 @router.post("/session")
 async def make_session(body: NewSession, request: Request, response: Response, lti: LtiDep) -> Session:
-    """Exchange what a launch gave for a session, in the browser that began it."""
+    """Exchange the code of a launch for a session, in the browser that began it."""
     found = lti.launches.take(body.code)
     if found is None or not hmac.compare_digest(found[1].browser_hash, hash_of(body.browser)):
         text = "this launch has been used, is too old, or was begun in another browser"
@@ -205,7 +205,7 @@ async def get_keys(lti: LtiDep) -> JSONResponse:
 
 @pages.get("/configuration")
 async def get_configuration(request: Request, service: ServiceDep) -> JSONResponse:
-    """Return what is entered in a platform, in the form that Canvas reads; others ask for the same addresses."""
+    """Return the configuration for a platform, in the form that Canvas reads; others need the same addresses."""
     base = _base(request, service)
     launch = f"{base}{LTI}/launch"
     placement = {"placement": "link_selection", "message_type": "LtiDeepLinkingRequest", "target_link_uri": launch}
@@ -248,7 +248,7 @@ async def _ask_for_choice(launch: Launch, lti: Lti) -> HTMLResponse:
 
 
 def _resource(kind: str, name: str, address: str, service: Service) -> DeepLinkResource:
-    """Describe the link to an exercise; that of a lab sheet has a column of points."""
+    """Describe the link to an exercise; the link of a lab sheet has a column of points."""
     if kind == "sheet":
         sheet = service.sheets.get(name)
         column = LineItem().set_label(sheet.head.title).set_score_maximum(sheet.points).set_resource_id(sheet.id)

@@ -62,9 +62,9 @@ class Scores:
     tool : Tool
         Signs for this server.
     audit : Audit
-        Where the teacher reads what did not work.
+        The log for the teacher about failed deliveries.
     brief_of : callable
-        Says how far somebody is.
+        Returns the progress of a student.
     quiet_s, first_wait_s : float
         How long a score has to stay, and how long to wait after the first try.
     """
@@ -86,7 +86,7 @@ class Scores:
         self._pool = ThreadPoolExecutor(THREADS, thread_name_prefix="combbench-scores")
 
     def aim(self, person: Person, launch: Launch, work: Work | None) -> None:
-        """Send the score of a sheet where a launch says from now on, and what there is of it at once."""
+        """Send the score of a sheet to the address of a launch from now on, and the present score at once."""
         if not launch.line_item or not launch.sheet:
             return
         key = (person.id, launch.sheet)
@@ -96,7 +96,7 @@ class Scores:
             self.changed(work)
 
     def changed(self, work: Work) -> None:
-        """Note that somebody's work has changed; it is sent when it stays so for a while."""
+        """Note that a student's work has changed; it is sent when it is unchanged for a while."""
         key = (work.person_id, work.sheet_id)
         if key not in self._targets:
             return
@@ -112,7 +112,7 @@ class Scores:
             self._tasks[key] = asyncio.get_running_loop().create_task(self._send(key))
 
     async def close(self) -> None:
-        """Stop; what has not been sent is sent at the next launch."""
+        """Stop; unsent scores are sent at the next launch."""
         for task in list(self._tasks.values()):
             task.cancel()
         await asyncio.gather(*self._tasks.values(), return_exceptions=True)

@@ -1,4 +1,4 @@
-"""The server as a tool of learning platforms: its key pair, and what it knows of each of them."""
+"""The server as a tool of learning platforms: its key pair, and its data about each of them."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Tool(ToolConfAbstract[Request]):
         return {"keys": [Registration.get_jwk(self._public)]}
 
     def hash_of(self, *words: str) -> str:
-        """Return what is kept of a platform's ids: without the private key it cannot be made or guessed."""
+        """Return the stored hash of a platform's ids: without the private key it cannot be made or guessed."""
         return keyed_hash(self._hash_key, *words).hex()
 
     def platform(self, issuer: str, client_id: str | None) -> Platform | None:
@@ -76,7 +76,7 @@ class Tool(ToolConfAbstract[Request]):
         )
 
     def check_iss_has_one_client(self, iss: str) -> bool:  # noqa: ARG002
-        """Answer no: an issuer such as that of Canvas may have many."""
+        """Answer no: an issuer such as Canvas may have many."""
         return False
 
     def find_registration_by_issuer(self, iss: str, *_: Any, **__: Any) -> Registration:
@@ -103,7 +103,7 @@ class Tool(ToolConfAbstract[Request]):
 
 
 class Web(requests.Session):
-    """What this server asks of platforms: with time limits, and without following anybody elsewhere."""
+    """Requests of this server to platforms: with time limits, and without following redirects."""
 
     def request(self, method: str, url: str | bytes, *args: Any, **options: Any) -> requests.Response:
         """Ask, for some seconds at most."""

@@ -1,1 +1,1 @@
-"""People: who they are, what each may do, classes and what was done in them."""
+"""People: their identities, their rights, classes and the actions in them."""

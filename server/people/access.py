@@ -1,7 +1,7 @@
-"""What a person needs for each door of the service: one table, which the gate asks and the tests walk.
+"""The right that each door of the service needs: one table, which the gate reads and the tests check.
 
-A door is a method and a path; those of WebSockets have the method ``SOCKET``. A door that is not in the table is the
-teacher's alone, so that a new route is closed until somebody decides. While a fault is hidden on the bench of a
+A door is a method and a path; doors of WebSockets have the method ``SOCKET``. A door that is not in the table is open
+to the teacher alone, so that a new route is closed until it gets an entry. While a fault is hidden on the bench of a
 student, only the doors marked ``*`` stay open for that student.
 """
 
@@ -25,7 +25,7 @@ class Need(Enum):
     MEMBER = "the session of a student"
     WATCH = "may watch the bench in the path"
     MAY_DRIVE = "may drive the bench in the path, also while others drive"
-    DRIVE = "may drive the bench in the path, and nobody else does"
+    DRIVE = "may drive the bench in the path, and no other person drives it"
     TEACHER = "the teacher"
 
 
@@ -266,7 +266,7 @@ _LTI_DOORS = {
 
 
 def _table(doors: Mapping[Need, str]) -> tuple[dict[Door, Need], set[Door]]:
-    """Return what each door needs, and the doors that stay open while a fault is hidden."""
+    """Return the need of each door, and the doors that stay open while a fault is hidden."""
     needs: dict[Door, Need] = {}
     open_while_blind: set[Door] = set()
     for need, lines in doors.items():
@@ -278,18 +278,18 @@ def _table(doors: Mapping[Need, str]) -> tuple[dict[Door, Need], set[Door]]:
 
 
 DOORS, _own = _table(_DOORS)
-"""What each door needs, by its method and its path."""
+"""The need of each door, by its method and its path."""
 LTI_DOORS, _of_platforms = _table(_LTI_DOORS)
-"""The same of the doors that are there where learning platforms are configured, and nowhere else."""
+"""The same for the doors that exist only where learning platforms are configured."""
 TESTING_DOORS, _of_tests = _table(_TESTING_DOORS)
 """The same for the door that advances a manual clock; it exists only with that clock."""
 OPEN_WHILE_BLIND = frozenset(_own | _of_platforms | _of_tests)
-"""The doors marked ``*``: those that know no bench, and those that serve the view of one whose fault is hidden."""
+"""The doors marked ``*``: doors without a bench, and doors that serve the view of a bench with a hidden fault."""
 
 ALL = {**DOORS, **LTI_DOORS, **TESTING_DOORS}
 _PATTERNS = [(method, compile_path(path)[0], need, path) for (method, path), need in ALL.items()]
 _PAGE = ("/api/", "/health/", "/benches/", "/metrics")
-"""Below these, what is not in the table is no part of the page."""
+"""Below these, a path without an entry is no part of the page."""
 
 
 def serves_blind(method: str, path: str) -> bool:
@@ -302,7 +302,7 @@ def serves_blind(method: str, path: str) -> bool:
 
 
 def need_of(method: str, path: str) -> tuple[Need, str]:
-    """Return what a request needs, and the bench in its path if there is one.
+    """Return the need of a request, and the bench in its path if it has one.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The log of what people did, to which bench and when; it stays when the bench goes, and goes with the class."""
+"""The log of actions of users, with bench and time; it outlives the bench, and is deleted with the class."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ OF_THE_BENCH = frozenset({"board", "scenario"})
 
 
 class AuditEntry(BaseModel):
-    """One thing that somebody did."""
+    """One action of a user."""
 
     model_config = ConfigDict(from_attributes=True)
 
@@ -43,7 +43,7 @@ class AuditEntry(BaseModel):
 
 
 class Audit:
-    """The log of what people did.
+    """The log of actions of users.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class Audit:
     def add(
         self, actor: str, kind: str, text: str, class_id: str = "", bench_id: str = "", tick: int | None = None
     ) -> None:
-        """Keep what somebody did; it is written within a second."""
+        """Keep an action of a user; it is written within a second."""
         self._waiting.append(
             {
                 "at": now(),
@@ -82,10 +82,10 @@ class Audit:
             try:
                 await self.write()
             except Exception:
-                log.exception("what people did could not be written; it is tried again")
+                log.exception("the log of actions could not be written; it is tried again")
 
     async def write(self) -> None:
-        """Write what came since the last time."""
+        """Write the entries since the last time."""
         rows = [self._waiting.popleft() for _ in range(len(self._waiting))]
         if not rows:
             return
@@ -98,7 +98,7 @@ class Audit:
         await self._database.run(lambda session: session.execute(delete(AuditRow).where(AuditRow.id <= newest - MOST)))
 
     async def entries(self, *, class_id: str = "", bench_id: str = "", limit: int = 1000) -> list[AuditEntry]:
-        """Return what was done in a class or to a bench, newest first."""
+        """Return the actions in a class or on a bench, newest first."""
         await self.write()
         query = select(AuditRow).order_by(AuditRow.id.desc()).limit(limit)
         query = query.where(AuditRow.class_id == class_id if class_id else AuditRow.bench_id == bench_id)
@@ -106,7 +106,7 @@ class Audit:
         return [AuditEntry.model_validate(row) for row in rows]
 
     def forgetting(self, class_id: str) -> Change:
-        """Forget what was done in a class."""
+        """Forget the actions in a class."""
         gone = delete(AuditRow).where(AuditRow.class_id == class_id)
         return Change(lambda session: session.execute(gone), lambda: self.drop(class_id))
 

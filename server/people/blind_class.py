@@ -20,24 +20,24 @@ from server.people.person import Person
 LEFT_OUT = frozenset(
     {"events", "samples", "duration_ms", "expect", "printed", "metrics", "claim", "note", "faults", "twins"}
 )
-"""Parts of a scenario that would tell the fault, or that have nothing to do with the bench."""
+"""Parts of a scenario that would reveal the fault, or that do not belong to the bench."""
 
 
 async def begin_for(
     classes: Classes, blinds: Blinds, students: list[Person], source: str | dict[str, Any], shows: bool
 ) -> list[str]:
-    """Give students a blind bench each; return what went wrong, by name.
+    """Give students a blind bench each; return the errors, by name.
 
     Parameters
     ----------
     classes : Classes
         Their classes, from whose secret all is drawn.
     blinds : Blinds
-        Where it is kept what is hidden.
+        Store of the hidden faults.
     students : list of Person
-        Who is asked.
+        The students.
     source : str or dict
-        The scenario of the bench; what happens in it is left out.
+        The scenario of the bench; its events are left out.
     shows : bool
         Whether the diagnosers may be looked at meanwhile.
 

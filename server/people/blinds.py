@@ -29,7 +29,7 @@ from server.store.people import BlindAnswerRow
 OF_DRAW = 2**31
 """Numbers that are drawn are below this."""
 ALONE_KEPT = 100
-"""Answers kept of somebody who is alone."""
+"""Kept answers of a single user."""
 
 
 class Answer(BaseModel):
@@ -44,7 +44,7 @@ class Answer(BaseModel):
     name: str
     bench: str
     title: str
-    seed: int | None = Field(description="Of somebody alone: the same one hides the same fault")
+    seed: int | None = Field(description="For a user outside a class: the same seed hides the same fault")
     state: Literal["hidden", "answered", "revealed"] = "hidden"
     said: str | None = None
     confidence: float | None = None
@@ -54,9 +54,9 @@ class Answer(BaseModel):
     came_tick: int | None = Field(description="When the fault came; null for a healthy device")
     ended_tick: int | None = None
     took_ms: float | None = Field(None, description="Device time from the fault to the answer; null: none had come")
-    verdicts: dict[str, str] = Field({}, description="What each diagnoser said then")
-    healthy: Resonance | None = Field(None, description="What a sweep shows of the device without the fault")
-    faulty: Resonance | None = Field(None, description="What it shows with the fault; null for a device of two axes")
+    verdicts: dict[str, str] = Field({}, description="Verdict of each diagnoser then")
+    healthy: Resonance | None = Field(None, description="Response of the device without the fault")
+    faulty: Resonance | None = Field(None, description="Response with the fault; null for a device of two axes")
     began: datetime
     ended: datetime | None = None
 
@@ -71,7 +71,7 @@ class Blinds:
     engine : Engine
         Whose thread changes a bench.
     turn : callable
-        Closes the pages of a bench, so that they come back to what may be seen of it now.
+        Closes the pages of a bench, so that they come back to its present view.
     """
 
     def __init__(self, database: Database, engine: Engine, turn: Callable[[Session], Awaitable[None]]) -> None:
@@ -103,7 +103,7 @@ class Blinds:
         return next(found, None)
 
     async def begin(self, session: Session, person: Person, seed: int, shows: bool, secret: str = "") -> None:
-        """Hide a fault on a bench that is there, by a seed; a student cannot know beforehand what a seed hides.
+        """Hide a fault on an existing bench, by a seed; a student cannot know the fault of a seed beforehand.
 
         Raises
         ------
@@ -134,7 +134,7 @@ class Blinds:
 
             blind = await self._engine.call(chosen)  # refuses before anything has changed
             await self._database.keep(self.noting(session, person, blind, seed=seed))
-            session.hiding.begin(blind)  # from here on no page and no program is told more
+            session.hiding.begin(blind)  # from here on no page and no program gets more
             await self._turn_pages(session)
             try:
                 await self._engine.call(inject)
@@ -153,7 +153,7 @@ class Blinds:
         return self._keeping(_unanswered(session, person, blind, exercise, seed))
 
     async def commit(self, session: Session, person: Person, said: str, confidence: float) -> Answer:
-        """Take an answer, count it and reveal the fault; one that was given before a crash stays what it was.
+        """Take an answer, count it and reveal the fault; an answer from before a crash stays unchanged.
 
         Raises
         ------
@@ -192,7 +192,7 @@ class Blinds:
         return [self._keeping(known.model_copy(update={"state": "revealed", "ended": now()}))]
 
     def forgetting(self, class_id: str) -> Change:
-        """Forget what was answered in a class."""
+        """Forget the answers of a class."""
         statement = delete(BlindAnswerRow).where(BlindAnswerRow.class_id == class_id)
 
         def take() -> None:
@@ -242,7 +242,7 @@ class Blinds:
 
 
 def _deleted(ids: list[str]) -> Callable[[DatabaseSession], object]:
-    """Return what deletes the rows of some answers."""
+    """Return the deletion of the rows of some answers."""
     return lambda session: session.execute(delete(BlindAnswerRow).where(BlindAnswerRow.id.in_(ids)))
 
 
@@ -265,7 +265,7 @@ def _unanswered(session: Session, person: Person, blind: Blind, exercise: str = 
 
 
 def hidden_on(session: Session) -> Blind:
-    """Return what is hidden on a bench, or refuse."""
+    """Return the hidden part of a bench, or refuse."""
     if (blind := session.hiding.blind) is None:
         raise ApiError(409, "conflict", "no fault is hidden on this bench")
     if blind.question.game is not None:
@@ -274,7 +274,7 @@ def hidden_on(session: Session) -> Blind:
 
 
 def verdicts_of(session: Session) -> dict[str, str]:
-    """Return what each diagnoser says now (a job of the engine)."""
+    """Return the present verdict of each diagnoser (a job of the engine)."""
     return {
         name: score.names[score.winner] if 0 <= score.winner < len(score.names) else "none"
         for name, score in session.board.scores().items()

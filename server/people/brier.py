@@ -4,13 +4,13 @@ from __future__ import annotations
 
 
 def points(right: bool, confidence: float, answers: int) -> float:
-    r"""Return the points: 100 for right and sure, 0 for knowing nothing, fewer than 0 for what is worse than that.
+    r"""Return the points: 100 for right and sure, 0 for ignorance, fewer than 0 for a worse answer.
 
     .. math:: 100\left(1-\frac{n}{n-1}\sum_{i=1}^n(p_i-o_i)^2\right)
 
-    The confidence is the probability of the answer given, and what is left of it is spread evenly over the others;
-    ``o`` is 1 for the true answer and 0 for the others. Brier's score of even odds, :math:`1-1/n`, gives 0 points, as
-    does no answer. The rule is proper: on average nothing earns more than to say what one believes.
+    The confidence is the probability of the answer, and the rest is spread evenly over the other answers; ``o`` is 1
+    for the true answer and 0 for the others. Brier's score of even odds, :math:`1-1/n`, gives 0 points, as does no
+    answer. The rule is proper: on average a player earns most with true probabilities.
 
     Parameters
     ----------

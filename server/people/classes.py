@@ -44,16 +44,18 @@ class Class(BaseModel):
 
     id: str
     name: str
-    scenario: str = Field(description="What the benches of new students begin with")
+    scenario: str = Field(description="Start of the benches of new students")
     created: datetime
     until: datetime = Field(description="When it ends, and its students are forgotten")
     students: int
     shown: str | None = Field(None, description="The bench that all students see now; null: each sees the own one")
-    code: str | None = Field(description="As it stands on the wall; null: nobody can join, or it has to be made anew")
+    code: str | None = Field(
+        description="As shown on the wall; null: joining is closed, or the code has to be made anew"
+    )
     code_until: datetime | None
     path: str | None = Field(description="Path of the address by which students join")
     addresses: list[str] = Field(
-        [], description="Whole addresses from elsewhere, likeliest first; none: nobody can come"
+        [], description="Whole addresses for other machines, likeliest first; none: no other machine can connect"
     )
 
 
@@ -69,15 +71,15 @@ class Classes:
     benches : StudentBenches
         Their benches.
     audit : Audit
-        The log of what people did.
+        The log of actions of users.
     lesson : Lesson
         Shows them benches.
     blinds : Blinds
         Their hidden faults and answers.
     votes : Votes
-        Their votes, which go with them.
+        Their votes, which are deleted with them.
     games : GameTable
-        Their attempts at games, which go with them too.
+        Their attempts at games, which are deleted with them too.
     most_students : int
         Students of all classes.
     shard : str
@@ -113,7 +115,7 @@ class Classes:
         actor: str = "teacher",
         also: Callable[[str], Sequence[Change]] = lambda _: (),
     ) -> Class:
-        """Open a class; students can join at once. What ``also`` returns for its id is kept with it.
+        """Open a class; students can join at once. The change that ``also`` returns for its id is stored with it.
 
         Raises
         ------
@@ -148,7 +150,7 @@ class Classes:
         return self._shown(row)
 
     async def close_joining(self, class_id: str) -> Class:
-        """Let nobody else join."""
+        """Close joining."""
 
         def close(row: ClassRow) -> None:
             row.code_hash = row.code_until = None
@@ -200,7 +202,7 @@ class Classes:
         self._audit.add(person.name, "joined", "joined the class", person.class_id)
 
     def is_called(self, class_id: str, name: str) -> bool:
-        """Whether somebody in a class has a name."""
+        """Whether a name is taken in a class."""
         return name.casefold() in {person.name.casefold() for person in self._people.students(class_id)}
 
     async def prolong(self, class_id: str, until: datetime) -> ClassRow:
@@ -212,7 +214,7 @@ class Classes:
         return await self._changed(class_id, prolong)
 
     async def begin_all(self, class_id: str, wanted: dict[str, Any]) -> list[str]:
-        """Begin a scenario on the bench of every student, and for all who join later; return what went wrong, by name.
+        """Begin a scenario on the bench of every student, and for all who join later; return the errors, by name.
 
         Raises
         ------
@@ -249,12 +251,12 @@ class Classes:
         self._audit.add("teacher", "removed", f"sent {person.name} away", person.class_id)
 
     def _removal(self, person: Person) -> list[Change]:
-        """Forget a student; the session ends first, or the page would say that its bench is gone."""
+        """Forget a student; the session ends first, or the page would report that its bench is gone."""
         votes, games = self._votes.forgetting(person_id=person.id), self._games.forgetting(person_id=person.id)
         return [self._people.removal(person), votes, games]
 
     async def end(self, class_id: str) -> None:
-        """End a class: close sessions and benches, delete names and what people did."""
+        """End a class: close sessions and benches, delete names and the list of actions."""
         await self.row(class_id)
         students = self._people.students(class_id)
         gone = delete(ClassRow).where(ClassRow.id == class_id)
@@ -302,7 +304,7 @@ class Classes:
         return row
 
     async def draw(self, person: Person, *what: str) -> int:
-        """Return the number that is drawn for somebody and a purpose; see `draw`."""
+        """Return the number that is drawn for a person and a purpose; see `draw`."""
         secret = (await self.row(person.class_id)).secret if person.class_id else ""
         return draw(secret, person.id, *what)
 

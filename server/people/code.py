@@ -9,8 +9,8 @@ from collections.abc import Container
 from server.store.links import LETTERS
 
 CLASS_LETTERS, CODE_LETTERS = 4, 8
-"""The first letters say which class it is; the others are the secret, some 7e11 of them. At a thousand tries a second
-all of them take twenty years, and a code lasts for hours."""
+"""The first letters identify the class; the others are the secret, some 7e11 of them. At a thousand tries a second all
+of them take twenty years, and a code lasts for hours."""
 
 
 def new_class_id(shard: str, taken: Container[str]) -> str:
@@ -32,12 +32,12 @@ def shown(class_id: str, code: str) -> str:
 
 
 def shard_of(typed: str) -> str:
-    """Return the letter of the process whose code somebody typed, where several serve one address; "" for none."""
+    """Return the letter of the process of a typed code, where several serve one address; "" for none."""
     first = split(typed)[0][:1]
     return first if first and first in LETTERS else ""
 
 
 def split(typed: str) -> tuple[str, str]:
-    """Return class and secret of a code as somebody typed it: small or capital, with or without spaces."""
+    """Return class and secret of a typed code: small or capital, with or without spaces."""
     letters = re.sub(r"[\s-]+", "", typed).lower()
     return letters[:CLASS_LETTERS], letters[CLASS_LETTERS:]

@@ -13,7 +13,7 @@ def draw(secret: str, *what: str) -> int:
     secret : str
         Of the class; it stays on the server. People alone have none, and all of them draw the same.
     *what : str
-        What it is for: a student, an exercise, a purpose. A different word gives an unrelated number.
+        Words for the use of the number: a student, an exercise, a purpose. A different word gives an unrelated number.
 
     Returns
     -------

@@ -1,7 +1,7 @@
 """Who drives each bench: by a lease, as soon as two who may drive it have it open.
 
 A lease belongs to a person, not to a page. It lasts as long as a page of the person answers the server, or a command of
-the person comes; after that the bench is free, and does what its scenario says of a bench without a driver.
+the person comes; after that the bench is free, and acts as its scenario defines for a bench without a driver.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ LOOK_S = 1.0
 COMING_S = 10.0
 """How long a student who was handed a bench may take to come."""
 MOST_NAMES = 12
-"""Names of people who look on that every page is told."""
+"""Names of watching users in the message to every page."""
 
 Note = Callable[[str, Person, str], None]
 
@@ -38,13 +38,13 @@ class Driving:
     Parameters
     ----------
     people : People
-        Knows who may drive what.
+        Knows the permitted drivers of each bench.
     pages : Pages
         The pages that people have open.
     note : callable
-        Keeps what somebody did to a bench, in words; with the bench and the person.
+        Keeps an action on a bench, in words; with the bench and the person.
     lost : callable
-        Lets a bench do what it does without a driver; with the bench and why.
+        Makes a bench act without a driver; with the bench and the reason.
     clock : callable
         Monotonic seconds.
     """
@@ -63,14 +63,14 @@ class Driving:
         self._looked = clock()
 
     def recover(self) -> None:
-        """Let students to whom a bench was lent go on driving it, if they come."""
+        """Let students with a lent bench continue to drive it, if they come."""
         for student in self._people.students():
             if bench_id := self._people.lent_to(student):
                 lease = self._leases[bench_id] = Lease(driver=student, lent_by=TEACHER.id)
                 lease.renew(self._clock() + COMING_S)
 
     def come(self, bench_id: str, person: Person) -> None:
-        """Note that a page of somebody shows a bench from now on."""
+        """Note that a page of a person shows a bench from now on."""
         if self._presence.come(bench_id, person) and len(self._presence.of(bench_id)) > 1:
             self._note(bench_id, person, "came to the bench")
         self._look(bench_id)
@@ -78,18 +78,18 @@ class Driving:
             self._pages.tell(bench_id)
 
     def go(self, bench_id: str, person: Person) -> None:
-        """Note that a page of somebody shows a bench no longer; one who comes back soon was never away."""
+        """Note that a page of a person no longer shows a bench; a person who comes back soon was never away."""
         self._presence.go(bench_id, person, self._clock())
         if self._presence.of(bench_id):
             self._pages.tell(bench_id)
 
     def heard(self, bench_id: str, person: Person) -> None:
-        """Note that somebody is there."""
+        """Note that a person is present."""
         if (lease := self._leases.get(bench_id)) is not None and lease.is_of(person):
             lease.renew(self._clock())
 
     def check(self, bench_id: str, person: Person) -> None:
-        """Refuse a person who does not drive a bench; if nobody drives it, the person drives from now on.
+        """Refuse a person who does not drive a bench; without a driver, the person drives from now on.
 
         Raises
         ------
@@ -106,7 +106,7 @@ class Driving:
         lease.renew(self._clock())
 
     def ask(self, bench_id: str, person: Person) -> None:
-        """Ask the driver for the bench; if nobody drives, the person drives at once."""
+        """Request the bench from the driver; without a driver, the person drives at once."""
         lease = self._leases.get(bench_id)
         if lease is None or lease.is_of(person):
             return
@@ -117,7 +117,7 @@ class Driving:
         self._pages.tell(bench_id)
 
     def refuse(self, bench_id: str, person: Person, whom: str) -> None:
-        """Go on driving although somebody has asked."""
+        """Keep the bench although another person has requested it."""
         lease = self._held(bench_id, person)
         if (asked := lease.asking.pop(whom, None)) is None:
             raise ApiError(422, "invalid", "no person of this id has asked", "to")
@@ -125,7 +125,7 @@ class Driving:
         self._pages.tell(bench_id)
 
     def hand_over(self, bench_id: str, person: Person, whom: str) -> None:
-        """Let somebody else drive: a person who is there and may, or a student to whom the teacher lends the bench."""
+        """Let another person drive: a present person with the right, or a student to whom the teacher lends it."""
         present = self._presence.of(bench_id).get(whom)
         lease = self._leases.get(bench_id)
         if present is not None and self._people.may(present, Need.DRIVE, bench_id):
@@ -156,10 +156,10 @@ class Driving:
         Raises
         ------
         ApiError
-            For anybody else: it has to be asked for.
+            For any other person: the bench has to be requested.
         """
         lease = self._leases.get(bench_id)
-        if lease is None and person.is_teacher:  # a program, which shows itself by what it does
+        if lease is None and person.is_teacher:  # a program, which is present by its commands
             lease = self._leases[bench_id] = Lease()
         if lease is None or lease.is_of(person):
             return
@@ -181,7 +181,7 @@ class Driving:
             self._return_loan(bench_id, lease.driver)
 
     def company(self, bench_id: str) -> Company | None:
-        """Return who is at a bench; nothing while it is one person."""
+        """Return the users of a bench; None while it is one person."""
         lease, here = self._leases.get(bench_id), self._presence.of(bench_id)
         people = [one for one in here.values() if one.role != "watcher"]
         links = self._presence.pages_of_watchers(bench_id)
@@ -209,11 +209,11 @@ class Driving:
                 log.exception("the leases of benches could not be looked at; it is tried again")
 
     def look(self) -> None:
-        """Ask those who drive whether they are there, and end what is over."""
+        """Ping the drivers, and end the leases that are over."""
         now = self._clock()
         late, self._looked = max(0.0, now - self._looked - 2 * LOOK_S), now
         for bench_id, lease in list(self._leases.items()):
-            lease.until += late  # a server that stood still has heard nobody
+            lease.until += late  # a server that was suspended has received no answers
             self._look(bench_id)
             if lease.driver is not None:
                 self._pages.ask(bench_id, lease.driver)
@@ -222,7 +222,7 @@ class Driving:
                 self._note(bench_id, person, "left the bench")
 
     def _look(self, bench_id: str) -> None:
-        """Begin, go on with or end the lease of a bench."""
+        """Begin, continue or end the lease of a bench."""
         now, lease = self._clock(), self._leases.get(bench_id)
         here = self._presence.of(bench_id).values()
         drivers = {one.id: one for one in here if self._people.may(one, Need.DRIVE, bench_id)}
@@ -252,7 +252,7 @@ class Driving:
             self._pages.tell(bench_id)
 
     def _give(self, bench_id: str, lease: Lease, person: Person, how: str, extra_s: float = 0.0) -> None:
-        """Let somebody drive from now on."""
+        """Make a person the driver from now on."""
         before = lease.driver
         lease.driver = person
         lease.asking.pop(person.id, None)
@@ -266,7 +266,7 @@ class Driving:
         self._pages.tell(bench_id)
 
     def _free(self, bench_id: str, lease: Lease) -> None:
-        """Let nobody drive."""
+        """Leave the bench without a driver."""
         self._return_loan(bench_id, lease.driver)
         lease.driver, lease.lent_by = None, ""
 
@@ -277,17 +277,17 @@ class Driving:
             self._pages.call([person])
 
     def _held(self, bench_id: str, person: Person) -> Lease:
-        """Return the lease of a bench that somebody drives, or refuse."""
+        """Return the lease of a bench with a driver, or refuse."""
         lease = self._leases.get(bench_id)
         if lease is None:
-            raise ApiError(409, "conflict", "nobody else has this bench open, so it needs no driver")
+            raise ApiError(409, "conflict", "no other person has this bench open, so it needs no driver")
         if not lease.is_of(person):
             raise lease.refusal(person)
         return lease
 
 
 def go_without_driver(session: Session, why: str) -> None:
-    """Act on a bench whose driver is gone: let it go on as it was set, or take its outputs to safe values (a job)."""
+    """Act on a bench without a driver: continue with its settings, or take its outputs to safe values (a job)."""
     board = session.board
     if board.spec.frame.without_driver == "safe" and board.trip is None and not session.replay_of:
         session.execute(MakeSafe(make_safe=why), "board")

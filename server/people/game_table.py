@@ -1,4 +1,4 @@
-"""The table of games: who handed in what at which seed, and what it earned."""
+"""The table of games: player, seed, answer and points."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MOST_SHOWN = 100
 
 
 class Attempt(BaseModel):
-    """What somebody handed in, and what came of it."""
+    """An answer of a player, and its result."""
 
     id: str
     handed_in: dict[str, float | str]
@@ -46,10 +46,10 @@ class Standing(BaseModel):
 
 
 class Turns(BaseModel):
-    """What somebody did at a game and a seed."""
+    """The attempts of a player at a game and a seed."""
 
     attempts: list[Attempt] = Field(description="Oldest first")
-    looked: bool = Field(description="Whether what was hidden has been shown")
+    looked: bool = Field(description="Whether the hidden values have been shown")
 
 
 class GameTable:

@@ -1,4 +1,4 @@
-"""Games for one person or for a class: their benches, what is handed in, and when what is hidden is told."""
+"""Games for one person or for a class: their benches, the answers, and the time of revealing."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from server.people.student_benches import Swap
 
 
 class Play(BaseModel):
-    """A game at a seed, as somebody may see it."""
+    """A game at a seed, as the player may see it."""
 
     game: str
     seed: int
@@ -34,7 +34,9 @@ class Play(BaseModel):
     attempts: list[Attempt] = Field(description="The caller's own, oldest first")
     best: float | None = Field(description="The most points of all in the table")
     table: list[Standing] = Field(description="Most points first, of the same the earlier first")
-    hidden: list[Fact] | None = Field(description="What the seed hides; null while the caller may still hand in")
+    hidden: list[Fact] | None = Field(
+        description="The hidden values of the seed; null while the caller may still hand in"
+    )
     bench: str | None = Field(description="The bench on which the caller plays it")
 
 
@@ -67,11 +69,11 @@ class Games:
     engine : Engine
         Whose thread changes a bench.
     processes : Processes
-        What judges.
+        Processes that judge.
     workers : int
         How many hand-ins are judged at once; 0 for none.
     turn : callable
-        Closes the pages of a bench, so that they come back to what may be seen of it now.
+        Closes the pages of a bench, so that they come back to its present view.
     swap : callable
         Lets a bench take the place of others.
     """
@@ -93,7 +95,7 @@ class Games:
         self._judging: set[str] = set()
 
     async def view(self, person: Person, name: str, seed: int) -> Play:
-        """Show a game at a seed to somebody."""
+        """Show a game at a seed to a player."""
         number = await self._drawn(person, name, seed)
         return await self._shown(person, name, seed, number, *await self._table.of(person, name, seed))
 
@@ -130,7 +132,7 @@ class Games:
         )
 
     async def begin(self, person: Person, name: str, seed: int, values: Mapping[str, Any]) -> Play:
-        """Give somebody the bench of a game; what was handed in stays, and what is over hides nothing any more.
+        """Give a player the bench of a game; answers stay, and a game that is over hides nothing any more.
 
         Raises
         ------
@@ -170,14 +172,14 @@ class Games:
         return await self._shown(person, name, seed, number, *seen)
 
     async def hand_in(self, person: Person, name: str, seed: int, values: Mapping[str, Any]) -> Play:
-        """Judge what somebody hands in, and keep it.
+        """Judge the answer of a player, and keep it.
 
         Raises
         ------
         InputError
             If it is none.
         ApiError
-            If somebody has no attempt left, or hands in twice at once.
+            If a player has no attempt left, or hands in twice at once.
         """
         if not self._is_open:
             raise ApiError(409, "runs_disabled", "this server takes no headless runs (run_workers = 0)")
@@ -199,7 +201,7 @@ class Games:
         return await self._shown(person, name, seed, number, *seen)
 
     async def look(self, person: Person, name: str, seed: int) -> Play:
-        """Show somebody what a game hides; nothing can be handed in after that."""
+        """Show a player the hidden values of a game; no answer can be handed in after that."""
         game, number = game_of(name), await self._drawn(person, name, seed)
         if person.id in self._judging:
             raise ApiError(409, "conflict", "what you handed in is still judged", hint="wait for its points")
@@ -232,7 +234,7 @@ class Games:
         await self._turn_pages(session)
 
     def _benches_of(self, person: Person) -> list[Session]:
-        """Return the benches on which somebody plays."""
+        """Return the benches on which a player plays."""
         if person.role == "student":
             found = self._classes.benches.find(person)
             there = [found] if found is not None else []
@@ -241,7 +243,7 @@ class Games:
         return [one for one in there if one.hiding.blind is not None and one.hiding.blind.question.game is not None]
 
     def _bench_of(self, person: Person, played: Played) -> Session | None:
-        """Return the bench on which somebody plays a game at a seed."""
+        """Return the bench on which a player plays a game at a seed."""
         for session in self._benches_of(person):
             if session.hiding.blind is not None and session.hiding.blind.question.game == played:
                 return session
@@ -249,5 +251,5 @@ class Games:
 
 
 def _left(game: Game[Any], turns: Turns) -> int:
-    """Return how often somebody may still hand in."""
+    """Return the number of attempts left."""
     return 0 if turns.looked else max(0, game.attempts - len(turns.attempts))

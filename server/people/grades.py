@@ -17,12 +17,12 @@ DANGEROUS = ("=", "+", "-", "@", "\t", "\r")
 
 
 class StepGrade(BaseModel):
-    """A step of somebody's sheet."""
+    """A step of a student's sheet."""
 
     step: str
     kind: str
-    state: str = Field(description="done, given up, or open")
-    earned: float = Field(description="Points before what was lost; those of a prediction once it is judged")
+    state: str = Field(description="done, left out, or open")
+    earned: float = Field(description="Points before losses; points of a prediction once it is judged")
     lost: float = Field(description="Points that wrong answers and hints cost")
     of: float
     answers: list[str]

@@ -1,4 +1,4 @@
-"""The page by which people join a class, which needs no session, and how often somebody may try."""
+"""The page to join a class, which needs no session, and the limit of attempts."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Joining:
         self._tries = Buckets(WRONG_PER_S, WRONG_AT_ONCE, clock=clock)
 
     def note_wrong(self, address: str) -> None:
-        """Note that what came from an address was wrong; refuse one from which too much of that comes."""
+        """Note that a code from an address was wrong; refuse an address with too many wrong codes."""
         if not self._tries.take(address):
             headers = {"Retry-After": "10"}
             raise ApiError(429, "rate_limited", "too many tries from here", hint="wait a minute", headers=headers)
@@ -59,7 +59,7 @@ class Joining:
         Raises
         ------
         ApiError
-            As `Classes.join`, for the code of another class, and for an address from which too many were wrong.
+            As `Classes.join`, for the code of another class, and for an address with too many wrong codes.
         """
         if class_id and split(code)[0] != class_id:
             raise ApiError(422, "invalid", "begins with the id of another class", "code")
@@ -79,7 +79,7 @@ def join_page(action: str, code: str = "", name: str = "", refusal: ErrorBody | 
     action : str
         Where the form goes.
     code, name : str
-        What has been given so far.
+        The fields so far.
     refusal : ErrorBody, optional
         Why it did not work.
     """
@@ -102,5 +102,5 @@ def join_page(action: str, code: str = "", name: str = "", refusal: ErrorBody | 
 
 
 def _whose(refusal: ErrorBody) -> str:
-    """Return what is wrong; a complaint about a value says whose."""
+    """Return the error; an error in a value names its field."""
     return f"{refusal.field} {refusal.message}" if refusal.code == "invalid" else refusal.message

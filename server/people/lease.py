@@ -1,4 +1,4 @@
-"""The lease of a bench, and who has its pages open."""
+"""The lease of a bench, and the users who have its pages open."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ class Lease:
     """Who drives a bench, and who would like to."""
 
     driver: Person | None = None
-    """The driver; if nobody, the next person who does something drives."""
+    """The driver; if None, the next person who gives a command drives."""
     until: float = 0.0
     """When it ends unless the driver is heard, on the clock of the leases."""
     asking: dict[str, Person] = field(default_factory=dict)
     lent_by: str = ""
     """Id of the person who handed it over, and may take it back."""
     alone_since: float | None = None
-    """Since when nobody else is there."""
+    """Time since the driver is alone."""
 
     def is_of(self, person: Person) -> bool:
-        """Whether somebody drives."""
+        """Whether a person drives."""
         return self.driver is not None and self.driver.id == person.id
 
     def refusal(self, person: Person) -> ApiError:
-        """Say to somebody else who drives, and what to do about it."""
+        """Tell another person the name of the driver, and the next step."""
         who = self.driver.name if self.driver is not None else "nobody"
         name = "the teacher" if who == TEACHER.name else who
         hint = "take it back, or ask for it" if person.is_teacher else "ask for it; the driver can hand it over"
@@ -47,17 +47,17 @@ class Pages(Protocol):
     """The pages of benches, as the lease needs them."""
 
     def ask(self, bench_id: str, person: Person) -> None:
-        """Ask the pages that somebody has of a bench to answer."""
+        """Ask the pages of a person at a bench to answer."""
 
     def tell(self, bench_id: str) -> None:
-        """Let all pages of a bench know soon who is there."""
+        """Send the list of users to all pages of a bench soon."""
 
     def call(self, people: list[Person]) -> None:
-        """Tell all pages of some people to ask what they may do now."""
+        """Tell all pages of some persons to read their present rights."""
 
 
 class Presence:
-    """Who has a page of each bench open, in the order in which they came."""
+    """The users with an open page of each bench, in the order of their arrival."""
 
     def __init__(self) -> None:
         self._here: defaultdict[str, dict[str, Person]] = defaultdict(dict)
@@ -65,7 +65,7 @@ class Presence:
         self._gone: dict[tuple[str, str], tuple[Person, float]] = {}
 
     def come(self, bench_id: str, person: Person) -> bool:
-        """Count a page; return whether it is the first of somebody who was not there just now."""
+        """Count a page; return whether it is the first of a person who was not present just now."""
         key = bench_id, person.id
         self._pages[key] += 1
         self._here[bench_id].setdefault(person.id, person)
@@ -84,7 +84,7 @@ class Presence:
             del self._here[bench_id]
 
     def of(self, bench_id: str) -> dict[str, Person]:
-        """Return who is at a bench, by id."""
+        """Return the users of a bench, by id."""
         return self._here.get(bench_id, {})
 
     def pages_of_watchers(self, bench_id: str) -> int:
@@ -93,7 +93,7 @@ class Presence:
         return sum(self._pages[bench_id, one.id] for one in here if one.role == "watcher")
 
     def gone(self, before: float) -> list[tuple[str, Person]]:
-        """Return once who has left, at which bench, and has not come again."""
+        """Return once each person who has left, with the bench, and has not come again."""
         found = [(key, person) for key, (person, at) in self._gone.items() if at <= before]
         for key, _ in found:
             del self._gone[key]

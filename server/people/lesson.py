@@ -39,9 +39,9 @@ class Lesson:
     people : People
         The students.
     audit : Audit
-        The log of what the teacher did.
+        The log of actions of the teacher.
     pages : Pages
-        Those of the students, which are told.
+        Streams of the students, which get messages.
     """
 
     def __init__(self, database: Database, people: People, audit: Audit, pages: Pages) -> None:
@@ -49,7 +49,7 @@ class Lesson:
         self._layouts: dict[str, GivenLayout] = {}
 
     async def recover(self) -> None:
-        """Take back what classes were shown and the layouts they were given."""
+        """Restore the presentations and layouts of classes."""
         for row in await self._database.run(lambda session: list(session.scalars(select(ClassRow)))):
             self._people.show(row.id, row.shown or "")
             if row.layout is not None:
@@ -66,7 +66,7 @@ class Lesson:
         await self._database.keep(*self._ending([class_id]))
 
     async def give_layout(self, class_id: str, name: str, layout: dict[str, Any] | None) -> None:
-        """Arrange the panels of all students of a class, also of those who join later."""
+        """Arrange the panels of all students of a class, also of later students."""
         given = GivenLayout(id=secrets.token_hex(4), name=name, layout=layout)
         take = partial(self._layouts.__setitem__, class_id, given)
         await self._database.keep(Change(_changed(class_id, layout=given.model_dump()), take))
@@ -93,7 +93,7 @@ class Lesson:
         await self._database.keep(*self.forgetting(bench_id))
 
     def end(self, class_id: str) -> None:
-        """Forget what was shown to a class that has ended; its row goes with it."""
+        """Forget the presentations to a class that has ended; its row is deleted with it."""
         self._people.show(class_id, "")
         self._layouts.pop(class_id, None)
 
@@ -118,6 +118,6 @@ class Lesson:
 
 
 def _changed(class_id: str, **values: Any) -> Callable[[Session], object]:
-    """Return what changes the row of a class."""
+    """Return the change of the row of a class."""
     change = update(ClassRow).where(ClassRow.id == class_id).values(**values)
     return lambda session: session.execute(change)

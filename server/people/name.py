@@ -17,7 +17,7 @@ def clean(name: str) -> str:
     Raises
     ------
     ApiError
-        If nothing of it is left, or logs use it for somebody else.
+        If it becomes empty, or if logs use it for another person.
     """
     text = in_one_line(name)
     if not text or len(text) > LONGEST_NAME:

@@ -1,4 +1,4 @@
-"""Everybody who has a session beside the teacher: students of classes, and holders of links to watch.
+"""All persons with a session except the teacher: students of classes, and holders of links to watch.
 
 Sessions are kept by the hash of their secret. All of them are in memory too, because the gate asks at every request.
 """
@@ -34,7 +34,7 @@ class People:
     database : Database
         Where they are kept.
     shard : str
-        With which the secrets of sessions begin, as links to watch are made of them.
+        Prefix of the secrets of sessions, because links to watch are made of them.
     """
 
     def __init__(self, database: Database, shard: str = "") -> None:
@@ -50,7 +50,7 @@ class People:
         """Ids of the students who have raised a hand."""
 
     async def recover(self) -> None:
-        """Take the sessions of the last start back, without those that have ended."""
+        """Restore the sessions of the last start, without the ended sessions."""
         await self._database.run(lambda session: session.execute(delete(PersonRow).where(PersonRow.until <= now())))
         for row in await self._database.run(lambda session: list(session.scalars(select(PersonRow)))):
             self._take(row)
@@ -77,7 +77,8 @@ class People:
     ) -> tuple[Person, str]:
         """Add a person; return the person and the secret of the session, which is new unless given, and kept nowhere.
 
-        What ``also`` returns for the id of the person is kept with it. A session that the secret opened before ends.
+        The change that ``also`` returns for the id of the person is stored with it. A session that the secret opened
+        before ends.
         """
         secret = secret or self._new_secret()
         before = self._by_hash.get(hash_of(secret))
@@ -96,7 +97,7 @@ class People:
         return self._take(row), secret
 
     async def renew(self, person: Person, until: datetime) -> tuple[Person, str]:
-        """Let somebody come back by a new secret; the one before, and the sockets that it opened, end."""
+        """Give a person a new secret; the secret before, and the sockets that it opened, end."""
         secret = self._new_secret()
         hashed = hash_of(secret)
         query = update(PersonRow).where(PersonRow.id == person.id).values(secret_hash=hashed, until=until)
@@ -130,20 +131,20 @@ class People:
         return [one for one in self._by_hash.values() if one.role == "watcher" and self.bench_of(one) == bench_id]
 
     def bench_of(self, person: Person) -> str:
-        """Return the bench of a student, or the one that a watcher sees; nothing if there is none yet."""
+        """Return the bench of a student, or the bench of a watcher; "" if there is none yet."""
         return self._benches.get(person.id, "")
 
     def benches_of(self, person: Person) -> list[str]:
-        """Return the bench of a student and those that were the student's before, or the one that a watcher sees."""
+        """Return the present and earlier benches of a student, or the bench of a watcher."""
         bench_id = self.bench_of(person)
         return [*self._earlier.get(person.id, []), *([bench_id] if bench_id else [])]
 
     def owner(self, bench_id: str) -> Person | None:
-        """Return the student whose bench it is; nobody for a bench of the teacher."""
+        """Return the student of a bench; None for a bench of the teacher."""
         return next((one for one in self.students() if self.bench_of(one) == bench_id), None)
 
     def giving(self, person: Person, bench_id: str) -> Change:
-        """Make a bench that of a student, who keeps the right to see what was recorded on those before."""
+        """Give a bench to a student, who keeps the right to see the recordings of the benches before."""
         earlier = [one for one in self.benches_of(person) if one != bench_id][-MOST_EARLIER:]
         values = {"bench_id": bench_id, "earlier": earlier}
         given = update(PersonRow).where(PersonRow.id == person.id).values(**values)
@@ -177,7 +178,7 @@ class People:
         self._database.run_later(lambda session: session.execute(change))
 
     def show(self, class_id: str, bench_id: str) -> None:
-        """Let all students of a class see a bench, in place of one that they saw before; none if it is empty."""
+        """Show a bench to all students of a class, in place of the bench before; none if it is empty."""
         before = self._shown.pop(class_id, "")
         if bench_id:
             self._shown[class_id] = bench_id
@@ -193,7 +194,7 @@ class People:
         return [class_id for class_id, one in self._shown.items() if one == bench_id]
 
     def seen_by_students(self) -> set[str]:
-        """Return the benches that students see beside their own: what is shown and what is lent."""
+        """Return the benches that students see in addition to their own: shown and lent benches."""
         return {*self._shown.values(), *self._lent.values()}
 
     def removal(self, person: Person) -> Change:
@@ -218,7 +219,7 @@ class People:
         self._check_again()
 
     async def until_refused(self, person: Person, need: Need, bench_id: str) -> bool:
-        """Wait until somebody may no longer pass a door; return whether that is because the session has ended."""
+        """Wait until a person may no longer pass a door; return whether the reason is the end of the session."""
         while self._lasts(person) and self.may(person, need, bench_id):
             left = None if person.until is None else (person.until - now()).total_seconds()
             with contextlib.suppress(TimeoutError):
@@ -230,12 +231,12 @@ class People:
         return known is person and (person.until is None or person.until > now())
 
     def _check_again(self) -> None:
-        """Let all who wait look again at what they may do."""
+        """Let all waiting requests check their rights again."""
         before, self._changed = self._changed, asyncio.Event()
         before.set()
 
     def may(self, person: Person | None, need: Need, bench_id: str = "") -> bool:
-        """Return whether somebody may pass a door."""
+        """Return whether a person may pass a door."""
         if need is Need.NOTHING or (person is not None and person.is_teacher):
             return True
         if person is None or need is Need.TEACHER:
@@ -251,5 +252,5 @@ class People:
         return need is Need.WATCH and bool(person.class_id) and self.shown_to(person.class_id) == bench_id
 
     def may_see_recordings(self, person: Person, bench_id: str) -> bool:
-        """Return whether somebody may see what was recorded on a bench, which may be gone."""
+        """Return whether a person may see the recordings of a bench, also of a deleted bench."""
         return person.is_teacher or bench_id in self.benches_of(person)

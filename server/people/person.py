@@ -1,4 +1,4 @@
-"""A person at the bench: the teacher, a student of a class, or somebody with a link to watch."""
+"""A person at the bench: the teacher, a student of a class, or a holder of a link to watch."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Role = Literal["teacher", "student", "watcher"]
 
 @dataclass(frozen=True)
 class Person:
-    """Somebody whom the gate has let in.
+    """A person who passed the gate.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ class Person:
     name : str
         As the person gave it, or the kind of visitor.
     role : Role
-        What decides over most doors.
+        The role, which decides over most doors.
     class_id : str
         The class of a student.
     until : datetime, optional
@@ -51,5 +51,5 @@ def new_secret() -> str:
 
 
 def hash_of(secret: str) -> str:
-    """Return what is kept of a secret: it is long and random, so a plain hash cannot be turned back."""
+    """Return the stored hash of a secret: it is long and random, so a plain hash cannot be inverted."""
     return hashlib.sha256(secret.encode()).hexdigest()

@@ -26,7 +26,7 @@ class SheetBenches:
     Parameters
     ----------
     classes : Classes
-        Draws what varies with the student, and knows the benches of students.
+        Draws the varying numbers of a student, and knows the benches of students.
     benches : Benches
         Where benches are made.
     swap : callable

@@ -1,4 +1,4 @@
-"""The sheets there are: those of the library, and those that somebody opened."""
+"""The existing sheets: the sheets of the library, and the sheets of users."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from server.store.people import SheetRow
 log = logging.getLogger(__name__)
 
 MOST_OWN = 100
-"""Sheets that may be opened beside those of the library."""
+"""Sheets that may be opened in addition to the library."""
 
 
 class Shelf:
@@ -31,7 +31,7 @@ class Shelf:
     Parameters
     ----------
     database : Database
-        Where those are kept that somebody opened.
+        Store of the sheets of users.
     """
 
     def __init__(self, database: Database) -> None:
@@ -40,13 +40,13 @@ class Shelf:
         self._unread: set[str] = set()
 
     async def refresh(self) -> None:
-        """Take in the sheets that somebody opened, at another process perhaps, and drop those that were deleted."""
+        """Read the sheets of users, also from other processes, and drop deleted sheets."""
         known = set(self._own)
         try:
             there = await self.database.run(lambda session: set(session.scalars(select(SheetRow.id))))
             query = select(SheetRow).where(SheetRow.id.in_(there - known - self._unread)).order_by(SheetRow.created)
             new = await self.database.run(lambda session: list(session.scalars(query)))
-        except DBAPIError as error:  # a class goes on with the sheets that are known
+        except DBAPIError as error:  # a class continues with the known sheets
             log.warning("the sheets cannot be looked up: %s", reason_of(error))
             return
         for gone in known - there:
@@ -56,18 +56,18 @@ class Shelf:
                 self._own[row.id] = await asyncio.to_thread(check, row.text, row.id)
             except InputError as error:
                 self._unread.add(row.id)
-                log.warning("a sheet of somebody cannot be read any more: %s", error)
+                log.warning("a user's sheet cannot be read any more: %s", error)
 
     def all(self) -> list[Sheet]:
-        """List the sheets: those of the library in their order, then those somebody opened."""
+        """List the sheets: the library in its order, then the sheets of users."""
         return [library.get(name) for name in library.ids()] + list(self._own.values())
 
     def is_own(self, sheet_id: str) -> bool:
-        """Whether somebody opened it."""
+        """Whether it is a user's sheet."""
         return sheet_id in self._own
 
     async def open(self, text: str) -> Sheet:
-        """Keep a sheet that somebody wrote.
+        """Keep a user's sheet.
 
         Raises
         ------
@@ -83,8 +83,8 @@ class Shelf:
         return sheet
 
     def deletion(self, sheet_id: str) -> Change:
-        """Delete a sheet that somebody wrote."""
+        """Delete a user's sheet."""
         if sheet_id not in self._own:
-            raise not_found("sheet of your own", sheet_id, "those of the library stay")
+            raise not_found("sheet of your own", sheet_id, "the sheets of the library stay")
         gone = delete(SheetRow).where(SheetRow.id == sheet_id)
         return Change(lambda session: session.execute(gone), lambda: self._own.pop(sheet_id, None))

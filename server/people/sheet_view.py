@@ -1,4 +1,4 @@
-"""A sheet as somebody sees it: the steps so far, with answers and points, and nothing of later steps."""
+"""A sheet as a student sees it: the steps so far, with answers and points, and nothing of later steps."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ State = Literal["done", "open", "closed"]
 
 
 class GivenView(BaseModel):
-    """An answer, what it was worth, and why; null while that is not told."""
+    """An answer, its points, and the reason; null while they are hidden."""
 
     text: str
     reason: str | None
@@ -26,7 +26,7 @@ class GivenView(BaseModel):
 
 
 class ConditionView(BaseModel):
-    """A condition of a step: the quantity, the range that the step asks for, and whether it holds.
+    """A condition of a step: the quantity, the required range, and whether it holds.
 
     A measured value is not shown: the student reads it from the instruments, and later steps grade it.
     """
@@ -43,7 +43,7 @@ class StepView(BaseModel):
     id: str
     kind: Literal["hold", "question", "prediction", "blind"]
     points: float
-    earned: float | None = Field(description="Null while it is not told")
+    earned: float | None = Field(description="Null while it is hidden")
     lost: float
     rule: str = Field(description="How it earns and loses points")
     question: str = ""
@@ -72,14 +72,14 @@ class SectionView(BaseModel):
 
 
 class SheetView(BaseModel):
-    """A sheet as somebody sees it."""
+    """A sheet as a student sees it."""
 
     id: str
     title: str
     summary: str
     minutes: int
-    points: float = Field(description="What it can earn")
-    earned: float = Field(description="What it has earned so far; answers that are wrong may make it less than 0")
+    points: float = Field(description="Points that it can earn")
+    earned: float = Field(description="Points so far; wrong answers may make them less than 0")
     begun: bool
     done: bool
     bench: str | None = Field(description="The bench it is about; null: it is not there")

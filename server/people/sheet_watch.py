@@ -1,8 +1,8 @@
 """Watches a bench for a step of a sheet: conditions that hold for a time of the device.
 
 The bench is looked at where a window ends, at ticks that are whole multiples of it, and runs no further at a time than
-to the next of these. So what is found depends on ticks alone, never on how fast the bench ran or who asked. What it has
-seen is its own: it is kept with the checkpoints of the bench, and goes on with them after a crash.
+to the next of these. So the result depends on ticks alone, never on the pace of the bench or on requests. Its state is
+its own: it is kept with the checkpoints of the bench, and continues with them after a crash.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from server.bench.tick_source import TickSource
 from server.bench.watch import KeptWatch
 
 COLUMNS = 160
-"""Of a small trace: minima and maxima of so many columns."""
+"""Columns of a small trace, each with minimum and maximum."""
 MOST_TICKS = 20_000
 """Most ticks of a small trace, the last ones of a long step: the server has them for each student, on disk too."""
 
@@ -68,7 +68,7 @@ class Seen:
         self.history, self._window, self.dt_ms = History(len(names), 0, ticks), window, dt_ms
 
     def take(self, bench: LiveBench, since: int) -> None:
-        """Take what the bench has run since the last time, and not before a tick."""
+        """Take the new rows of the bench since the last time, and not before a tick."""
         self.board, source = bench.board, bench.history
         first = max(since, self.history.end_tick, source.first_tick)
         if first < self.board.tick:
@@ -101,7 +101,7 @@ class SheetWatch:
     limits : list
         The ends of its conditions, by the facts of the student.
     since_tick : int
-        Where the step was opened: what was before does not count.
+        Tick at which the step was opened: earlier ticks do not count.
     dt_ms : float
         Device time of one tick.
     done : callable
@@ -127,7 +127,7 @@ class SheetWatch:
         return min(ticks, self.window - tick % self.window)
 
     def jumped(self, tick: int) -> None:
-        """Count anew from this tick: somebody has reset the bench, or gone back to a moment."""
+        """Count anew from this tick: the bench was reset, or went back to a moment."""
         self._since, self._last, self._windows = tick, tick, 0
         ticks = max(2 * self.window, min((self._needed + 1) * self.window, MOST_TICKS))
         self._seen = Seen(signals_of(self.step), self.window, ticks, self._dt_ms)
@@ -167,7 +167,7 @@ class SheetWatch:
         return KeptWatch(document, self._seen.last((self._windows + 1) * self.window))
 
     def go_on(self, kept: KeptWatch) -> None:
-        """Go on from what was kept; the watch of another step leaves nothing."""
+        """Continue from a checkpoint; the watch of another step leaves nothing."""
         document = kept.document
         if document["step"] != self.step.id:
             return

@@ -1,4 +1,4 @@
-"""Somebody at a sheet: who, on which bench, how far; and all of them, kept in the database."""
+"""The work of a student at a sheet: person, bench, progress; and all works, kept in the database."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from server.store.people import SheetProgressRow
 
 @dataclass
 class Work:
-    """Somebody at a sheet."""
+    """The work of a student at a sheet."""
 
     person_id: str
     class_id: str
@@ -41,18 +41,18 @@ class Works:
         self._all: dict[tuple[str, str], Work] = {}
 
     async def recover(self) -> None:
-        """Take back what was kept."""
+        """Restore the stored works."""
         for row in await self._database.run(lambda session: list(session.scalars(select(SheetProgressRow)))):
             progress = Progress.model_validate(row.progress)
             work = Work(row.person_id, row.class_id or "", row.sheet_id, row.bench_id, row.begun, progress)
             self._all[row.person_id, row.sheet_id] = work
 
     def get(self, person_id: str, sheet_id: str) -> Work | None:
-        """Return the work of somebody at a sheet."""
+        """Return the work of a person at a sheet."""
         return self._all.get((person_id, sheet_id))
 
     def all(self, person_id: str = "", class_id: str = "") -> list[Work]:
-        """List who works at what, latest first: of one person, or of a class."""
+        """List the works of students, latest first: of one person, or of a class."""
         found = [work for work in self._all.values() if person_id in ("", work.person_id)]
         return sorted((w for w in found if class_id in ("", w.class_id)), key=lambda w: w.begun, reverse=True)
 
@@ -74,7 +74,7 @@ class Works:
         return Change(lambda session: session.merge(row), take)
 
     def forgetting(self, works: list[Work]) -> list[Change]:
-        """Forget what was done at some sheets."""
+        """Forget some works at sheets."""
         keys = [(work.person_id, work.sheet_id) for work in works]
         if not keys:
             return []
@@ -89,7 +89,7 @@ class Works:
 
 
 class SheetBrief(BaseModel):
-    """Somebody's work at a sheet, in brief."""
+    """A student's work at a sheet, in brief."""
 
     sheet: str
     title: str
@@ -101,7 +101,7 @@ class SheetBrief(BaseModel):
 
 
 def brief(work: Work, sheet: Sheet) -> SheetBrief:
-    """Return how far somebody is, for a tile or a list."""
+    """Return the progress of a student, for a tile or a list."""
     step, steps = work.progress.open_step(sheet), sheet.steps
     return SheetBrief(
         sheet=sheet.id,

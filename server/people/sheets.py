@@ -52,7 +52,7 @@ class Sheets:
     shelf : Shelf
         The sheets there are.
     classes : Classes
-        Draws what varies with the student, and knows the benches of students.
+        Draws the varying numbers of a student, and knows the benches of students.
     people : People
         The students there are.
     benches : Benches
@@ -90,7 +90,7 @@ class Sheets:
         """Called with each work after it is written."""
 
     async def recover(self) -> None:
-        """Take back what was kept."""
+        """Restore the stored works."""
         self._loop = asyncio.get_running_loop()
         await self.shelf.refresh()
         await self._works.recover()
@@ -121,7 +121,7 @@ class Sheets:
         return next((sheet for sheet in self.all() if sheet.id == sheet_id), None)
 
     async def delete(self, sheet_id: str) -> None:
-        """Delete a sheet that somebody wrote, and what was done at it."""
+        """Delete a user's sheet, and the work at it."""
         gone, works = self.shelf.deletion(sheet_id), [one for one in self._works.all() if one.sheet_id == sheet_id]
         if self.shelf.database is self._database:
             return await self._forget(works, gone)
@@ -129,16 +129,16 @@ class Sheets:
         await self.shelf.database.keep(gone)
 
     def works(self, person_id: str = "", class_id: str = "") -> list[Work]:
-        """List who works at what, latest first: of one person, or of a class."""
+        """List the works of students, latest first: of one person, or of a class."""
         return self._works.all(person_id, class_id)
 
     def current(self, person: Person) -> tuple[Work, Sheet] | None:
-        """Return the sheet that somebody began last."""
+        """Return the sheet that a person began last."""
         known = {sheet.id: sheet for sheet in self.all()}
         return next(((work, known[work.sheet_id]) for work in self.works(person.id) if work.sheet_id in known), None)
 
     async def view(self, person: Person, sheet_id: str) -> SheetView:
-        """Show a sheet to somebody."""
+        """Show a sheet to a person."""
         sheet, work = self.get(sheet_id), self._works.get(person.id, sheet_id)
         if work is None:
             return view_of(sheet, None, None, None)
@@ -149,7 +149,7 @@ class Sheets:
         return view_of(sheet, work.progress, bench.id if bench is not None else None, held)
 
     async def begin(self, person: Person, sheet_id: str) -> Work:
-        """Give somebody the bench of a sheet; the answers so far stay.
+        """Give a person the bench of a sheet; the answers so far stay.
 
         Raises
         ------
@@ -174,8 +174,8 @@ class Sheets:
     async def hide(self, person: Person, sheet_id: str, step_id: str) -> None:
         """Hide the fault of the step that is open, on a new bench of the sheet; its answer closes the step.
 
-        All of it is drawn for the student and the step, anew after each answer: the student has had no hand on the
-        bench, and knows nothing of the fault.
+        All of it is drawn for the student and the step, anew after each answer: the student has not touched the bench,
+        and does not know the fault.
 
         Raises
         ------
@@ -213,14 +213,14 @@ class Sheets:
             await self._sheet_benches.give(person, sheet, values, work, kept, hidden)
 
     async def _welcome(self, person: Person) -> None:
-        """Begin the sheet of the class with somebody who has just joined."""
+        """Begin the sheet of the class with a student who has just joined."""
         async with self._welcoming:  # a page asks several times at once
             sheet = self._known((await self._classes.row(person.class_id)).sheet or "")
             if sheet is not None and not self._people.bench_of(person):
                 try:
                     await self.begin(person, sheet.id)
                 except (InputError, ApiError):
-                    log.exception("the sheet %s could not be begun with somebody who joined", sheet.id)
+                    log.exception("the sheet %s could not be begun with a student who joined", sheet.id)
 
     async def change(self, person: Person, sheet_id: str, what: Callable[[Progress, Sheet, int], None]) -> None:
         """Do something at a sheet, and keep it.
@@ -246,7 +246,7 @@ class Sheets:
         return work
 
     async def start_over(self, person: Person, sheet_id: str) -> None:
-        """Forget what somebody did at a sheet."""
+        """Forget the work of a person at a sheet."""
         await self._forget([work for work in self.works(person.id) if work.sheet_id == sheet_id])
 
     async def _follow(self, work: Work) -> None:
@@ -261,7 +261,7 @@ class Sheets:
         if bench is None:
             return
         watch = bench.watch if isinstance(bench.watch, SheetWatch) else None
-        if not isinstance(step, Hold) or bench.hiding.blind is not None:  # how far a step is would tell what is hidden
+        if not isinstance(step, Hold) or bench.hiding.blind is not None:  # progress would reveal hidden values
             bench.watch = None
         elif watch is None or watch.step is not step:
 
@@ -283,7 +283,7 @@ class Sheets:
         return SheetWatch(step, limits, bench.board.tick, bench.dt_ms, done)
 
     def _go_on(self, bench: Session, kept: KeptWatch | None) -> None:
-        """Watch a bench again as before the crash, before it goes on from its checkpoint."""
+        """Watch a bench again as before the crash, before it continues from its checkpoint."""
         for work in self._works.all():
             sheet = self._known(work.sheet_id) if work.bench_id == bench.id else None
             step = work.progress.open_step(sheet) if sheet is not None else None

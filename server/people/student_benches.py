@@ -80,14 +80,14 @@ class StudentBenches:
         self.welcome: Callable[[Person], Awaitable[None]] = _nothing
         """Called before a student gets the first bench; it may give one."""
         self.on_revived: Callable[[Session, KeptWatch | None], None] = lambda *_: None
-        """Called with a bench before it goes on from its checkpoint, and with the watch it had."""
+        """Called with a bench before it continues from its checkpoint, and with its watch."""
 
     def find(self, person: Person) -> Session | None:
         """Return the live bench of a student, if there is one."""
         return self._benches.find(self._people.bench_of(person))
 
     async def get(self, person: Person) -> Session:
-        """Return the bench of a student; one that is not there comes back, or is made as the class begins.
+        """Return the bench of a student; a missing bench comes back, or is made as the class begins.
 
         Raises
         ------
@@ -117,8 +117,8 @@ class StudentBenches:
     ) -> Session:
         """Replace the bench of a student, with a hidden fault if ``hide`` chooses one.
 
-        The old bench closes, and then the pages of the student go to the new one. What ``also`` returns for the new
-        bench has changed before that, so that the pages find all they ask for.
+        The old bench closes, and then the pages of the student go to the new one. The change that ``also`` returns for
+        the new bench is made before that, so that the pages find all their data.
 
         Raises
         ------
@@ -152,12 +152,12 @@ class StudentBenches:
         return not self._all_back and bench_id not in self._given_up
 
     async def bring_back(self, bench_id: str) -> bool:
-        """Bring a bench back that students see beside their own; return whether it is there."""
+        """Bring a shown or lent bench back; return whether it exists."""
         async with self._turn:
             return self._benches.find(bench_id) is not None or await self._revived(bench_id) is not None
 
     async def _revived(self, bench_id: str) -> Session | None:
-        """Return a bench that goes on from its checkpoint, if it has one that this version can read."""
+        """Return a bench that continues from its checkpoint, if it has one that this version can read."""
         found = await self._checkpoints.load(bench_id) if bench_id else None
         if found is None:
             self._given_up.add(bench_id)
@@ -165,7 +165,7 @@ class StudentBenches:
         try:
             return await self._benches.revive(found, self.on_revived)
         except Exception:
-            log.exception("bench %s cannot go on from what was kept", bench_id)
+            log.exception("bench %s cannot continue from its checkpoint", bench_id)
             self._given_up.add(bench_id)
             return None
 

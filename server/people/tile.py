@@ -17,12 +17,12 @@ from server.people.sheet_work import SheetBrief
 
 COLUMNS = 48
 SPAN_MS = 4.0
-"""What the small trace shows: the last so much of device time, minima and maxima of so many columns."""
+"""Content of the small trace: this span of device time, minima and maxima of each column."""
 SHOWN = ("plant.displacement", "plant.x")
 
 
 class Verdict(BaseModel):
-    """What a diagnoser says, and what is true."""
+    """The verdict of a diagnoser, and the truth."""
 
     diagnoser: str
     says: str | None
@@ -46,7 +46,7 @@ class Tile(BaseModel):
     controller: str = ""
     faults: list[ActiveFault] = []
     verdicts: list[Verdict] = []
-    blind: Answer | None = Field(None, description="What was hidden last, and what was answered")
+    blind: Answer | None = Field(None, description="The last hidden fault, and the answer")
     sheet: SheetBrief | None = Field(None, description="The lab sheet begun last")
     trace: list[tuple[float, float]] = Field([], description="Minimum and maximum of the displacement, um, by column")
 
@@ -74,7 +74,7 @@ def tile_of(person: Person, bench: Session | None, watchers: int, *, hand: bool)
 
 
 def _verdict(diagnoser: str, score: Scores, factors: list[dict[str, float]]) -> Verdict:
-    """Return what a diagnoser says, beside the truth."""
+    """Return the verdict of a diagnoser, with the truth."""
 
     def named(index: int) -> str | None:
         return score.names[index] if 0 <= index < len(score.names) else None

@@ -1,4 +1,4 @@
-"""Benches that start together: all stand at tick 0, then all begin between the same two slices of the engine."""
+"""Benches that start together: all are paused at tick 0, then all begin between the same two slices of the engine."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ async def start_together(
 ) -> list[str | None]:
     """Bring benches to tick 0 and start all of them at once; return of each why not, if so.
 
-    A bench that stands at tick 0 already keeps what was set there; any other is reset. From the start on, benches of
-    the same time scale are at the same tick, as far as one round of the engine tells.
+    A bench that is already paused at tick 0 keeps its settings; any other is reset. From the start on, benches of the
+    same time scale are at the same tick, within one round of the engine.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ async def start_together(
     engine : Engine
         Starts all of them between two slices.
     sessions : sequence of Session
-        The benches; one that is not there stays out.
+        The benches; a missing bench stays out.
     actor : str
         Who starts them.
     """

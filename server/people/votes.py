@@ -1,4 +1,4 @@
-"""Votes: students predict, nobody sees a ballot, then the teacher reveals how many said what."""
+"""Votes: students predict, ballots are secret, then the teacher reveals the counts."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Asked(BaseModel):
 
 
 class Result(BaseModel):
-    """What was said for one answer; nobody's name is in it."""
+    """The count of one answer; without any name."""
 
     count: int
     at_ms: list[float] = Field(description="The moments guessed with it, in order")
@@ -49,7 +49,7 @@ class Vote(BaseModel):
 
 
 class Ballot(BaseModel):
-    """What somebody answered."""
+    """The answer of a student."""
 
     answer: int
     at_ms: float | None
@@ -119,7 +119,7 @@ class Votes:
         return await self._shown(lambda session: _row(session, vote_id))
 
     async def move(self, vote_id: str, state: State) -> Vote:
-        """Close a vote, or reveal it; what has been revealed stays so."""
+        """Close a vote, or reveal it; a revealed vote stays revealed."""
 
         def moved(session: Session) -> VoteRow:
             row = _row(session, vote_id)
@@ -152,7 +152,7 @@ class Votes:
         await self._database.run(removed)
 
     async def of(self, person: Person) -> OpenVote | None:
-        """Return the vote of a student's class, with the student's own answer and nobody else's."""
+        """Return the vote of a student's class, with the student's own answer only."""
         return await self._database.run(lambda session: _open_vote(session, person))
 
     async def cast(self, person: Person, vote_id: str, ballot: Ballot) -> OpenVote | None:
@@ -232,7 +232,7 @@ def _open_vote(session: Session, person: Person) -> OpenVote | None:
 
 
 def _vote(session: Session, row: VoteRow) -> Vote:
-    """Describe a vote; what was said is left out until it is revealed."""
+    """Describe a vote; the answers are left out until it is revealed."""
     of_vote = BallotRow.vote_id == row.id
     question: dict[str, Any] = {name: value for name, value in row.question.items() if name != "right"}
     results = None

@@ -1,1 +1,1 @@
-"""Headless runs beside the live benches, in a process of their own."""
+"""Headless runs in addition to the live benches, in a process of their own."""

@@ -48,7 +48,7 @@ class Apart:
         self._end: asyncio.TimerHandle | None = None
 
     async def call(self, size: int, function: Callable[..., T], *arguments: object, **named: object) -> T:
-        """Call a function on so many runs of a campaign, in a thread or in the process."""
+        """Call a function on a number of runs of a campaign, in a thread or in the process."""
         function = partial(function, **named)
         if size <= self._few:
             return await asyncio.to_thread(function, *arguments)

@@ -1,4 +1,4 @@
-"""Finished runs beside each other: their figures with differences from the first, and traces that all of them have."""
+"""A comparison of finished runs: their figures with differences from the first, and traces that all of them have."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from server.errors import ApiError
 from server.runs.listing import Run
 
 MOST = 8
-"""Runs that can be told apart in one table and one chart."""
+"""Runs that are distinguishable in one table and one chart."""
 
 
 class FigureRow(BaseModel):
@@ -24,7 +24,7 @@ class FigureRow(BaseModel):
 
     metric: str
     values: list[float | None] = Field(description="In the order of the runs; null where a run has no such figure")
-    differences: list[float | None] = Field(description="Each value less that of the first run")
+    differences: list[float | None] = Field(description="Each value less the value of the first run")
 
 
 class RunSignal(BaseModel):
@@ -59,7 +59,7 @@ class RunTraces(BaseModel):
 
 
 def compare_runs(runs: Sequence[Run], paths: Sequence[Path]) -> RunComparison:
-    """Compare the figures of runs, and say which signals all of them have.
+    """Compare the figures of runs, and list the signals that all of them have.
 
     Raises
     ------

@@ -86,7 +86,7 @@ class Figures:
         self._ready = ready
 
     async def ask(self, first: list[str]) -> None:
-        """Read the figures that are there, then make the others, these scenarios first."""
+        """Read the existing figures, then make the others, these scenarios first."""
         self._first = first
         async with self._reading:
             if self._missing is None:
@@ -115,7 +115,7 @@ class Figures:
             except Exception as error:
                 self.failed[scenario.id] = str(error) or type(error).__name__
                 self._tell(f"the figure of {scenario.id} could not be made: {self.failed[scenario.id]}")
-        log.info("figures of the gallery: %d of %d are there", len(self.made), self.total)
+        log.info("figures of the gallery: %d of %d exist", len(self.made), self.total)
 
     async def _draw(self, scenario: Scenario) -> dict[str, Any]:
         campaign = Campaign(

@@ -38,7 +38,7 @@ class Jobs(Requested[Run]):
     ) -> tuple[Run, bool]:
         """Queue a run, or return the same one if it exists; true when it is new. A name it is given is its name then.
 
-        One that exists without the signals that are asked for is computed once more, for its trace.
+        A run without the requested signals is computed once more, for its trace.
 
         Raises
         ------
@@ -80,7 +80,7 @@ class Jobs(Requested[Run]):
         )
 
     async def some(self, run_ids: list[str]) -> dict[str, Run]:
-        """Return those of some runs that are known."""
+        """Return the known runs among some ids."""
         return {row.id: self.shown(row) for row in await self._requests.some(self.kind, run_ids)}
 
     async def traces(self, run_ids: list[str]) -> tuple[list[Run], list[Path]]:
@@ -98,7 +98,7 @@ class Jobs(Requested[Run]):
         return run, path
 
     async def scenario(self, run_id: str) -> Scenario:
-        """Return what a run carries out, with its first seed."""
+        """Return the scenario of a run, with its first seed."""
         row = await self._requests.get(self.kind, run_id)
         document = row.document if not row.seeds else {**row.document, "seed": row.seeds[0]}
         with kept():

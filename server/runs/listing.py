@@ -1,4 +1,4 @@
-"""Runs and campaigns as rows: which are asked for, how they are called, how those that have ended are removed."""
+"""Runs and campaigns as rows: their selection, their names, the removal of ended rows."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ class Run(BaseModel):
     state: str
     scenario_id: str
     title: str
-    label: str = Field("", description="Name that somebody gave it")
+    label: str = Field("", description="Name given by a user")
     seeds: list[int]
     all: bool = Field(
-        validation_alias="everything", description="Whether the trace has the signals of blocks that only look on too"
+        validation_alias="everything", description="Whether the trace has the signals of blocks in shadow too"
     )
     created: datetime
     finished: datetime | None
@@ -56,11 +56,11 @@ class RunFilter(BaseModel):
     """Which runs or campaigns a list is to have."""
 
     text: str = Field("", max_length=200, description="Words in the name, the title or the id of the scenario")
-    state: State | None = Field(None, description="Only those in this state")
-    scenario: str = Field("", max_length=200, description="Only those of this scenario")
+    state: State | None = Field(None, description="Only rows in this state")
+    scenario: str = Field("", max_length=200, description="Only rows of this scenario")
 
     def of(self, kind: Kind) -> Select[Any]:
-        """Return the rows that are asked for, newest first."""
+        """Return the requested rows, newest first."""
         row = RequestRow
         query = select(row).where(row.kind == kind).order_by(row.created.desc()).limit(MOST)
         for word in self.text.split():
@@ -109,7 +109,7 @@ class Requests:
     async def settle(self, row: RequestRow, has_room: bool) -> RequestRow | None:
         """Return the same request if it waits, is under way or done, named anew; otherwise put it there if it may.
 
-        A run is not the same if its trace lacks signals that are asked for now.
+        A run is not the same if its trace lacks requested signals.
 
         Raises
         ------
@@ -136,19 +136,19 @@ class Requests:
 
         try:
             return await self._database.run(work)
-        except IntegrityError:  # another process was asked for the same at the same moment
+        except IntegrityError:  # another process got the same request at the same moment
             return await self._database.run(work)
 
     async def all(self, kind: Kind, wanted: RunFilter) -> list[RequestRow]:
-        """List those that are asked for, newest first, without their documents."""
+        """List the selected rows, newest first, without their documents."""
         return await self._rows(wanted.of(kind).options(defer(RequestRow.document)))
 
     async def some(self, kind: Kind, ids: Sequence[str]) -> list[RequestRow]:
-        """Return those of some that are known."""
+        """Return the known rows among some ids."""
         return await self._rows(select(RequestRow).where(RequestRow.id.in_(ids), RequestRow.kind == kind))
 
     async def recover(self) -> list[RequestRow]:
-        """Return those of this process that wait or are under way, in the order in which they were asked for.
+        """Return the waiting and active rows of this process, in the order of their requests.
 
         The first process that starts with a letter takes over the requests of the time before letters.
         """

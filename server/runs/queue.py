@@ -1,10 +1,10 @@
 """The queue of all that is computed headless: runs with their seeds, and campaigns.
 
-A row says what was asked for and how it ended, the table of results what is done. What the end of the server
-interrupted goes on at the next start with what is missing, and is given up if that happens often.
+A row has the request and its end, the table of results the finished work. Work that the end of the server interrupted
+continues at the next start with the missing runs, and fails if that happens often.
 
 Everything under way is a campaign, and shares the worker processes batch by batch. Campaigns take their turn one after
-the other, single runs beside them, as many as there are processes: a run waits for the batches that a campaign has
+the other, with single runs in parallel, as many as there are processes: a run waits for the batches that a campaign has
 handed over, and for no more of it.
 """
 
@@ -66,14 +66,14 @@ class Requested(ABC, Generic[Shown]):
         """Return a request as a campaign."""
 
     async def ended(self, row: RequestRow, done: int) -> None:
-        """Look after what is kept of a request that has ended, so many of its runs done."""
+        """Complete the files of an ended request with a number of finished runs."""
 
     @abstractmethod
     def shown(self, row: RequestRow) -> Shown:
         """Return a request as the interface shows it, with its progress while it is under way."""
 
     async def all(self, wanted: RunFilter) -> list[Shown]:
-        """List those that are asked for, newest first."""
+        """List the selected requests, newest first."""
         return [self.shown(row) for row in await self._requests.all(self.kind, wanted)]
 
     async def get(self, row_id: str) -> Shown:
@@ -89,7 +89,7 @@ class Requested(ABC, Generic[Shown]):
         return await self._requests.remove(self.kind, ids)
 
     async def cancel(self, row_id: str) -> Shown:
-        """End one that waits or is under way; the same can be asked for again, and goes on from there."""
+        """End a waiting or active request; the same request may come again, and continues from there."""
         await self._queue.cancel(self.kind, row_id)
         return await self.get(row_id)
 
@@ -142,9 +142,9 @@ class Queue:
         return row, True
 
     async def cancel(self, kind: Kind, row_id: str) -> None:
-        """End a request that waits or is under way; a study under way goes on to its end, and its result is dropped.
+        """End a waiting or active request; an active study runs to its end, and its result is dropped.
 
-        What is in the table of results stays: the same request goes on from there.
+        Rows in the table of results stay: the same request continues from there.
         """
         row, task = await self.requests.get(kind, row_id), self._tasks.get(row_id)
         if task is None:
@@ -154,13 +154,13 @@ class Queue:
         await asyncio.wait([task], timeout=CANCEL_S)
 
     async def warm(self, ready: Callable[[], Awaitable[None]]) -> None:
-        """Start the worker processes before somebody waits for them, once the kernels are compiled."""
+        """Start the worker processes before the first request, once the kernels are compiled."""
         await ready()
         for _ in range(self._settings.run_workers):
             await asyncio.to_thread(self.processes.submit, os.getpid)
 
     async def recover(self) -> None:
-        """Go on with what the end of the server interrupted; give up what was begun too often."""
+        """Continue the work that the end of the server interrupted; fail requests that were begun too often."""
         for row in await self.requests.recover():
             text, has_workers = "", self._settings.run_workers or (row.kind == "campaign" and self._settings.scheduler)
             if row.version != code_version():
@@ -170,11 +170,11 @@ class Queue:
             if text:
                 await self._end(row.id, "aborted", error={"code": "aborted", "message": text})
                 continue
-            log.info("%s %s goes on", row.kind, row.id)
+            log.info("%s %s continues", row.kind, row.id)
             self._tasks[row.id] = asyncio.create_task(self._carry_out(row))
 
     async def close(self) -> None:
-        """End the queue and the processes; what is unfinished goes on at the next start."""
+        """End the queue and the processes; unfinished work continues at the next start."""
         self._is_closing = True
         tasks = dict(self._tasks)
         for row_id, task in tasks.items():
@@ -192,7 +192,7 @@ class Queue:
             task.cancel()
 
     async def run(self, campaign: Campaign) -> bool:
-        """Carry a campaign out, now; return whether all of it is there."""
+        """Carry a campaign out, now; return whether it is complete."""
         try:
             return await asyncio.get_running_loop().run_in_executor(self._threads, campaign.run)
         except asyncio.CancelledError:
@@ -228,7 +228,7 @@ class Queue:
         finally:
             self._tasks.pop(row.id, None)
             self.campaigns.pop(row.id, None)
-        if state == "cancelled":  # files of a campaign hold what is done, those of a run are not whole
+        if state == "cancelled":  # files of a campaign hold the finished runs, files of a run would be incomplete
             await asyncio.to_thread(shutil.rmtree, self.requests.folders["run"] / row.id, ignore_errors=True)
         if not self._is_closing or state == "done":
             values: dict[str, Any] = {}
@@ -239,7 +239,7 @@ class Queue:
                 await kind.ended(row, campaign.done)
 
     def _first_result(self, row_id: str) -> Callable[[int, int], None]:
-        """Return what notes, in the thread of a campaign, that it gets on: then further starts are no sign of harm."""
+        """Return a callback for the first result, in the thread of a campaign: further starts are then harmless."""
         at_start: list[int] = []
 
         def told(done: int, _total: int) -> None:

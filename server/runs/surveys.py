@@ -46,7 +46,7 @@ class Surveys:
         self._under_way: set[asyncio.Task[None]] = set()
 
     def follow(self, sweep_id: str, document: Document) -> Callable[[int, int], None]:
-        """Return what a campaign calls after each batch, in a thread of its own."""
+        """Return the callback of a campaign for each batch, in a thread of its own."""
         loop, written = asyncio.get_running_loop(), 0
 
         def progress(done: int, _total: int) -> None:
@@ -82,7 +82,7 @@ class Surveys:
         return await self._apart.call(done, report, json.dumps(document, default=str), self.folder / sweep_id, name)
 
     def close(self) -> None:
-        """End what is under way; files that are missing are made when somebody asks."""
+        """End the active work; missing files are made at the next request."""
         self._apart.close()
         for task in self._under_way:
             task.cancel()
@@ -114,7 +114,7 @@ class Surveys:
             whole = await asyncio.to_thread(parts.whole)
             rows = await asyncio.to_thread(parts.rows)
             if whole < len(parts) and known.get(sweep_id) != (done, rows):
-                # somebody waits for the first results, and the process may have to be started
+                # a user waits for the first results, and the process may have to be started
                 begin = is_active and not rows
                 size = 0 if begin else done - PART * whole
                 options = {"to_end": not is_active, "begin": begin}
@@ -125,6 +125,6 @@ class Surveys:
 
 
 def _tell(task: asyncio.Task[None]) -> None:
-    """Log why files could not be written, where nobody waits for them."""
+    """Log why files could not be written, where no request waits for them."""
     if not task.cancelled() and (error := task.exception()) is not None:
         log.error("files of a campaign could not be written", exc_info=error)

@@ -36,7 +36,7 @@ class SweepRun(BaseModel):
     state: str
     name: str
     title: str
-    label: str = Field("", description="Name that somebody gave it")
+    label: str = Field("", description="Name given by a user")
     version: str
     runs: int = Field(description="Different runs, as far as is known: points are compared in their turn")
     done: int = 0

@@ -1,4 +1,4 @@
-"""What worker processes do besides computing outcomes: they keep the files of a run, or draw a figure."""
+"""Work of worker processes besides outcomes: they keep the files of a run, or draw a figure."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ STEM = "run"
 
 
 class NotKept(Exception):
-    """The files of a run could not be written; says why."""
+    """The files of a run could not be written; with the reason."""
 
 
 @dataclass(frozen=True)
@@ -32,9 +32,9 @@ class Keep:
     folder : str
         Where the files go, each under a temporary name first.
     most_bytes : int
-        Of the numbers of a trace; taps that have no room are left out, then outputs that no figure is made of.
+        Limit of the numbers of a trace; taps without room are left out, then outputs that no figure needs.
     everything : bool
-        Keep the signals of blocks that only look on as well.
+        Keep the signals of blocks in shadow as well.
     """
 
     folder: str
@@ -42,7 +42,7 @@ class Keep:
     everything: bool = False
 
     def __call__(self, document: dict[str, Any], seed: int, others: Others) -> tuple[Outcome, dict[str, Any]]:
-        """Run a scenario; return its outcome, and the summary of all its seeds, counterparts beside each expectation.
+        """Run a scenario; return its outcome, and the summary of all its seeds, with counterparts.
 
         Raises
         ------

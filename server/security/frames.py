@@ -1,7 +1,7 @@
-"""What the gate and the headers need to know of pages of other sites that show the bench in a frame.
+"""Data for the gate and the headers about pages of other sites that show the bench in a frame.
 
-In such a frame browsers send no cookie. The page has its session in memory, and what a browser loads without the page,
-such as the 3D view, has a ticket in its address instead: a secret that opens one path once.
+In such a frame browsers send no cookie. The page has its session in memory, and resources that the browser loads
+without the page, such as the 3D view, have a ticket in their address instead: a secret that opens one path once.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Frames:
     below : str
         All of these doors are at or below this path.
     ancestors : str
-        Origins whose pages may show those in a frame, as a content policy has them; nothing: no page may.
+        Origins whose pages may show the pages in a frame, as a content policy has them; nothing: no page may.
     posts : frozenset of str
         Paths to which browsers are sent from pages of other sites.
     tickets : Once
@@ -46,7 +46,7 @@ class Frames:
     tickets: Once[Ticket] = field(default_factory=lambda: Once[Ticket](TICKET_S))
 
     def holder(self, ticket: str, path: str) -> Person | None:
-        """Return whom a ticket lets pass, once."""
+        """Return the holder of a ticket, once."""
         found = self.tickets.take(ticket)
         return found.person if found is not None and found.path == path else None
 

@@ -31,7 +31,7 @@ from server.security.visitor import ELSEWHERE, STYLE, visitor_page
 
 CLOSE_ORIGIN, CLOSE_AUTH, CLOSE_ROLE, CLOSE_FULL = 4003, 4401, 4403, 1013
 REQUESTS_PER_S, REQUESTS_AT_ONCE = 40.0, 400
-"""Requests of one student or link to watch; a page asks for some fifty when it opens, a link may be a whole room's."""
+"""Requests of one student or link to watch; a page sends some fifty when it opens, a link may serve a whole room."""
 BYTES_OF_REQUEST = 20_000
 """So many bytes of a body count as one more request: reading them takes the server's loop as long."""
 LARGE = 1 << 20
@@ -47,7 +47,7 @@ WAY_IN = (
 
 
 class Gate:
-    """Lets through only people whom the server knows, to what they may do, from this server's own page.
+    """Admits only persons known to the server, within their rights, from this server's own page.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Gate:
     identity : Identity
         Knows the teacher.
     people : People
-        Knows everybody else, and what each may do.
+        Holds all other persons, and their rights.
     driving : Driving
         Knows who drives each bench.
     origin : OriginPolicy
@@ -65,7 +65,7 @@ class Gate:
         Revives the bench in the path, or the bench of a student, after a restart: a hidden fault stays hidden from
         the first request on.
     is_blind : callable
-        Whether a fault is hidden from a person, on the bench in the path or on that of a student.
+        Whether a fault is hidden from a person, on the bench in the path or on the bench of a student.
     open_paths : frozenset of str
         Further paths that need no session.
     prefix : str
@@ -73,8 +73,8 @@ class Gate:
     frames : Frames, optional
         The doors of learning platforms, if there are any.
     units : str
-        Whose scenarios may carry units of their own: nobody's (``off``), those of the teacher, or those of
-        all people it knows (``everyone``).
+        Persons whose scenarios may carry their own units: none (``off``), the teacher, or all known persons
+        (``everyone``).
     student_events : int
         Events that a scenario of a student may have.
     """
@@ -148,7 +148,7 @@ class Gate:
             await self._refuse(scope, receive, send, 403, CLOSE_ROLE, "forbidden", f"only {whose} may do that")
 
     def _person(self, connection: HTTPConnection) -> Person | None:
-        """Return who it is; what somebody sends on purpose counts before a cookie."""
+        """Return the person; an explicit secret counts before a cookie."""
         if self._frames is not None and (ticket := connection.query_params.get(TICKET)):
             return self._frames.holder(ticket, connection.scope["path"])
         if (person := self._people.by_secret(bearer_of(connection))) is not None:
@@ -165,7 +165,7 @@ class Gate:
     def _units_refused(self, person: Person | None) -> str:
         """Return why this person may not bring units of their own; nothing where they may."""
         if self._units == "off":
-            return "this server takes no units of one's own"
+            return "this server takes no user units"
         if self._units == "everyone" and person is not None:
             return ""
         return "" if person is not None and person.is_teacher else "only the teacher may bring units of their own"
@@ -182,7 +182,7 @@ class Gate:
     async def _pass(
         self, scope: Scope, receive: Receive, send: Send, person: Person | None, need: Need, bench_id: str
     ) -> None:
-        """Pass a request on, unless a student asks for too much at once; a socket lasts no longer than the right."""
+        """Pass a request on, unless a student sends too many at once; a socket lasts no longer than the right."""
         if person is None or person.is_teacher:
             await self._app(scope, receive, send)
         elif scope["type"] == "websocket":

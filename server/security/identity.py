@@ -53,7 +53,7 @@ class Identity:
         return hmac.new(self._token, purpose, hashlib.sha256).hexdigest()
 
     def secret_of_link(self, link_id: str) -> str:
-        """Return the secret of the session by which people without the token watch, if a link lets them."""
+        """Return the secret of the session by which people without the token watch, if a link allows it."""
         return self._shard + self._digest(f"combbench link {link_id}".encode())
 
     def give_cookie(self, response: Response) -> None:
@@ -122,7 +122,7 @@ class Identity:
 
 
 def bearer_of(connection: HTTPConnection) -> str:
-    """Return what the caller sent as a bearer; a page can give a WebSocket no header, but a protocol more to speak."""
+    """Return the bearer of the caller; a page can give a WebSocket no header, but an additional protocol."""
     scheme, _, value = connection.headers.get("authorization", "").partition(" ")
     if scheme.lower() == "bearer":
         return value.strip()

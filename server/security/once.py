@@ -38,6 +38,6 @@ class Once(Generic[T]):
         return secret
 
     def take(self, secret: str) -> T | None:
-        """Return what a secret opens, for the first and last time."""
+        """Return the value behind a secret, for the first and last time."""
         until, thing = self._kept.pop(hash_of(secret), (0.0, None))
         return thing if thing is not None and until > self._clock() else None

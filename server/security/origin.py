@@ -1,7 +1,7 @@
 """The origin of requests: Host and Origin must be this server's own.
 
-This stops DNS rebinding (a strange name resolving to this machine) and other sites' pages talking to the
-bench in the name of the person who has it open. CORS middleware does not suffice: it ignores WebSockets.
+This stops DNS rebinding (a strange name resolving to this machine) and other sites' pages that send commands to the
+bench in the name of its user. CORS middleware does not suffice: it ignores WebSockets.
 """
 
 from __future__ import annotations
@@ -66,7 +66,8 @@ class OriginPolicy:
             if changes and not has_bearer:
                 return "a request without an Origin header needs a bearer token"
             return None
-        # The service itself speaks plain HTTP. The settings say how a proxy publishes it; headers are not trusted.
+        # The service itself speaks plain HTTP. The settings contain the public address at the proxy; headers are not
+        # trusted.
         if origins != [self._origin or f"http://{host}"]:
             return f"the Origin '{origins[0][:80]}' is not the origin of this server"
         return None
@@ -89,7 +90,7 @@ class OriginPolicy:
 
 
 def machine_names() -> list[str]:
-    """Return the names others may know this machine by: its own, and the one it has where no name server is asked."""
+    """Return the names of this machine for others: its own, and its name where no name server is used."""
     name = socket.gethostname()
     first = name.partition(".")[0]
     return [name, f"{first}.local"] if first else []

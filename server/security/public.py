@@ -1,4 +1,4 @@
-"""The address people open the page under when a proxy stands in front of the service."""
+"""The public address of the page when a proxy is in front of the service."""
 
 from __future__ import annotations
 

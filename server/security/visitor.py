@@ -1,4 +1,4 @@
-"""The page of a visitor who has no token: what this is, and whom to ask, or where a class is joined."""
+"""The page of a visitor without a token: the service, the person to contact, or the way to a class."""
 
 from __future__ import annotations
 
@@ -64,18 +64,18 @@ OF_A_CLASS = """\
 def visitor_page(
     query: Iterable[tuple[str, str]], may_use_token: bool = True, join: str = "/join", refusal: str = ""
 ) -> str:
-    """Build the page; the address goes on to where the visitor wanted once the token is there.
+    """Build the page; the address keeps the target for the time when the visitor has the token.
 
     Parameters
     ----------
     query : iterable of (str, str)
-        The query of the address that was asked for.
+        The query of the requested address.
     may_use_token : bool
-        Whether the token is accepted from where the visitor is; if not, nobody is asked to send it from there.
+        Whether the token is accepted from the visitor's address; if not, the page does not ask for it.
     join : str
         Path of the page by which students join.
     refusal : str
-        Why the address opens nothing without the token, beside that.
+        A further reason why the address opens nothing without the token.
     """
     fields = list(query)
     has_sent_token = any(name == "token" and value for name, value in fields)

@@ -15,7 +15,7 @@ def now() -> datetime:
 
 
 class Moment(TypeDecorator[datetime]):
-    """A time in UTC, from a database that keeps time zones and from one that does not."""
+    """A time in UTC, from databases with and without time zones."""
 
     impl = DateTime(timezone=True)
     cache_ok = True

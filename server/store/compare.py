@@ -1,4 +1,4 @@
-"""Two recordings beside each other: the largest difference of every signal against a tolerance."""
+"""A comparison of two recordings: the largest difference of every signal against a tolerance."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def compare(
     first, second : Path
         The files.
     absolute, relative : float
-        Tolerance of every signal: so much, plus that share of its largest value in the first recording.
+        Tolerance of every signal: an absolute part, plus a share of its largest value in the first recording.
     tolerances : dict
         Tolerance of some signals instead.
     by_start : bool

@@ -72,7 +72,7 @@ class Database:
         Parameters
         ----------
         shard : str
-            Letter of the process, which others with other letters use the database beside; empty: it is alone.
+            Letter of the process, when others with other letters use the same database; empty: it is alone.
 
         Raises
         ------
@@ -89,7 +89,7 @@ class Database:
         )
         if all(taken):
             connection.execute(text(KEEPALIVES))
-            connection.commit()  # the locks stay, and what was set
+            connection.commit()  # the locks and the settings stay
             self._claim = connection
         else:
             connection.invalidate()  # the pool would keep it, and with it a lock that was free
@@ -148,7 +148,7 @@ class Database:
             await asyncio.to_thread(remove)
 
     def run_later(self, work: Callable[[Session], object]) -> None:
-        """Run ``work`` on the database thread behind what waits there; what goes wrong is logged."""
+        """Run ``work`` on the database thread after the waiting work; errors are logged."""
         self._thread.submit(self._try, work)
 
     def _try(self, work: Callable[[Session], object]) -> None:
@@ -179,11 +179,11 @@ class Database:
         return await self.run(lambda session: int(session.execute(text(f"{pages}pragma_freelist_count")).scalar() or 0))
 
     def close(self) -> None:
-        """Finish what is under way and close the file."""
+        """Finish the active work and close the file."""
         self._thread.shutdown(wait=True)
         if self._claim is not None:
             with suppress(DBAPIError):  # a database that is gone has freed them
-                # said aloud: the database frees those of a closed connection only when it gets to it
+                # explicitly: the database frees the locks of a closed connection only later
                 self._claim.execute(text("SELECT pg_advisory_unlock_all()"))
             self._claim.close()
         self._engine.dispose()
@@ -219,7 +219,7 @@ def full_url(address: str) -> str:
 
 
 def make_engine(url: str) -> Engine:
-    """Open the database, SQLite with its pragmas; errors, which are logged, do not quote what was to be stored."""
+    """Open the database, SQLite with its pragmas; errors, which are logged, do not quote the stored values."""
     if not url.startswith("sqlite"):
         return create_engine(url, pool_pre_ping=True, hide_parameters=True)
     engine = create_engine(url, hide_parameters=True)
@@ -244,7 +244,7 @@ def alembic_config(url: str, connection: Any = None) -> Config:
     """Describe the migrations to Alembic without an ini file."""
     from alembic.config import Config
 
-    config = Config(stdout=sys.stdout)  # the standard output of now; the default is that of the import
+    config = Config(stdout=sys.stdout)  # the present standard output; the default is the output at import
     config.set_main_option("script_location", str(MIGRATIONS))
     config.set_main_option("sqlalchemy.url", url.replace("%", "%%"))
     config.attributes["connection"] = connection

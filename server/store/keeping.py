@@ -30,7 +30,7 @@ class Keeping:
     Parameters
     ----------
     database, shared : Database
-        Where the rows of recordings and those of runs are; usually one and the same.
+        Storage of the rows of recordings and of runs; usually one and the same.
     settings : Settings
         Folder, quota, retention.
     """
@@ -44,7 +44,7 @@ class Keeping:
         Raises
         ------
         ApiError
-            When the quota is used up, or the disk is full but for its reserve.
+            When the quota is used up, or the disk is full except for its reserve.
         """
         free = await asyncio.to_thread(free_bytes, self._settings.data)
         if free <= self._settings.disk_reserve_bytes:

@@ -1,4 +1,4 @@
-"""Links: experiments and layouts by a short id for ever, and benches that were let go until they come back."""
+"""Links: experiments and layouts by a permanent short id, and closed idle benches until they come back."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from server.store.models import LinkRow
 
 Kind = Literal["experiment", "layout", "bench"]
 LETTERS = "23456789abcdefghjkmnpqrstuvwxyz"
-"""Those of an id that is read aloud or copied from a board: none that looks like another."""
+"""Letters of an id that is read aloud or copied from a board: none that looks like another."""
 ID_LENGTH = 8
 MOST_CONTENT = 2_000_000
-"""Most characters of what a link leads to, as JSON."""
+"""Most characters of the target of a link, as JSON."""
 MOST_LET_GO = 500
-"""Benches that were let go and can come back; beyond, the oldest is forgotten."""
+"""Closed idle benches that can come back; beyond, the oldest is forgotten."""
 SHOWN = ("id", "kind", "title", "note", "scenario_id", "tick", "digest", "version", "bytes", "created")
 
 
@@ -45,14 +45,14 @@ class Link(BaseModel):
 
 
 class Content(BaseModel):
-    """What a link leads to: an experiment, a layout of the page, or both."""
+    """The target of a link: an experiment, a layout of the page, or both."""
 
     experiment: Experiment | None = None
     layout: dict[str, Any] | None = None
 
 
 class LinkDetail(Link):
-    """A link with what it leads to."""
+    """A link with its target."""
 
     content: Content
 
@@ -65,14 +65,14 @@ class Links:
     database : Database
         Where the rows are.
     most : int
-        How many links there may be, benches that were let go apart.
+        The limit of links, without closed idle benches.
     """
 
     def __init__(self, database: Database, most: int) -> None:
         self._database, self._most = database, most
 
     async def keep(self, content: Content, title: str, note: str = "", bench_id: str | None = None) -> LinkDetail:
-        """Keep an experiment or a layout by a new id, or a bench that is let go by its own.
+        """Keep an experiment or a layout under a new id, or a closed idle bench under its own.
 
         Raises
         ------
@@ -82,7 +82,7 @@ class Links:
         plain = content.model_dump(mode="json")
         size = len(json.dumps(plain))
         if size > MOST_CONTENT:
-            text = f"what was done and how it looked take {size} characters, at most {MOST_CONTENT}"
+            text = f"the commands and the layout take {size} characters, at most {MOST_CONTENT}"
             raise ApiError(413, "too_large", text, hint="save it as a scenario instead")
         done = content.experiment
         row = LinkRow(
@@ -113,7 +113,7 @@ class Links:
         return LinkDetail.model_validate(await self._database.run(keep))
 
     async def all(self, kind: Kind | None = None) -> list[Link]:
-        """List links, newest first; benches that were let go are none."""
+        """List links, newest first; without closed idle benches."""
         columns = [getattr(LinkRow, name) for name in SHOWN]
         query = select(*columns).where(LinkRow.kind != "bench").order_by(LinkRow.created.desc())
         if kind is not None:
@@ -122,16 +122,16 @@ class Links:
         return [Link.model_validate(row) for row in rows]
 
     async def get(self, link_id: str) -> LinkDetail:
-        """Return a link and what it leads to, or refuse with 404."""
+        """Return a link and its target, or refuse with 404."""
         return _found(await self._database.run(lambda session: session.get(LinkRow, link_id[:64])), link_id)
 
     async def let_go(self, bench_id: str) -> LinkDetail | None:
-        """Return the bench that was let go by this id, if there is one."""
+        """Return the closed idle bench with this id, if there is one."""
         row = await self._database.run(lambda session: session.get(LinkRow, bench_id[:64]))
         return LinkDetail.model_validate(row) if row is not None and row.kind == "bench" else None
 
     async def change(self, link_id: str, **values: Any) -> LinkDetail:
-        """Change the title or the note of a link; what it leads to stays."""
+        """Change the title or the note of a link; its target stays."""
 
         def change(session: Session) -> LinkRow | None:
             row = session.get(LinkRow, link_id[:64])
@@ -143,7 +143,7 @@ class Links:
         return _found(await self._database.run(change), link_id)
 
     async def delete(self, link_id: str) -> None:
-        """Delete a link, or forget a bench that was let go."""
+        """Delete a link, or forget a closed idle bench."""
         await self._database.run(lambda session: session.execute(delete(LinkRow).where(LinkRow.id == link_id)))
 
 

@@ -19,7 +19,7 @@ def lock(folder: Path, field: str) -> IO[str]:
     Parameters
     ----------
     folder : Path
-        A folder that is there.
+        An existing folder.
     field : str
         The setting or option that the error names.
 

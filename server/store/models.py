@@ -1,4 +1,4 @@
-"""Tables: headless runs and campaigns, their results, recordings, links. Bulk data is in files; a row says which."""
+"""Tables: headless runs and campaigns, their results, recordings, links. Bulk data is in files; a row has the name."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from server.store.base import Base, now
 
 
 class RequestRow(Base):
-    """What somebody asked to be computed, a run with its seeds or a campaign; the table of results has the outcomes.
+    """A requested computation, a run with its seeds or a campaign; the table of results has the outcomes.
 
     Attributes
     ----------
@@ -21,23 +21,23 @@ class RequestRow(Base):
     shard : str
         The process that carries it out and has its files, where several share the table.
     key : str
-        What it is known by; the id is its beginning.
+        Its key; the id is its beginning.
     name : str
         Id of the scenario of a run, or of the campaign.
     document : dict
         The scenario of a run, or the campaign.
     seeds : list of int
-        Those of a run.
+        Seeds of a run.
     everything : bool
-        Whether the trace of a run has the signals of blocks that only look on as well.
+        Whether the trace of a run has the signals of blocks in shadow as well.
     version : str
         Of the code; runs from before it was kept have none.
     runs, done : int
-        Different runs it is made of, and those in the table of results when it ended.
+        Its number of different runs, and the number in the table of results when it ended.
     attempts : int
         Starts in a row without a result.
     summary : dict
-        That of a run.
+        Digest of a run.
     """
 
     __tablename__ = "requests"
@@ -70,7 +70,7 @@ class RequestRow(Base):
 
 
 def of_process(shard: str) -> ColumnElement[bool]:
-    """Return the condition that a process carries a request out; one without a letter is alone and has all."""
+    """Return the condition that a process carries a request out; a process without a letter is alone and has all."""
     return RequestRow.shard == shard if shard else true()
 
 
@@ -123,7 +123,7 @@ class ParameterSetRow(Base):
 
 
 class LinkRow(Base):
-    """An experiment or a layout by a short id, or a bench that was let go by its own."""
+    """An experiment or a layout by a short id, or a closed idle bench by its own."""
 
     __tablename__ = "links"
 

@@ -1,4 +1,4 @@
-"""Tables of classes and people, of what they did, and of lab sheets and votes."""
+"""Tables of classes and people, of their actions, and of lab sheets and votes."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ class ClassRow(Base):
     Attributes
     ----------
     code_hash : str
-        Of the join code, none while nobody can join.
+        Hash of the join code, None while joining is closed.
     code_until : datetime
         When the code expires.
     until : datetime
         When the class ends and its students are forgotten.
     scenario : dict
-        What their benches begin with, as ``POST /benches`` takes it.
+        The start of their benches, as ``POST /benches`` takes it.
     secret : str
         From it the server draws device, noise and fault of each student; it stays on the server.
     shown : str
@@ -55,7 +55,7 @@ class PersonRow(Base):
     Attributes
     ----------
     bench_id : str
-        The bench of a student, or the one that a watcher sees.
+        The bench of a student, or the bench of a watcher.
     earlier : list of str
         Benches that the student had before.
     lent : str
@@ -92,7 +92,7 @@ class AuditRow(Base):
 
 
 class BlindAnswerRow(Base):
-    """A fault hidden from somebody, and what was answered; it goes with the class."""
+    """A fault hidden from a person, and the answer; it is deleted with the class."""
 
     __tablename__ = "blind_answers"
 
@@ -104,16 +104,16 @@ class BlindAnswerRow(Base):
 
 
 class GameAttemptRow(Base):
-    """What somebody handed in at a game, or that what it hides was shown; it goes with the student or the class.
+    """An answer at a game, or the note that its hidden values were shown; it is deleted with the student or the class.
 
     Attributes
     ----------
     seed : int
         As it was chosen.
     points : float
-        None where what the game hides was shown without anything handed in.
+        None where the hidden values were shown without an answer.
     attempt : dict
-        What was handed in, and what came of it.
+        The answer, and its result.
     """
 
     __tablename__ = "game_attempts"
@@ -130,7 +130,7 @@ class GameAttemptRow(Base):
 
 
 class SheetRow(Base):
-    """A lab sheet that somebody wrote; those of the library are files."""
+    """A user's lab sheet; the sheets of the library are files."""
 
     __tablename__ = "sheets"
 
@@ -140,7 +140,7 @@ class SheetRow(Base):
 
 
 class SheetProgressRow(Base):
-    """How far a person has come with a sheet; that of a student goes with the class."""
+    """The progress of a person with a sheet; the progress of a student is deleted with the class."""
 
     __tablename__ = "sheet_progress"
 
@@ -174,7 +174,7 @@ class VoteRow(Base):
 
 
 class BallotRow(Base):
-    """What a student answered; it goes with the student, the vote or the class."""
+    """The answer of a student; it is deleted with the student, the vote or the class."""
 
     __tablename__ = "ballots"
 
@@ -185,7 +185,7 @@ class BallotRow(Base):
 
 
 class LtiKeyRow(Base):
-    """What a keyed hash of a learning platform's ids stands for: a class, or a student of one."""
+    """The class or the student behind a keyed hash of a learning platform's ids."""
 
     __tablename__ = "lti_keys"
 

@@ -14,7 +14,7 @@ OTHERS = 0o077
 
 
 def keep_private(data: Path) -> None:
-    """Make the data folder if there is none, and let nobody else read its old and its new files.
+    """Make the data folder if there is none, and make its old and its new files readable by its owner alone.
 
     An existing folder keeps its mode, because it may also hold files of others.
 
@@ -30,7 +30,7 @@ def keep_private(data: Path) -> None:
         if mode & OTHERS:
             try:
                 path.chmod(mode & ~OTHERS & 0o7777)
-            except PermissionError:  # as on a volume that belongs to somebody else
+            except PermissionError:  # as on a volume of another owner
                 log.warning("%s may be read by others, and is not this user's to change", path)
 
 

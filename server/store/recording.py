@@ -51,7 +51,7 @@ class RecordingFile:
         Raises
         ------
         OSError
-            When the disk is full, or will be once the Parquet file stands beside this one.
+            When the disk is full, or will be with the additional Parquet file.
         """
         free = free_bytes(self._path.parent)
         if free < self._reserve_bytes + self._sink.tell():
@@ -128,7 +128,7 @@ def first_tick(path: Path) -> int:
 
 
 def events_of(path: Path) -> list[dict[str, Any]]:
-    """Return the events beside a recording; a line that was cut off is left out."""
+    """Return the events in the file next to a recording; a line that was cut off is left out."""
     try:
         lines = path.with_suffix(EVENTS).read_text("utf-8", errors="replace").splitlines(keepends=True)
     except OSError:
@@ -137,7 +137,7 @@ def events_of(path: Path) -> list[dict[str, Any]]:
 
 
 def convert(path: Path) -> int:
-    """Rewrite the stream beside ``path`` as Parquet; return the number of ticks."""
+    """Rewrite the stream file of ``path`` as Parquet; return the number of ticks."""
     source, part = path.with_suffix(PART), path.with_name(path.name + ".part")
     ticks = 0
     with source.open("rb") as file:
@@ -160,7 +160,7 @@ def convert(path: Path) -> int:
 
 
 def _whole_batches(reader: pa.RecordBatchStreamReader) -> Iterator[pa.RecordBatch]:
-    """Yield batches until the end, or until the one that was cut off."""
+    """Yield batches until the end, or until an incomplete batch."""
     while True:
         try:
             yield reader.read_next_batch()

@@ -1,4 +1,4 @@
-"""Recordings: rows in the database, files beside it."""
+"""Recordings: rows in the database, files in the data folder."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class About:
 
 
 def _damaged(recording_id: str) -> Update:
-    """Return what says of a recording that nothing of it can be read."""
+    """Return the change that marks a recording as unreadable."""
     table = RecordingRow
     return update(table).where(table.id == recording_id).values(state="failed", ticks=0, reason=f"its file {DAMAGED}")
 
@@ -104,7 +104,7 @@ class Recordings:
         self._unclosed: dict[str, dict[str, Any]] = {}
 
     def path(self, recording_id: str) -> Path:
-        """Return the file of a recording; the id must be one that the service made, never a caller's text."""
+        """Return the file of a recording; the id must come from the service, never from a caller's text."""
         return self._folder / f"{recording_id}.parquet"
 
     async def open(self, about: About, schema: pa.Schema) -> tuple[Recording, RecordingFile]:
@@ -156,7 +156,7 @@ class Recordings:
         return close
 
     def _close(self, recording_id: str, values: dict[str, Any]) -> None:
-        """Close a row; the events move into it from the file beside the trace."""
+        """Close a row; the events move into it from the file of the events."""
         path = self.path(recording_id)
         if events := events_of(path):  # without the file they are in the row already, or there were none
             values = {"events": events, **values}
@@ -181,7 +181,7 @@ class Recordings:
             await asyncio.to_thread(self._close, recording_id, values)
 
     async def all(self, benches: list[str] | None = None) -> list[Recording]:
-        """List recordings, newest first: all of them, or those of some benches."""
+        """List recordings, newest first: all of them, or the recordings of some benches."""
         await self._settle()
         query = select(RecordingRow).order_by(RecordingRow.created.desc())
         if benches is not None:

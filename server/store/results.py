@@ -55,6 +55,6 @@ class Results:
         text = bindparam("text", type_=Text)
         if self._database.url.startswith("sqlite"):
             return sqlite.insert(ResultRow).values(key=key, outcome=text).on_conflict_do_nothing()
-        from sqlalchemy.dialects import postgresql  # a third of what loading SQLAlchemy takes
+        from sqlalchemy.dialects import postgresql  # a third of the time to load SQLAlchemy
 
         return postgresql.insert(ResultRow).values(key=key, outcome=cast(text, JSON)).on_conflict_do_nothing()

@@ -21,7 +21,7 @@ from scenarios.report.traces import packing
 
 LARGEST = 2**62
 NAMES = "names"
-"""Structure of a MAT file that tells the name of the signal in each variable."""
+"""Structure of a MAT file with the name of the signal in each variable."""
 Format = Literal["csv", "parquet", "npz", "mat"]
 
 MEDIA_TYPES: dict[str, str] = {
@@ -57,7 +57,7 @@ def table_of(schema: pa.Schema, first_tick: int, dt_ms: float, samples: NDArray[
 
 @dataclass(frozen=True)
 class Cut:
-    """A part of a trace: signals as asked for (all when empty), ticks from start to before end, every so many."""
+    """A part of a trace: requested signals (all when empty), ticks from start to before end, every n-th tick."""
 
     signals: tuple[str, ...] = ()
     start: int | None = None
@@ -112,7 +112,7 @@ def read_cut(path: Path, cut: Cut, most: int) -> pa.Table:
             )
         pieces.append(piece)
     if not count:
-        raise InputError("nothing of the trace lies in that span", "start_tick")
+        raise InputError("the trace has no tick in that span", "start_tick")
     schema = pa.schema([file.schema_arrow.field(name) for name in columns], metadata=file.schema_arrow.metadata)
     return pa.Table.from_batches(pieces).cast(schema)
 
@@ -138,6 +138,6 @@ def write(table: pa.Table, file: BinaryIO, kind: Format) -> None:
 
 
 def asked(given: Iterable[str], known: Collection[str]) -> tuple[str, ...]:
-    """Return the names that are asked for, each once: a text is a known name, or names between commas."""
+    """Return the requested names, each once: a text is a known name, or names between commas."""
     parts = ([text] if text in known else text.split(",") for text in given)
     return tuple(dict.fromkeys(name.strip() for part in parts for name in part if name.strip()))

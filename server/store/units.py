@@ -1,4 +1,4 @@
-"""Units of one's own that this server keeps: a folder of files, which every new bench has beside the library."""
+"""User units that this server keeps: a folder of files, which every new bench has in addition to the library."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ log = logging.getLogger(__name__)
 
 FOLDER = "units"
 MOST_KEPT = MOST_UNITS // 2
-"""Units of a server: half of what a bench may have, so that a scenario has room for its own."""
+"""Units of a server: half of the units that a bench may have, so that a scenario has room for its own."""
 
 
 class Units:
@@ -67,7 +67,7 @@ class Units:
         return beside({one.name: {"source": one.source} for one in self.all()}, document)
 
     def named_in(self, document: Document) -> Document:
-        """Return those of them that it names."""
+        """Return the units that a document names."""
         words = set(_words({key: part for key, part in document.items() if key not in ("units", "expect")}))
         return {name: table for name, table in self.beside(document).items() if name in words}
 
@@ -100,7 +100,7 @@ class Units:
     def remove(self, name: str) -> None:
         """Delete a unit from the folder; benches that have it keep it."""
         if name not in self._kept:
-            raise not_found("unit of this server", name, "those of the library and of serve --unit stay")
+            raise not_found("unit of this server", name, "the units of the library and of serve --unit stay")
         (self._folder / f"{name}.py").unlink(missing_ok=True)
         del self._kept[name]
 

@@ -18,7 +18,7 @@ class Behind:
     names : sequence of str
         The signals of the picture.
     shift : int
-        Ticks between the two: tick ``t`` of the picture lies above tick ``t + shift`` of the other bench.
+        Ticks between the two: tick ``t`` of the picture is above tick ``t + shift`` of the other bench.
     find : callable
         Returns the other bench as the person sees it now; none if it is gone.
     """
@@ -31,7 +31,7 @@ class Behind:
 
     @property
     def state(self) -> tuple[int, int]:
-        """What its picture depends on: the history, and where that ends."""
+        """Dependencies of its picture: the history, and its end."""
         seen = self._look()
         return (id(seen.history), seen.history.end_tick) if seen is not None else (0, 0)
 
@@ -45,7 +45,7 @@ class Behind:
         return found
 
     def _look(self) -> Seen | None:
-        """Return the bench; what it has of the signals is looked up when another stands in its place."""
+        """Return the bench; its signals are looked up again when another bench takes its place."""
         seen = self._find()
         if seen is not self._seen:
             self._seen = seen

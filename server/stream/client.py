@@ -110,7 +110,7 @@ class Client:
             self.close(CLOSE_SLOW, "answers were asked for and not read")
 
     def answer(self, reply: Reply) -> None:
-        """Answer a command that was carried out, behind the status it led to: who reads the answer knows the rest."""
+        """Answer a command that was carried out, after the status that it caused: a page then has both."""
         if self.closing is not None:
             return
         self._outbox += self._status()
@@ -174,7 +174,7 @@ class Client:
         return due
 
     def _events(self) -> list[bytes]:
-        """Return some of the events behind the cursor; if the log has forgotten some, say how many."""
+        """Return some of the events after the cursor; if the log has forgotten some, give their number."""
         messages, self._cursor = self._news.events(self._cursor)
         self._wants_events = bool(messages)
         return messages

@@ -54,7 +54,7 @@ class SharedCuts:
 
     @property
     def behind(self) -> list[tuple[tuple[int, int], ...]]:
-        """What pictures depend on beside this bench: the benches behind it go on by themselves."""
+        """Dependencies of pictures on other benches: the benches behind it continue by themselves."""
         return [view.behind for view in self._with_behind]
 
     def view(
@@ -90,7 +90,7 @@ class SharedCuts:
         what = Captured(tuple(named), spec.trigger.signal, **trigger, window=window, before=before)
         return self._session.captures.open(what, list(named.values()))
 
-    # Views read the history by the methods below, and say what they find.
+    # Views read the history by the methods below, and report their findings.
 
     @property
     def end_tick(self) -> int:

@@ -36,7 +36,7 @@ class Hub:
     metrics : Metrics
         Where streams are counted.
     lateness : callable
-        Returns the fields of a status that say how late the service is.
+        Returns the fields of a status for the lag of the service.
     clock : callable
         Seconds, by which a stream counts as stalled; pictures keep to the time of the event loop.
     """
@@ -53,7 +53,7 @@ class Hub:
         self._rooms: dict[Seen, Room] = {}
         self._pace = Pace(settings.frame_rate_hz)
         self.company: Callable[[str], Company | None] = lambda _bench_id: None
-        """Returns who is at a bench."""
+        """Returns the users of a bench."""
         self._later: asyncio.TimerHandle | None = None
         self._showing: Iterator[None] | None = None
 
@@ -79,7 +79,7 @@ class Hub:
             raise ApiError(503, "too_many_clients", text)
 
     def room(self, session: Seen) -> Room:
-        """Return the room of those who see the same of a bench."""
+        """Return the room of the users with the same view of a bench."""
         if session not in self._rooms:
             self._rooms[session] = Room(session, lambda: self.around(session))
         return self._rooms[session]
@@ -94,7 +94,7 @@ class Hub:
         """Remove a stream."""
         room = self._rooms[client.session]
         room.clients.discard(client)
-        client.panels.clear()  # at once, not when the collector comes: their views would find captures for nobody
+        client.panels.clear()  # at once, not at the next collection: their views would continue to find captures
         if not room.clients:
             del self._rooms[client.session]
         self._metrics.clients.set(len(self))
@@ -147,9 +147,9 @@ class Hub:
             client.close(CLOSE_NO_BENCH, "the bench was closed")
 
     def turn_bench(self, bench_id: str) -> None:
-        """Close the streams of a bench of which more or less may be seen now; its pages come back at once."""
+        """Close the streams of a bench whose view has changed; its pages come back at once."""
         for client in self._all(bench_id):
-            client.close(CLOSE_TURNED, "what may be seen of the bench has changed")
+            client.close(CLOSE_TURNED, "the visible part of the bench has changed")
 
     def close_all(self, reason: str) -> None:
         """Close every stream because the server stops."""
@@ -162,13 +162,13 @@ class Hub:
         return {"watchers": self.watchers(session.id), "company": self.company(session.id), **self._lateness()}
 
     def ask(self, bench_id: str, person: Person) -> None:
-        """Ask the pages that somebody has of a bench to answer."""
+        """Ask the pages of a person at a bench to answer."""
         for client in self._all(bench_id):
             if client.person.id == person.id:
                 client.post(Ping())
 
     def tell(self, bench_id: str) -> None:
-        """Let the next status of a bench, which all its pages get soon, be a new one; also while it stands."""
+        """Make the next status of a bench, which all its pages get soon, a new one; also while it is paused."""
         for seen, room in self._rooms.items():
             if seen.id == bench_id:
                 room.news.renew()
@@ -180,14 +180,14 @@ class Hub:
                 client.offer(status=True)
 
     def call(self, people: list[Person]) -> None:
-        """Tell all pages of some people to ask what they may do now."""
+        """Tell all pages of some persons to read their present rights."""
         ids = {person.id for person in people}
         for client in self._all():
             if client.person.id in ids:
                 client.post(Notice(code="ask_me", message="what you see or may do has changed"))
 
     def pages_of(self, person: Person) -> int:
-        """Count the open streams of somebody."""
+        """Count the open streams of a person."""
         return sum(client.person.id == person.id for client in self._all())
 
     async def run(self) -> None:
@@ -196,7 +196,7 @@ class Hub:
             due = self.clock() + STATUS_S
             await asyncio.sleep(STATUS_S)
             for room in self._rooms.values():
-                room.cuts.gather()  # of a bench that stands, too
+                room.cuts.gather()  # of a paused bench, too
             for client in self._all():
                 # The time due counts: a loop that stood still has not read the acknowledgements of that time yet.
                 if client.stalled(due):

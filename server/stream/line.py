@@ -128,7 +128,7 @@ class Line(WebSocketsSansIOProtocol):
         super().data_received(data)
 
     def handle_events(self) -> None:
-        """Handle what has arrived; no message can be refused before the client was answered."""
+        """Handle the received data; no message can be refused before the client was answered."""
         try:
             super().handle_events()
         except InvalidState:
@@ -143,13 +143,13 @@ class Line(WebSocketsSansIOProtocol):
             super().handle_parser_exception()
 
     async def send(self, message: ASGISendEvent) -> None:
-        """Send what the application says; no answer is owed to a client that left before it."""
+        """Send a message of the application; no answer is owed to a client that left before it."""
         if not self.handshake_complete and self.transport.is_closing():
             raise ClientDisconnected
         await super().send(message)
 
     def handle_text(self, event: Frame) -> None:
-        """Offer a whole message to `hear`."""
+        """Pass a whole message to `hear`."""
         if not (event.fin and not self.close_sent and self.hear(bytes(event.data))):
             super().handle_text(event)
 

@@ -54,7 +54,7 @@ class News:
         return self._statuses[key]
 
     def renew(self) -> None:
-        """Let the next status be a new one, because what is around the bench has changed."""
+        """Make the next status a new one, because the surroundings of the bench have changed."""
         self._status = None
 
     def events(self, after: int) -> tuple[list[bytes], int]:

@@ -32,7 +32,7 @@ class Panel:
         return len(self.view.indices) * spec.width * (1 + len(spec.behind))
 
     def picture(self, cuts: SharedCuts) -> Picture | None:
-        """Return the picture, or nothing if it is the one already sent."""
+        """Return the picture, or None if it was sent already."""
         picture = cuts.picture(self.view)
         if picture is self._sent:
             return None

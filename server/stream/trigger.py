@@ -77,7 +77,7 @@ class Trigger:
         history : Samples
             Full-rate history; ticks it no longer holds cannot trigger.
         first_only : bool
-            Stop behind the first crossing; the next scan goes on from there.
+            Stop after the first crossing; the next scan continues from there.
         """
         if not history.first_tick <= self.next_tick <= history.end_tick:
             # The history no longer has the tick, or the bench went back in time.
@@ -130,7 +130,7 @@ class Trigger:
 
 
 def crossing_time(history: Samples, index: int, tick: int, *levels: float) -> float:
-    """Place a crossing of a level between two ticks, on the line between them, so that a picture stands still."""
+    """Place a crossing of a level between two ticks, on the line between them, so that a picture does not jitter."""
     if tick - 1 < history.first_tick:
         return float(tick)
     before, after = (float(value) for value in history.read([index], tick - 1, tick + 1)[0])

@@ -71,13 +71,13 @@ def column_step(ticks: int, width: int) -> int:
 
 
 def window_of(spec: Subscribe, dt_ms: float) -> tuple[int, int]:
-    """Return the ticks of a window, and how many of them lie before the trigger."""
+    """Return the ticks of a window, and how many of them are before the trigger."""
     window = max(2, round((spec.window_ms or 0.0) / dt_ms))
     return window, round(spec.trigger.position * window) if spec.trigger is not None else 0
 
 
 class _State(NamedTuple):
-    """Identifies a picture: its kind, a tick that differs for others of that kind, its flags, what is behind it."""
+    """Identifies a picture: its kind, a tick that differs for others of that kind, its flags, the benches behind it."""
 
     kind: Literal["frozen", "rolling", "triggered", "empty"]
     tick: int
@@ -103,7 +103,7 @@ class View:
     behind : sequence of Behind
         Other benches that are shown behind the picture.
     captures : CaptureSet, optional
-        What is kept around the crossings of the trigger; a triggered view adds to it, a frozen one looks at it.
+        The captures around the crossings of the trigger; a triggered view adds to them, a frozen view reads them.
     """
 
     def __init__(
@@ -131,7 +131,7 @@ class View:
 
     @property
     def behind(self) -> tuple[tuple[int, int], ...]:
-        """What the pictures of other benches depend on."""
+        """Dependencies on the pictures of other benches."""
         return tuple(one.state for one in self._behind)
 
     def rearm(self, head: int) -> None:
@@ -144,7 +144,7 @@ class View:
         self._state = None
 
     def find(self, history: History) -> None:
-        """Find what is to be captured, also while no page takes a picture."""
+        """Find captures, also while no page takes a picture."""
         if self._sweep is not None:
             self._find(history, self._sweep)
 

@@ -50,15 +50,15 @@ class TriggerSpec(Message):
             if self.upper is None:
                 raise ValueError("give the upper level of the window")
             if not self.upper > self.level:
-                raise ValueError("the upper level of the window must lie above the level")
+                raise ValueError("the upper level of the window must be above the level")
         return self
 
 
 class BehindSpec(Message):
-    """Another bench whose signals of the same names are shown behind those of a panel."""
+    """Another bench whose signals of the same names are shown behind the signals of a panel."""
 
     bench: str = Field(max_length=64)
-    shift_ticks: int = Field(0, ge=-MAX_TICK, le=MAX_TICK, description="Its tick minus that of this bench")
+    shift_ticks: int = Field(0, ge=-MAX_TICK, le=MAX_TICK, description="Its tick minus the tick of this bench")
 
 
 class Subscribe(Message):
@@ -167,7 +167,7 @@ class Events(BaseModel):
 
 
 class Narrated(BaseModel):
-    """What the narrator says: the sentences behind the first ``after`` of the present run; any others are void."""
+    """The sentences of the narrator after the first ``after`` of the present run; any others are void."""
 
     type: Literal["narration"] = "narration"
     after: int
@@ -178,7 +178,7 @@ class CaptureMark(BaseModel):
     """A capture of a triggered panel."""
 
     tick: int = Field(description="The first tick beyond the crossing")
-    trigger_tick: float = Field(description="Where it lies between ticks, on the line between them")
+    trigger_tick: float = Field(description="Its place between ticks, on the line between them")
     start_tick: int
     end_tick: int
 
@@ -199,7 +199,7 @@ class CaptureList(BaseModel):
     panel: int
     captures: list[CaptureMark]
     most: int = Field(description="Captures of one trigger")
-    is_short: bool = Field(description="Memory leaves room for fewer, or the bench keeps those of too many triggers")
+    is_short: bool = Field(description="Memory leaves room for fewer, or the bench keeps captures of too many triggers")
 
 
 class Reply(BaseModel):
@@ -224,13 +224,13 @@ class Notice(BaseModel):
 
     type: Literal["notice"] = "notice"
     code: Literal["slow_client", "events_lost", "shutdown", "ask_me"] = Field(
-        description="ask_me: what this person sees or may do has changed; /me says how"
+        description="ask_me: the view or the rights of this person have changed; read /me"
     )
     message: str
 
 
 class Ping(BaseModel):
-    """Asks the page of the driver whether it is there; the page answers at once by a pong."""
+    """Asks the page of the driver for a sign; the page answers at once by a pong."""
 
     type: Literal["ping"] = "ping"
 

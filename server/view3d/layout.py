@@ -17,7 +17,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 View = tuple[tuple[tuple[float, float], ...], tuple[float, float], tuple[float, float]]
-"""What a camera shows: a box in um, and where it stands for a tall and for a wide picture, azimuth and elevation."""
+"""The view of a camera: a box in um, and azimuth and elevation for a tall and for a wide picture."""
 
 UM_PER_UNIT = 100.0
 HEIGHTS, WIDTHS = 4.0, 2.5
@@ -135,7 +135,7 @@ class Layout:
             boxes.append(Box((middle, 0, self.z), (self.plate_um - NOTCH_UM, g.plate_width_um, t)))
             arm = side * (self.plate_um + g.arm_width_um / 2)
             boxes.append(Box((arm, 0, self.z), (g.arm_width_um, g.arm_length_um, t)))
-            # Strips beside the grating, and lugs out to the outer beams.
+            # Strips next to the grating, and lugs out to the outer beams.
             boxes.append(Box((0, side * (WAIST_UM + 6) / 2, self.z), (2 * NOTCH_UM, WAIST_UM - 6, t)))
         boxes += [Box((x, 0, self.z), (2, 12, t)) for x in np.arange(-30.0, 31.0, 4.0)]
         return merge(boxes)
@@ -157,7 +157,7 @@ class Layout:
     def views(self) -> dict[str, View]:
         """Return the presets of the camera.
 
-        Tall pictures have +x to the right; in wide ones the device lies on its side, +x up.
+        Tall pictures have +x to the right; in wide pictures the device is turned, +x up.
         """
         top, length, width = self.top_um, self.half_length_um, self.half_width_um
         whole = ((-length, length), (-width, width), (0.0, top))

@@ -46,7 +46,7 @@ class Marks:
     solids : list of Solid
         Solids on the device.
     labels : dict
-        Words, by the place they stand at, um.
+        Words, by their place, um.
     beams : list of float
         How much of the colour of attention the beams at +y and -y take.
     film : float
@@ -54,7 +54,7 @@ class Marks:
     bases : float
         The same for the stators, where the drive comes in.
     damage, share : Damage or None, float
-        The damage of the suspension, and the share of it that is there.
+        The damage of the suspension, and its present share.
     """
 
     layout: Layout
@@ -167,7 +167,7 @@ def marks(faults: Sequence[Active], layout: Layout) -> Marks:
 
 
 def place_of(part: str, layout: Layout) -> Place:
-    """Return the place of the label of a part; labels of parts that are not on the device stand at its edge."""
+    """Return the place of the label of a part; labels of parts that are not on the device are at its edge."""
     top = layout.top_um
     half = layout.geometry.arm_length_um / 2
     places: dict[str, Place] = {

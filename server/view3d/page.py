@@ -27,7 +27,7 @@ POLICY = "; ".join(
 
 
 class Viewed(Protocol):
-    """What a camera looks at."""
+    """Target of a camera."""
 
     def views(self) -> dict[str, View]:
         """Return the presets of the camera by their names on the page."""

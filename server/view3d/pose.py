@@ -57,7 +57,7 @@ class Active:
 
     @property
     def share(self) -> float:
-        """Severity over what the fault was injected with."""
+        """Severity over the injected severity."""
         return self.severity / self.params.severity if self.params.severity else 1.0
 
     def given(self, kind: type[P]) -> P:
@@ -99,7 +99,7 @@ class Pose:
     caption : str
         The differences from the true motion, in words.
     when : str
-        The moment in words, if it is not that of now.
+        The moment in words, if it is not the present.
     """
 
     displacement_um: float = 0.0
@@ -141,7 +141,7 @@ class Observer:
         self._factor = self._turn_factor = 1.0
 
     def pose(self, looked: int | None = None) -> Pose:
-        """Return the pose of a tick of the history; else that of now, or of the moment that the strobe shows."""
+        """Return the pose of a tick of the history; else the present pose, or the pose of the strobe."""
         session, history = self._session, self._session.history
         spec = session.board.spec
         looked = kept(history, looked)
@@ -149,7 +149,7 @@ class Observer:
         if head <= history.first_tick:
             return Pose()
         period = session.drive_period_ticks
-        # A bench that runs as fast as possible is strobed like one in real time.
+        # A bench that runs as fast as possible is strobed like a bench in real time.
         rate = (session.status.achieved_scale if session.is_running else 0.0) / (session.dt_ms * 1e-3)
         at = moment(head, period, rate if looked is None else 0.0, time.monotonic())
         tick = max(at.tick, history.first_tick)

@@ -78,7 +78,7 @@ async def join(socket: WebSocket, bench_id: str, service: SocketServiceDep) -> N
 
 
 async def _relay(socket: WebSocket, path: Path, hearing: asyncio.Task[None], end: asyncio.Event | None = None) -> str:
-    """Show a scene to the page until either side ends, or something happens; return what was wrong."""
+    """Show a scene to the page until either side ends, or an event ends it; return the error."""
     try:
         async with unix_connect(
             str(path),
@@ -124,7 +124,7 @@ class Look(msgspec.Struct, tag="look", tag_field="type", forbid_unknown_fields=T
 async def _hear(socket: WebSocket, looked: Looked) -> None:
     """Hear at which tick the page looks until it is gone.
 
-    Its other messages are dropped: the scene takes no input, and viser fails on what it does not know.
+    Its other messages are dropped: the scene takes no input, and viser fails on unknown messages.
     """
     while (message := await socket.receive())["type"] != "websocket.disconnect":
         data = message.get("bytes") or b""

@@ -127,7 +127,7 @@ class ResonatorScene(Stage):
             self._beams[i].faces = self._flexures[i].faces.astype(np.uint32)
 
     def _show_lasers(self, lasers: tuple[Laser, ...]) -> None:
-        """Show the beams of light, which stand still."""
+        """Show the beams of light, which do not move."""
         for handle in self._lights:
             handle.remove()
         self._lights = []

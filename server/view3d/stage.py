@@ -41,11 +41,11 @@ class Stage:
         self._private.stop()
 
     def say(self, caption: str, when: str) -> None:
-        """Write the caption, and which moment is shown if it is not that of now."""
+        """Write the caption, and the moment if it is not the present."""
         self._caption.text, self._when.text = caption, when
 
     def mesh(self, name: str, mesh: Mesh, color: Color, **options: Any) -> Any:
-        """Add a rigid mesh, or one whose vertices are moved."""
+        """Add a rigid mesh, or a mesh whose vertices are moved."""
         vertices, faces = mesh.vertices.astype(np.float32), mesh.faces.astype(np.uint32)
         return self._server.scene.add_mesh_simple(
             name, vertices, faces, color=color, flat_shading=True, side="double", **options
@@ -72,7 +72,7 @@ class Stage:
         return self._server.scene.add_label(name, "\n".join(lines), position=(x, y, z + 0.12), anchor="bottom-center")
 
     def frame(self, name: str, place: Place) -> Any:
-        """Add a place that other parts stand or move with, um."""
+        """Add a frame that carries other parts, um."""
         return self._server.scene.add_frame(name, show_axes=False, position=np.array(place) / UM_PER_UNIT)
 
     def lines(self, name: str, points: FloatArray, color: Color) -> Any:

@@ -1,7 +1,7 @@
 r"""Beams and trusses in their true shape: cubics between the ends, and ends that follow the shuttle.
 
 Between two nodes nothing loads a beam, so its shape is the cubic with their displacements and rotations. The nodes
-follow the shuttle as the frame of beams does at rest, damaged or not: :math:`r=r_0+F\,(x,y,\theta)^T` for each vertex.
+follow the shuttle as the static frame of beams does, damaged or not: :math:`r=r_0+F\,(x,y,\theta)^T` for each vertex.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class Flexure:
     Parameters
     ----------
     rest : ndarray, shape (vertices, 3)
-        Places of the vertices at rest, um.
+        Places of the vertices without load, um.
     follow : ndarray, shape (vertices, 2, 3)
         Their displacement along x and y per displacement (x, y, theta) of the shuttle.
     faces : ndarray, shape (triangles, 3)
@@ -54,7 +54,7 @@ def flexure(layout: Layout, side: int, damage: Damage | None = None, share: floa
     damage : Damage, optional
         Damage of the side at +y.
     share : float
-        How much of the damage is there; a truss breaks off at the whole of it.
+        Present share of the damage; a truss breaks off at the whole of it.
     """
     whole = _lines(layout, side, frame.shape(layout.geometry))
     hurt = whole if damage is None else _lines(layout, side, frame.shape(layout.geometry, damage))

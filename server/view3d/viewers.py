@@ -23,7 +23,7 @@ class Observing(Protocol):
     """Reads the moments of one bench."""
 
     def pose(self, looked: int | None = None) -> Any:
-        """Return the pose of a tick that is looked at, if the history has it; else that of now."""
+        """Return the pose of a past tick, if the history has it; else the present pose."""
 
 
 class Scene(Protocol):
@@ -58,7 +58,7 @@ class Looked:
 class Show:
     """The scene of one bench and the number of its viewers.
 
-    A page that looks at another moment gets a scene of its own from then on, so that it moves nobody else's.
+    A page that shows another moment gets a scene of its own from then on, so that other pages keep their moment.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ def build_scene(session: Session) -> Scene:
 
 
 def observer_of(session: Session) -> Observing:
-    """Return what reads the poses that the scene of this bench shows."""
+    """Return the observer of the poses that the scene of this bench shows."""
     layout = layout_of(session)
     return Observer(session, layout) if isinstance(layout, Layout) else GyroscopeObserver(session)
 
@@ -195,7 +195,8 @@ def observer_of(session: Session) -> Observing:
 def layout_of(session: Session) -> Layout | Parts:
     """Return where the parts are.
 
-    A plant with axes is drawn as gyroscopes, any other as a resonator; one without a drawing as the reference device.
+    A plant with axes is drawn as gyroscopes, any other as a resonator; a device without a drawing as the reference
+    device.
     """
     axes = session.board.spec.axes
     return Parts(axes) if axes else Layout(session.geometry)

@@ -1,4 +1,4 @@
-"""Steps behind fences: they run in plain Python on arrays that know what the block may touch."""
+"""Steps behind fences: they run in plain Python on arrays that enforce the permitted access of the block."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every block of every family must keep to; a new block is covered by being there."""
+"""Rules for every block of every family; a new block is covered automatically."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def rich(entry: type[Block]) -> dict[str, Any]:
 
 
 def path_of(entry: type[Block]) -> str:
-    """Return the table of the document in which a block's parameters stand."""
+    """Return the table of the document with a block's parameters."""
     if entry.family == "rate":
         return "rate"
     if entry.family == "readout":
@@ -82,7 +82,7 @@ def chosen(entry: type[Block]) -> dict[str, Any]:
         if "hypotheses" not in entry.Params.model_fields:
             return {"diagnosers": {"kalman": {"kind": entry.name}, "slow": {"kind": entry.name, "every": 2}}}
         return {"diagnosers.kalman.kind": entry.name, "diagnosers.slow.kind": entry.name}
-    if entry.name == "estimate_score":  # it stands beside an identifier of one's own
+    if entry.name == "estimate_score":  # it belongs to a user's identifier
         return {"units.fit.source": FIT, "identifiers.fit.kind": "fit"}
     return {}
 
@@ -205,7 +205,7 @@ def test_snapshot_is_exact_for_any_chunks(name, which, chunks, again):
     for n in chunks:
         board.advance(n)
     kept = board.checkpoint()
-    board.advance(17)  # what is done after the snapshot must not reach it
+    board.advance(17)  # changes after the snapshot must not reach it
     board.wiring.s += 1.0
     forks = [Board.restore(kept), Board.restore(kept)]
     for fork in forks:
@@ -260,7 +260,7 @@ def test_documented(name):
 
 
 def test_a_likelihood_of_its_own_says_what_it_is():
-    """The page explains a sample by the normal density unless the class says beside its likelihood what it has."""
+    """The page explains a sample by the normal density unless the class describes its own likelihood."""
     told = [entry for entry in map(block_of, NAMES) if hasattr(entry, "log_likelihood")]
     assert told
     for entry in told:

@@ -105,7 +105,7 @@ def test_small_things() -> None:
 
 
 def test_a_value_and_its_deviation_share_one_power_and_no_line_breaks_between_them() -> None:
-    """Read back, both are what they were within half of the last digit that is shown."""
+    """Read back, both equal their values before within half of the last digit that is shown."""
     random = np.random.default_rng(2)
     sizes = 10.0 ** random.uniform(-12, 6, 1000)
     for mean, std in zip(sizes, sizes * 10.0 ** random.uniform(-5, 1, 1000), strict=True):

@@ -1,4 +1,4 @@
-"""A compiled kernel is known by its code and by that of all it names; it is compiled once."""
+"""A compiled kernel is identified by its code and by the code of every function it names; it is compiled once."""
 
 from __future__ import annotations
 

@@ -121,7 +121,7 @@ LIBRARY |= {"tanh", "asinh", "acosh", "atanh", "pow", "hypot", "cbrt", "gamma", 
 
 
 def machine_dependent(tree: ast.AST) -> set[str]:
-    """What a file asks of libraries that pick their code by the processor."""
+    """Return the calls of a file into libraries that pick their code by the processor."""
     found = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):

@@ -7,7 +7,7 @@ import itertools
 from core.registry import blocks, catalog
 
 LAST = 1000
-"""Where a block stands that says nothing."""
+"""Place of a block without a declared place."""
 
 
 def test_faults_come_in_groups_the_usual_first() -> None:

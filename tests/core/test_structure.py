@@ -1,4 +1,4 @@
-"""Every controller, identifier and diagnoser tells its stages, and a stage names what is there."""
+"""Every controller, identifier and diagnoser declares its stages, and a stage names only existing ports and states."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from core.registry import blocks
 FAMILIES = ("control", "identify", "diagnose")
 OPENED = [entry for family in FAMILIES for entry in blocks(family).values()]
 FROM_INSIDE = {"forced_drive": {"x", "frequency"}, "drive_tracking": {"frequency"}}
-"""What comes from parameters and time alone."""
+"""Ports that follow from parameters and time alone."""
 
 
 class Gain(Block):
@@ -131,7 +131,7 @@ class Gain(Block):
 
 
 def test_a_unit_of_ones_own_tells_its_stages_or_is_drawn_as_one() -> None:
-    """With stages they are checked like those of the library; without, it is one stage."""
+    """With stages they are checked like the stages of the library; without, it is one stage."""
 
     def stages(text: str) -> Any:
         return card(unit("gain", text).block).structure

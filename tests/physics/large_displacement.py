@@ -1,8 +1,8 @@
 """A frame of beams at large displacements, written apart from the product's own: corotational elements, many a beam.
 
 Crisfield, Non-linear Finite Element Analysis of Solids and Structures 1 (1991), 7.3: the chord of each element is
-followed exactly, and within it the beam is that of Euler and Bernoulli. Bowing and the loss of stiffness sideways come
-out of the geometry; nothing is fitted.
+followed exactly, and within it the beam is an Euler-Bernoulli beam. Bowing and the loss of stiffness sideways follow
+from the geometry; nothing is fitted.
 """
 
 from __future__ import annotations
@@ -137,6 +137,6 @@ class Frame:
                 move = np.linalg.solve(carried.T @ tangent @ carried, -carried.T @ force)
                 u[self.free] += move[:-2]
                 shift, turn = shift + move[-2], turn + move[-1]
-                if np.abs(move).max() < 1e-8:  # Newton: what is left is its square
+                if np.abs(move).max() < 1e-8:  # Newton: the rest is its square
                     break
         return float(sum(force[3 * i] for i in self.rigid)), float(shift), float(turn)

@@ -1,4 +1,4 @@
-"""A device in the plane: LCR-350 without drive or noise, and what is packed of it."""
+"""A device in the plane: LCR-350 without drive or noise, and its packed numbers."""
 
 from __future__ import annotations
 

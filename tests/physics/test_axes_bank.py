@@ -32,7 +32,8 @@ def turning(omega: float) -> np.ndarray:
 
 
 def test_a_filter_is_that_of_all_five_states():
-    """The rate does not walk; the covariances go round until they stand, with the rate known, and then without."""
+    """The rate does not walk; the covariances are iterated until they are steady, with the rate known, and then
+    without."""
     board = bank({"kind": "constant", "deg_per_s": 300.0}, rate_walk_dps_rt_s=0.0)
     trace = play(board, 400)
     phi, gamma = held(STIFFNESS, DAMPING, MASS, H)
@@ -63,7 +64,7 @@ def test_a_filter_is_that_of_all_five_states():
         np.testing.assert_allclose(now, residual, atol=1e-4 * NOISE_UM, err_msg=str(i))
         gains = [trace[f"bank.gain_{row}_{axis}.healthy"][i] for row in STATES for axis in "xy"]
         expected = np.vstack([gain[:4], np.degrees(gain[4:]) * 1e3])
-        size = np.abs(expected).max(axis=1, keepdims=True) + 1e-300  # that of the rate is 0 at rest
+        size = np.abs(expected).max(axis=1, keepdims=True) + 1e-300  # the rate's is 0 without rotation
         np.testing.assert_allclose(np.reshape(gains, (5, 2)) / size, expected / size, atol=1e-3, err_msg=str(i))
         assert trace["bank.nis.healthy"][i] == pytest.approx(0.5 * residual @ np.linalg.solve(psi, residual), rel=1e-3)
     assert trace["bank.rate.healthy"][-1] == pytest.approx(np.degrees(state[4]) * 1e3, rel=1e-4)
@@ -90,7 +91,7 @@ def test_a_model_over_a_tick():
 
 
 def test_residuals_of_the_truth_are_as_large_as_they_should_be():
-    """With the noise that is there, and no other, the squares are 1 on average: 0.7 % is three standard errors."""
+    """With exactly the noise of the model the squares are 1 on average: 0.7 % is three standard errors."""
     board = bank(drive_noise=0.0, sense_noise=0.0, rate_walk_dps_rt_s=0.0)
     play(board, 20_000)
     nis = play(board, 200_000)["bank.nis.healthy"]
@@ -197,5 +198,5 @@ def test_what_does_not_fit_is_refused():
         make({"diagnosers": {"bank": {"kind": "axes_bank"}}})
     with pytest.raises(InputError, match="is for one displacement"):
         make({"diagnosers": {"bank": {"kind": "mmae"}}}, base=GYRO)
-    with pytest.raises(InputError, match="a is there twice"):
+    with pytest.raises(InputError, match="a occurs twice"):
         bank(hypotheses=[{"name": "a"}, {"name": "a", "mass": 1.1}])

@@ -1,4 +1,4 @@
-"""A force that alternates and has run away stops the board; one that touches its limit does not."""
+"""A force that alternates and has run away stops the board; a force that touches its limit does not."""
 
 from __future__ import annotations
 

@@ -232,7 +232,7 @@ def test_a_bank_that_runs_now_and_then_follows_the_voltage_of_every_tick(kind, e
 @pytest.mark.parametrize("sensor_every", [2, 3])
 @pytest.mark.parametrize("seed", [1, 104])
 def test_a_bank_waits_for_a_slower_sensor(sensor_every, seed):
-    """What was measured before is no new evidence; taken for it, a bank is right a fifth of the time."""
+    """An old measurement is no new evidence; with it as evidence, a bank is right a fifth of the time."""
     metrics = run(with_values(get("ch5-seven-step"), {"sensor.every": sensor_every}), seed=seed).metrics
     assert metrics["diagnosis.kalman.correct_fraction"] > 0.97
     assert metrics["diagnosis.kalman.nis"] == pytest.approx(1.0, abs=0.2)

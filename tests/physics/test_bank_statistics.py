@@ -1,4 +1,4 @@
-"""The Kalman banks over many seeds: the figures of section 5.2.4, and what the printed forms make of them."""
+"""The Kalman banks over many seeds: the figures of section 5.2.4, and the results of the printed forms."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def test_printed_interval_is_a_third_of_a_period():
 
 
 def test_hum_misleads_the_plain_bank_and_not_the_lock_in():
-    """50 Hz on the sensor is fault to a bank that weighs all residuals; what is not at the tone is no evidence."""
+    """50 Hz on the sensor is a fault to a bank that weighs all residuals; for a lock-in only the tone is evidence."""
     hum = [{"at_sample": 0, "fault": "sensor_hum", "severity": 0.3}]
     events = [*hum, *EVENTS[:-1], {**EVENTS[-1], "heal": ["damping"]}]
     banks = {"plain": BANK, "lock_in": {**BANK, "kind": "lock_in"}}
@@ -107,7 +107,8 @@ def test_hum_misleads_the_plain_bank_and_not_the_lock_in():
 
 @pytest.mark.parametrize(("quantum_um", "least"), [(0.5, 0.97), (1.0, 0.96)])
 def test_a_coarse_converter_is_noise_the_bank_is_told_of(quantum_um, least):
-    """With R = s^2 + q^2/12; with that of the noise alone every step looks like a fault, and half of all is wrong."""
+    """With R = s^2 + q^2/12; with the variance of the noise alone every step looks like a fault, and half of all is
+    wrong."""
     coarse = {"sensor__noise_um": 0.05, "sensor__quantum_um": quantum_um}
     believing = {**BANK, "sensor_noise_um": 0.05}
     found = seven_steps(range(1, 21), {"kalman": BANK, "believing": believing}, **coarse)
@@ -153,7 +154,7 @@ def every_fifth(rate_khz: float, every: int, hz: float, banks: dict[str, Any], s
 
 @pytest.mark.timeout(300)
 def test_difference_equations_that_run_every_fifth_tick_are_as_right_as_those_that_run_at_each():
-    """The voltage of 50 us in five steps or in one: what a mean of the steps loses is 3.1 % at 2 kHz."""
+    """The voltage of 50 us in five steps or in one: the loss by a mean of the steps is 3.1 % at 2 kHz."""
     kinds = ("reference_banks", "arx_bank", "self_tuning")
     for hz in (2000.0, 1000.0):
         at_each = every_fifth(20, 1, hz, {kind: {"kind": kind} for kind in kinds}, range(1, 5))

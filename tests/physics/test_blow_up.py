@@ -1,4 +1,4 @@
-"""Controllers that blow up, and what is kept under noise."""
+"""Controllers that blow up, and the rest of the motion under noise."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ def check_loop(seeds: range, tolerance: float) -> None:
     assert sine["kalman"].correct == pytest.approx(0.990, abs=tolerance)
     still = seven_steps(seeds, BANKS, base="ch5-closed-loop-constant", sensor__noise_um=0.05)
     assert still["kalman"].correct <= 0.80 and still["kalman"].missed[1] >= 0.9
-    # stiffness shows at rest, mass does not
+    # stiffness shows in the static displacement, mass does not
     assert still["kalman"].delays[3] <= 20 and still["kalman"].missed[3] == 0
     dither = seven_steps(seeds, BANKS, base="ch5-closed-loop-dither", sensor__noise_um=0.05)
     assert dither["kalman"].correct >= 0.96 and np.all(dither["kalman"].missed == 0)
@@ -41,7 +41,7 @@ def test_feedback_and_excitation_over_many_seeds():
 
 @pytest.mark.parametrize(("base", "limit"), [("ch5-closed-loop", 8.0), ("ch5-closed-loop-dither", 14.0)])
 def test_the_bank_is_fed_the_voltage_that_was_applied(base, limit):
-    """Given what the controller wished for instead, beyond the limit, no filter would be right."""
+    """With the command of the controller instead, beyond the limit, no filter would be right."""
     scenario = with_values(get(base), {"drive.limit_v": limit, "expect": [], "samples": 2000, "events": []})
     board = build(scenario, 5)
     asked, applied, right = [], [], []

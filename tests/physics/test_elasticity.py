@@ -85,7 +85,7 @@ def test_pull_in_of_the_reference_device_at_500_k():
 
 
 def test_the_plane_pulls_in_hot_and_stays_at_room_temperature():
-    """28.03 V lies between the thresholds of 27.905 V at 500 K and 28.082 V at 300 K; heat gives the first push."""
+    """28.03 V is between the thresholds of 27.905 V at 500 K and 28.082 V at 300 K; heat gives the first push."""
     assert closed_pull_in(1 - PER_K * 200) < 28.03 < closed_pull_in(1.0) + 0.01
     ends = {}
     for kelvin in (300.0, 500.0):

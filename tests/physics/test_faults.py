@@ -1,4 +1,4 @@
-"""Faults against what they say they change."""
+"""Faults against their declared changes."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_stiction_has_a_dead_band(plant):
         inject(board, stiction=20.0)
         x = play(board, 600)["plant.displacement"]
         assert (abs(x[-1]) > 0.0) == moves
-    # let go from 1 um it comes to rest within the dead band, for good, and not at zero
+    # released at 1 um it stops within the dead band, for good, and not at zero
     board = make({**values, **STILL, "plant.initial_displacement_um": 1.0})
     inject(board, stiction=20.0)
     trace = play(board, 1500)
@@ -135,7 +135,7 @@ def test_stuck_drive_holds_the_voltage_of_the_moment():
 @pytest.mark.parametrize("plant", PLANTS)
 @pytest.mark.parametrize(("comb", "sign"), [("right", -1.0), ("left", 1.0), ("both", 0.0)])
 def test_a_short_leaves_the_other_comb(plant, comb, sign):
-    """The comb that is left pulls with C' V^2 / 2, and goes on when the fault is healed."""
+    """The remaining comb pulls with C' V^2 / 2, and continues when the fault is healed."""
     values = {**LCR, **STILL, "plant.model": plant, "plant.thermal_noise": False, "guard.stop_on_contact": False}
     board = make(values)
     do(board, {"fault": "short_circuit", "severity": 1.0, "parameters": {"comb": comb}})

@@ -153,7 +153,7 @@ def measured(signal: np.ndarray, omega: float, khz: float) -> complex:
 
 
 def driven(plant: PlantAlone, found: TwoAxis, omega: float, deg_per_s: float, ticks: int) -> dict[str, np.ndarray]:
-    """Keep x at 1 um sin(omega t); x starts there and y at rest."""
+    """Keep x at 1 um sin(omega t); x starts there and y at zero."""
     force = phasors(found, omega, deg_per_s * PER_DEG * 1e-3)[1]
 
     def before(i: int) -> None:
@@ -165,7 +165,7 @@ def driven(plant: PlantAlone, found: TwoAxis, omega: float, deg_per_s: float, ti
 
 
 def test_scale_factor_with_split_modes():
-    """C at rest in y reaches 258.6 pm per deg/s after many times its 36 ms, for 5 um of drive."""
+    """C with y at zero reaches 258.6 pm per deg/s after many times its 36 ms, for 5 um of drive."""
     found: Any = device({"id": "gyro-c", "gyroscope": {"stiffness_xy_n_m": 0.0}})
     omega, rate = found.oscillator().drive_frequency, 10.0
     assert omega == pytest.approx(2 * math.pi * 3.92529, rel=1e-6)
@@ -196,7 +196,7 @@ def test_zero_rate_and_tilt_of_the_dissertations_pair(name, tilt, zero):
 
 
 def test_effects_are_other_devices():
-    """What a fault scales or adds is the same as a device that was made so."""
+    """A device with a scaled or added effect equals a device that was made so."""
     plant, nominal = alone(**SWING), device({"id": "gyro-a"}).oscillator()
     assert isinstance(nominal, TwoAxis)
     scales = {"mass_scale": 1.1, "stiffness_scale": 0.9, "damping_scale": 3.0}
@@ -239,7 +239,7 @@ def test_a_fault_that_doubles_the_fastest_mode_is_still_integrated():
 
 
 def test_a_pair_is_two_gyroscopes():
-    """The partner starts at rest, takes its own forces, and feels the rate and what shakes the frame."""
+    """The partner starts without motion, takes its own forces, and feels the rate and the shaking of the frame."""
     pair = alone("gyro-4-5", block=GyroscopePair, partner={"id": "gyro-b", "gyroscope": {"alpha_deg": 3}}, **SWING)
     first, second = alone("gyro-4-5", **SWING), alone("gyro-b", over={"alpha_deg": 3})
     pair["mass_scale"] = first["mass_scale"] = 1.2  # a fault of the first

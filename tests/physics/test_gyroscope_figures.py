@@ -158,7 +158,7 @@ def test_half_a_sample_reads_as_a_rate(khz, quadrature, lead_deg):
     ],
 )
 def test_a_force_is_a_rate_by_the_frequency_of_the_carrier(drive, controller):
-    """Cross stiffness as strong as that of set A: the mode is 3.7 % below the frequency of x with y at rest.
+    """Cross stiffness as strong as in set A: the mode is 3.7 % below the frequency of x with y at zero.
 
     The drive loop finds the latter, drive tracking holds the former; both read 2m times the force per speed.
     """

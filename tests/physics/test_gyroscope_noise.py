@@ -53,7 +53,7 @@ def test_equipartition_on_both_axes(khz, deg_per_s):
 
 
 def test_cross_damping_correlates_the_forces():
-    """From rest, with springs that do not matter yet, velocities after one sample are those of the force alone."""
+    """From zero, with springs that do not matter yet, velocities after one sample come from the force alone."""
     nominal = damped(-0.6)
     force = []
     for seed in range(4000):
@@ -71,7 +71,7 @@ def test_noise_is_a_function_of_seed_and_tick_alone():
     straight = first.play(50, *MOTION)
     np.testing.assert_array_equal(again.play(50, *MOTION), straight)
     assert np.all(other.play(50, *MOTION)[:, 1:] != straight[:, 1:])
-    # one that begins at another tick, where the first was, goes on like it
+    # a plant that begins at another tick, in the state of the first, continues like it
     for name, value in zip(MOTION, straight[:, 29], strict=True):
         late[name] = value
     late.w[0] = 30.0

@@ -1,4 +1,4 @@
-"""Identifiers against theory, against another library, and against what they cannot know."""
+"""Identifiers against theory, against another library, and against the limits of their information."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def test_least_squares_is_the_information_form_of_the_equations():
         for method in ("zoh", "foh")
     )
     wu = lfilter(held[0][0].ravel(), held[0][1], u)
-    # the filter of the bench starts at rest with its first sample; so does this one, for y begins at 0
+    # the filter of the bench starts at zero with its first sample; so does this one, because y begins at 0
     wy, dy, z = (lfilter(b.ravel(), a, y) for b, a, _ in line)
     information, weighted = np.eye(3) / trust, np.zeros(3)
     for i in range(1, n):
@@ -242,7 +242,7 @@ def test_noise_in_the_regressor_is_that_of_its_filters(method, held):
 def test_excitation_is_the_smallest_eigenvalue_in_closed_form():
     from core.theory.persistency import excitation, gram_of_tones
 
-    # tones of 1, 2, 4 and 8 per window, so that the mean over it is that of whole periods
+    # tones of 1, 2, 4 and 8 per window, so that the mean over it is a mean of whole periods
     tones = [0.5 * math.pi * k for k in (1, 2, 4, 8)]
     trace = play(bench({"kind": "excitation", "excitation_window_ms": 4.0}, tones), 4000)
     kp = -4 * 24 * 8.8541878128e-12 * 20 / 1.05 / 0.0538 * 1e6

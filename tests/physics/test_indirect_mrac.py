@@ -1,4 +1,4 @@
-"""Indirect MRAC: the law from its equations, the gain map, what it tracks."""
+"""Indirect MRAC: the law from its equations, the gain map, the tracking."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ def test_filter_step_by_step_against_filterpy(name):
 @pytest.mark.parametrize("form", ["recursive", "steady"])
 @pytest.mark.parametrize(("every", "sensor_every"), [(2, 1), (5, 1), (1, 2), (2, 3)])
 def test_between_two_measurements_a_filter_predicts_tick_by_tick(every, sensor_every, form):
-    """The same as a filter at every tick that is given no measurement but at its turns, and then a new one."""
+    """The same as a filter at every tick that gets measurements only at its turns."""
     turn = math.lcm(every, sensor_every)
     bank = {"kind": "mmae", "process_noise_v": 0.3, "every": every, "form": form}
     values = {"sensor": {"kind": "ideal", "noise_um": 0.05, "every": sensor_every}, "diagnosers": {"kalman": bank}}
@@ -121,7 +121,7 @@ def test_every_bank_of_filters_shows_its_gains(kind):
     square = of_bank(trace, "nis")[1:]
     gain = of_bank(trace, "gain_displacement")[1:]
     assert np.all(gain > 0.0) and np.all(np.isfinite(of_bank(trace, "gain_velocity")))
-    if kind != "two_output":  # its square is that of both residuals
+    if kind != "two_output":  # its square belongs to both residuals
         np.testing.assert_allclose(1.0 - 0.05**2 * square / residual**2, gain, rtol=1e-6, atol=1e-7)
 
 

@@ -191,7 +191,7 @@ def test_a_short_stays_until_the_board_is_reset():
 
 
 def test_insulated_fingers_stay_latched_without_any_drive():
-    """Hysteresis: the bias alone holds what the drive has pulled in."""
+    """Hysteresis: the bias alone holds the fingers that the drive has pulled in."""
     board = ramped(0.25, **{"guard.stop_on_contact": False, "plant.short_on_contact": False})
     play(board, 250)
     do(board, {"set": {"reference": {"kind": "constant", "amplitude_v": 0.0}}})

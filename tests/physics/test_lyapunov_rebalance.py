@@ -1,4 +1,4 @@
-"""The law of Leland: an axis held to a sine, the other at rest; beside known rates, and beside force to rebalance."""
+"""The law of Leland: an axis held to a sine, the other at zero; against known rates, and against force to rebalance."""
 
 from __future__ import annotations
 

@@ -203,7 +203,7 @@ def microsecond_run() -> dict[str, np.ndarray]:
 
 
 def test_augmented_error_identity(microsecond_run):
-    """eps = phi'wbar / k* + (alpha - 1/k*) eta, with the regressor filtered here from what the board shows."""
+    """eps = phi'wbar / k* + (alpha - 1/k*) eta, with the regressor filtered here from the signals of the board."""
     trace, h, n = microsecond_run, 1e-3 * W0, 12_000
     system = expm(np.array([[0, 1, 0], [-1, -A1, KP], [0, 0, 0]]) * h)
     phi_, gamma = system[:2, :2], system[:2, 2]
@@ -218,7 +218,7 @@ def test_augmented_error_identity(microsecond_run):
     w1, w2 = (lfilter([0.0, 1.0 - decay], [1.0, -decay], signal) for signal in (u, y))
     bar = np.column_stack([filtered(signal) for signal in (r, w1, w2, y)])
     theta = np.column_stack([trace[f"mrac.gain.{name}"] for name in LABELS])
-    before = np.vstack([theta[:1], theta[:-1]])  # the error of a sample is that of the gains it found
+    before = np.vstack([theta[:1], theta[:-1]])  # the error of a sample belongs to the gains at its start
     alpha = np.concatenate([[1.0], trace["mrac.alpha"][:-1]])
     ideal = np.array([trace[f"mrac.gain_ideal.{name}"][-1] for name in LABELS])
     eta = np.sum(before * bar, axis=1) - filtered(u)
@@ -243,7 +243,7 @@ def test_augmented_error_identity_tells_wrong_laws_apart(mutant, microsecond_run
 
 
 def test_printed_auxiliary_error_takes_the_limit_for_a_fault_of_the_device():
-    """15 V of the 20 needed: what was not applied stands in the error it should explain, and the gains drift."""
+    """15 V of the 20 needed: the missing voltage appears in the error it should explain, and the gains drift."""
 
     def gain(auxiliary: str) -> float:
         law = {"kind": "mrac", "adaptation_gain": 1.0, "auxiliary": auxiliary}

@@ -55,7 +55,7 @@ def test_a_coarse_quantum_is_like_noise():
 
 @pytest.mark.parametrize(("limit_v", "lost_um"), [(17.0, 0.1), (15.0, 0.3), (10.0, 0.85)])
 def test_a_limit_below_the_voltage_needed_costs_what_it_cuts_off(limit_v, lost_um):
-    """18 V are needed, and what is missing of them would have moved the shuttle by kp/1.8 a volt."""
+    """18 V are needed, and the missing part would have moved the shuttle by kp/1.8 a volt."""
     found = left(200.0, **{"drive.limit_v": limit_v})
     missing = np.maximum(18.0 * np.abs(np.sin(np.linspace(0, np.pi, 1000))) - limit_v, 0.0) * abs(KP) / 1.8
     assert 0.5 * rms(missing) < found < lost_um

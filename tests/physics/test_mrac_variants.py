@@ -1,4 +1,4 @@
-"""Direct MRAC with velocity, against a constant load, and what is left when a part of it is taken out."""
+"""Direct MRAC with velocity, against a constant load, and the effect of removing a part of it."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def test_the_plain_law_on_the_displacement_alone_fails(fault):
     assert left("printed", 0.001) < 0.1
     assert left("printed", 0.1) > 1.0
     assert left("relative_degree_one", 0.1) < left("relative_degree_one", 0.03) + 0.002 < 0.005
-    # the gain is that of the plain law: nothing on the velocity, and the ideal gains those of relative degree two
+    # the gain equals the gain of the plain law: nothing on the velocity, and the ideal gains of relative degree two
     board = make({"controllers": {"mrac_velocity": {"form": "printed"}}})
     inject(board, **fault)
     trace = play(board, 3)
@@ -121,7 +121,7 @@ def test_law_with_velocity_keeps_its_head_while_another_one_chatters(kind):
 
 
 def test_bias_regressor_takes_a_constant_load_out():
-    """A comb stuck by a tenth holds 0.1 of the voltage of the injection for ever: a constant load of 1 V."""
+    """A comb stuck by a tenth permanently holds 0.1 of the voltage of the injection: a constant load of 1 V."""
     found = {}
     for bias in (0.0, 10.0):
         board = make({"controller": {"kind": "mrac", "bias_v": bias}})

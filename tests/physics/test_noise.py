@@ -36,7 +36,7 @@ def test_normal(sample):
     assert abs(sample.var() - 1) < 4 * np.sqrt(2 / N)
     assert abs(stats.skew(sample)) < 4 * np.sqrt(6 / N)
     assert abs(stats.kurtosis(sample)) < 4 * np.sqrt(24 / N)
-    # the tails are there
+    # the tails exist
     assert np.sum(np.abs(sample) > 3) == pytest.approx(N * 0.0026998, abs=4 * np.sqrt(N * 0.0027))
     assert np.abs(sample).max() > 3.8
 

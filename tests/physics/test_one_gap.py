@@ -1,4 +1,4 @@
-"""One comb has one gap: what is told of the force, what moves, what is sensed and what pulls in agree on it."""
+"""One comb has one gap: force, motion, sensing and pull-in agree on it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def gradient(gap_um: float) -> float:
 @pytest.mark.parametrize("where", ["plant__gap_um", "device__finger_gap_um"])
 @pytest.mark.parametrize("model", ["linear", "nonlinear", "planar"])
 def test_what_is_told_is_what_moves_and_what_is_sensed(model, where):
-    """F = 2 C' V_b v and x = -F/k at twice the gap; both capacitances C' L at rest."""
+    """F = 2 C' V_b v and x = -F/k at twice the gap; both undeflected capacitances are C' L."""
     board = bench(model, **{where: 4.2}, **({"plant__cubic_n_m3": 0.0} if model == "nonlinear" else {}))
     per_volt = 2 * gradient(4.2) * BIAS_V
     told = device_metrics(board.spec)

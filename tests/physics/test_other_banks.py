@@ -21,7 +21,7 @@ MODELS = [model(factors) for factors in FACTORS.values()]
 
 
 def bench(bank: dict[str, Any], n: int = 600, at: int = 300, values: dict[str, Any] | None = None, **faults: float):
-    """Play a bank with least_drive 0, a fault on the way, and return what it saw."""
+    """Play a bank with least_drive 0, a fault on the way, and return its outputs."""
     told = {"process_noise_v": 0.1, "least_drive_v": 0.0, **bank}
     board = make({**BENCH, "sensor.noise_um": 0.05, **(values or {}), "diagnosers": {"kalman": told}})
     first = play(board, at)

@@ -29,7 +29,7 @@ def bench(device: str, rate_khz: int = 100, noise_um: float = 0.0, **values: Any
 
 @pytest.mark.parametrize(("kind", "device", "rate_khz"), pairs(FOLLOWERS, SOME, (50, 100, 200)))
 def test_an_aged_device_is_followed(kind, rate_khz, device):
-    """Relative to 2 um the error is what it is for the device of chapter 3: time goes with w0, volts with kp."""
+    """Relative to 2 um the error equals the error on the device of chapter 3: time scales with w0, volts with kp."""
     board = bench(device, rate_khz, 0.01, controller={"kind": kind})
     inject(board, **AGED)
     trace = play(board, 40 * rate_khz)
@@ -41,7 +41,7 @@ def test_an_aged_device_is_followed(kind, rate_khz, device):
 
 @pytest.mark.parametrize("device", RESONATORS)
 def test_every_controller_may_drive_every_resonator(device):
-    """Healthy, without noise: none leaves the model but the PID, which is not told of it, lags by some percent, and
+    """Healthy, without noise: none leaves the model but the PID, which does not know it, lags by some percent, and
     swings where a sample is a quarter of 1/w0 and more.
     """
     for kind in bench(device).spec.controllers:
@@ -56,8 +56,8 @@ def test_every_controller_may_drive_every_resonator(device):
 
 @pytest.mark.parametrize(("kind", "device", "rate_khz"), pairs(IDENTIFIERS, SOME, (50, 100, 200)))
 def test_four_tones_identify_any_device(kind, rate_khz, device):
-    """The tones stand where those of the device of chapter 3 do beside its resonance; the line between two samples of
-    the displacement is off by its curvature, (w h)^2/12, so half the rate costs four times as much."""
+    """The tones are at the same multiples of the resonance as for the device of chapter 3; the line between two samples
+    of the displacement is off by its curvature, (w h)^2/12, so half the rate costs four times as much."""
     rate = bench(device).spec.context().device.natural_frequency
     tones = [{"frequency_hz": share * rate * KRAD} for share in (0.064, 0.186, 0.51, 1.03)]
     reference = {"kind": "multi_sine", "amplitude_um": 2.0, "tones": tones}

@@ -69,7 +69,7 @@ def test_pid_follows_with_the_published_error():
 
 
 def test_pid_has_little_room():
-    """Poles further out, half the sample rate, or a mass it was not made for, and it swings for ever."""
+    """Poles further out, half the sample rate, or a mass outside its design, and it swings without end."""
 
     def left(values: dict[str, Any], **faults: float) -> float:
         law = {"kind": "pid", "pole": 1.3, **values.pop("controller", {})}

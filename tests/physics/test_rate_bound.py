@@ -43,7 +43,7 @@ def cell(kind: str, name: str, khz: float, rate: float, warm: bool) -> tuple[flo
 
 
 def judged(cells: list[tuple[float, float, bool]]) -> float:
-    """Return how many of the cells whose error lies within the bound are trusted, and see that no other is."""
+    """Return how many of the cells with an error within the bound are trusted, and check that no other is."""
     assert all(error <= bound for error, bound, trusted in cells if trusted)
     within = [trusted for error, bound, trusted in cells if error <= bound]
     return sum(within) / len(within)
@@ -57,7 +57,7 @@ def test_rates_that_were_read_12_to_39_deg_s_too_high(kind, name):
 
 
 def test_modes_too_fast_for_the_samples_are_told_and_small_rates_not_trusted():
-    """Set B at 100 kHz rings 5.7 samples a period: what is left is 0.14 deg/s and 0.14 %, and the bound says so."""
+    """Set B at 100 kHz rings 5.7 samples a period: the rest is 0.14 deg/s and 0.14 %, and the bound contains it."""
     small, large = (cell("adaptive_rate", "gyro-b", 100.0, rate, warm=False) for rate in (0.5, 300.0))
     assert small[0] == pytest.approx(0.14, abs=0.01) and small[1] < 0.4 and not small[2]
     assert large[0] == pytest.approx(0.56, abs=0.02) and large[1] < 5.0 and large[2]

@@ -186,7 +186,7 @@ def test_probabilities_that_are_no_numbers_are_not_right():
 
 
 def test_a_score_without_samples_gives_no_figure() -> None:
-    """Nothing judged is neither "healthy" nor 0 % right: it is left out of a status, a summary and a check."""
+    """An empty score is neither "healthy" nor 0 % right: it is left out of a status, a summary and a check."""
     board = build(get("first-look"))
     found = board.scores()["kalman"]
     assert found.samples == 0

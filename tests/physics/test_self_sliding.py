@@ -1,4 +1,4 @@
-"""Chapter 4: the self-sliding controller and what it was compared with, in its own examples."""
+"""Chapter 4: the self-sliding controller and its competitors, in its own examples."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def test_augmented_form_is_the_loop_of_the_equations():
     board = make({"device.id": "ch4", "controller": law})
     inject(board, stiffness=k - 1)
     trace = play(board, 1500)
-    # the sign of what is only rounding is nobody's: compare until the two take different sides of the surface
+    # the sign of a rounding error is arbitrary: compare until the two take different sides of the surface
     np.testing.assert_allclose(trace["plant.displacement"][:400], ys[:400], atol=1e-6)
     assert np.abs(trace["plant.displacement"] - ys).max() < 0.02
     assert [trace[f"self_sliding.gain.{name}"][-1] for name in ("r", "y", "e")] == pytest.approx(theta, abs=0.02)
@@ -277,7 +277,7 @@ def test_static_gains_cannot_move_damping():
 
 
 def test_noise_drives_the_gain_of_the_error_away_along_the_raw_regressor():
-    """w contains e, so -sgn(e) e is never positive: k_e falls at the mean of |e| for ever."""
+    """w contains e, so -sgn(e) e is never positive: k_e falls without end at the mean of |e|."""
     noisy = {"device.id": "ch4", "sensor.noise_um": 0.01}
     found = {}
     for form in ("printed", "augmented"):

@@ -1,4 +1,4 @@
-"""Self-tuning estimators of 5.3: against batch least squares, and what each reading makes of the seven steps."""
+"""Self-tuning estimators of 5.3: against batch least squares, and the result of each reading for the seven steps."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_estimate_is_the_weighted_batch_solution(forgetting, prefilter):
 
 
 def test_likelihood_is_the_distance_in_the_metric_of_the_information():
-    """(th - th_k)' eta^-1 (th - th_k) is what the costs over the same memory differ by."""
+    """(th - th_k)' eta^-1 (th - th_k) is the difference of the costs over the same memory."""
     board, trace = trace_of(300, 20, {**A, "forgetting": 0.95}, sensor__noise_um=0.05)
     covariance = np.zeros((4, 4))
     covariance[np.tril_indices(4)] = board.wiring.state("kalman").covariance
@@ -233,7 +233,7 @@ def test_without_a_drive_nothing_is_evidence(kind):
     do(board, {"set": {"reference.amplitude_v": 10.0}})
     driven = of_bank(play(board, 1000), "probability")
     do(board, {"set": {"reference.amplitude_v": 0.0}})
-    play(board, 600)  # 30 ms, some 50 times what the shuttle remembers
+    play(board, 600)  # 30 ms, some 50 times the memory of the shuttle
     still = of_bank(play(board, 2000), "probability")
     assert np.abs(driven - 1.0 / 6.0).max() > 0.1
     np.testing.assert_array_equal(still, still[:1].repeat(2000, axis=0))

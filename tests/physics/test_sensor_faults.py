@@ -15,7 +15,7 @@ SENSOR = ("sensor_noise", "sensor_bias", "sensor_dropout", "sensor_quantisation"
 
 
 def measured(fault: str, severity: float, ticks: int, **more):
-    """Return what is measured and what is true under one fault of a noiseless sensor."""
+    """Return the measured and the true signal under one fault of a noiseless sensor."""
     board = make({**SINE, **more.pop("values", {})})
     do(board, {"fault": fault, "severity": severity, **more})
     trace = play(board, ticks)
@@ -94,7 +94,7 @@ def test_hum_is_a_sine_of_the_mains():
 
 
 def test_they_meet_in_the_order_of_the_chain():
-    """Added before the converter; the coarser converter counts; what is lost is lost behind it."""
+    """Additions come before the converter; the coarser converter counts; samples are lost after it."""
     board = make({**SINE, "sensor.quantum_um": 0.01})
     for fault, severity in (("sensor_bias", 0.1), ("sensor_hum", 0.2), ("sensor_quantisation", 0.5)):
         do(board, {"fault": fault, "severity": severity})
@@ -135,7 +135,7 @@ def test_no_hypothesis_is_true_meanwhile(fault):
 
 
 def test_pid_follows_what_a_biased_sensor_says():
-    """With integral action the mean of what is measured is right, so that of the shuttle is off by the bias."""
+    """With integral action the mean of the measurement is right, so the mean of the shuttle is off by the bias."""
     board = make({"reference": {"kind": "constant", "amplitude_v": 5.0}, "controller.kind": "pid"})
     play(board, 4000)
     before = board.value("plant.displacement")

@@ -81,7 +81,7 @@ def test_unstable_poles_beyond_the_fold(x, volts, pole):
     p = packed(slaved())
     found = voltage_at(slaved_force(p, 0.0784), x, np.array([x, -3.0]), (5.0, -5.0))
     assert found is not None and found[1] == pytest.approx(-volts, rel=5e-3)
-    # the plant itself, held there and let go 1 nm beside it: the growth of the deviation
+    # the plant itself, held there and released 1 nm off: the growth of the deviation
     board = slaved(
         plant={"initial_displacement_um": x + 1e-3},
         reference={"kind": "constant", "amplitude_v": found[1]},
@@ -94,7 +94,7 @@ def test_unstable_poles_beyond_the_fold(x, volts, pole):
 
 
 def test_hard_fingers_are_followed_whatever_step_is_asked_for():
-    """Insulated ones that bounce off the stator under a held voltage, against an adaptive solver."""
+    """Insulated fingers that bounce off the stator under a held voltage, against an adaptive solver."""
     plant = {"contact_stiffness_n_m": 1e4, "step_us": 0.5, "ratio": 1.0, "short_on_contact": False}
     volts = {"kind": "constant", "amplitude_v": -4.5}
     rest = {"sample_rate_khz": 200, "guard.stop_on_contact": False, "device.bias_v": 3.0}

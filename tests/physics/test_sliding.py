@@ -229,7 +229,7 @@ def test_switching_with_bounds_follows_what_it_allows_for():
         return rms(tail(play(board, 30_000)))
 
     assert run(layer_um=0.01) < 0.02
-    assert run(layer_um=0.01, output_bound_v_um=0.2, reference_bound=0.0) > 0.2  # half of what the spring needs
+    assert run(layer_um=0.01, output_bound_v_um=0.2, reference_bound=0.0) > 0.2  # half of the voltage of the spring
     # in the layer the switching is a gain, and the error a share of it
     assert run(layer_um=0.2) == pytest.approx(2 * run(layer_um=0.1), rel=0.1)
 

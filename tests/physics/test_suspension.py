@@ -179,7 +179,7 @@ def test_static_displacement_under_faults(plant, fault, parameters, ratio):
     [("point_adhesion", 1.0, 1.459), ("point_adhesion", 2.9, 1.473), ("broken_truss", 1.0, 0.830)],
 )
 def test_effort_to_follow_the_healthy_device(fault, omega, ratio):
-    """|G_healthy/G_faulty| at a tone in krad/s: what a controller has to multiply the voltage by."""
+    """|G_healthy/G_faulty| at a tone in krad/s: the factor of the voltage that a controller needs."""
     sine = {"kind": "sine", "amplitude_v": 4.0, "frequency_hz": 500.0 * omega / np.pi}
     found = []
     for severity in (0.0, 1.0):

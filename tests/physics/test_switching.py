@@ -65,7 +65,7 @@ def test_nine_switches_among_controllers_that_ran_in_shadow():
     ],
 )
 def test_nine_switches_in_any_order(order, noise_um, rate_khz):
-    """What a PID leaves is 0.157 um at its peak on this device; nobody who takes over from it makes it worse."""
+    """The error of a PID is 0.157 um at its peak on this device; no controller that takes over makes it worse."""
     values = {"sensor.noise_um": noise_um, "sample_rate_khz": rate_khz, "seed": 5}
     found = takeovers(order[0], order[1:], values=values)
     assert found[:, 0].max() < 0.2

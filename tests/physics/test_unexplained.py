@@ -1,4 +1,4 @@
-"""What a bank can know by itself: that no hypothesis fits."""
+"""The self-knowledge of a bank: that no hypothesis fits."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ def test_the_banks_find_a_fault_of_their_list_on_any_device(device, rate, fault)
     told = {"hypotheses": WITH_GAIN}
     banks = {"kalman": {"kind": "mmae", **told}, "imm": {"kind": "imm", **told}, "lock_in": {"kind": "lock_in", **told}}
     board = bench(device, rate, 0.02, banks)
-    play(board, 20 * rate)  # 20 ms: at rest in the rhythm of the drive
+    play(board, 20 * rate)  # 20 ms: settled in the rhythm of the drive
     assert all(board.value(f"{name}.winner") == 0 for name in banks)
     inject(board, **FAULTS[fault])
     trace = play(board, 40 * rate)

@@ -1,4 +1,4 @@
-"""The voltage of an interval: within a tick of an analogue drive, and over the ticks of what runs every N."""
+"""The voltage of an interval: within a tick of an analogue drive, and over the ticks of a block that runs every N."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_effect_of_a_parabola_by_quadrature(zeta):
 
 
 def test_filters_of_a_voltage_follow_a_sine():
-    """1/(s + p)^2 and 1/(s + p) of a sine in closed form; a parabola leaves of it what is of fourth order."""
+    """1/(s + p)^2 and 1/(s + p) of a sine in closed form; a parabola leaves an error of fourth order."""
     pole, h, omega = 1.3, 0.1, 0.8
     two, one = driven_filter_of(pole, h, True), lag(pole, h, True)
     motion, lagged, ticks = Motion.zeros(), 0.0, 400
@@ -112,7 +112,8 @@ def test_a_true_model_explains_a_quiet_device_whatever_the_drive(kind, drive, ev
 
 
 def phasors(factors: tuple[float, float, float], h: float, every: int, drive: str, hz: float) -> tuple[complex, ...]:
-    """Phasor of the displacement of a device, and those of its forced motion by one interval and what that leaves."""
+    """Phasor of the displacement of a device, and phasors of its forced motion by one interval and of the remaining
+    error."""
     a, b = matrices(factors)
     turn = np.exp(2j * math.pi * hz * 1e-3 * h)
     if drive == "held":
@@ -126,7 +127,7 @@ def phasors(factors: tuple[float, float, float], h: float, every: int, drive: st
 
 
 def missed(name: str, h: float, every: int, drive: str, hz: float) -> float:
-    """Share of the response of a device that its difference equation misses, given what the nominal device weighs."""
+    """Share of the response of a device that its difference equation misses, with the weights of the nominal device."""
 
     def equation(factors: tuple[float, float, float]) -> np.ndarray:
         phi, gamma = model(factors, h * every)

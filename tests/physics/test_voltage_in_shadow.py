@@ -46,7 +46,7 @@ def test_the_auxiliary_error_of_an_mrac_in_shadow_in_closed_form():
     theta = [trace[f"mrac.gain.{name}"][-1] for name in ("r", "w1", "w2", "y")]
     turn = np.exp(1j * OMEGA * h)
     y = force / (k - m * OMEGA**2 + 1j * OMEGA * b)
-    # of a volt held over a sample, and of one that goes on as a sine
+    # of a volt held over a sample, and of a volt that continues as a sine
     plant = (np.array([[0, 1], [-k / m, -b / m]]), np.array([[0.0], [force / m]]), np.eye(2)[:1], np.zeros((1, 1)))
     a, g, c, *_ = cont2discrete(plant, h)
     held = (c @ np.linalg.solve(turn * np.eye(2) - a, g)).item()

@@ -35,7 +35,7 @@ def response(hz: float, dps: float) -> np.ndarray:
 
 
 def held(hz: float) -> complex:
-    """Return what a converter makes of a tone: weaker by sin(a)/a, later by a, half a sample."""
+    """Return the output of a converter for a tone: weaker by sin(a)/a, later by a, half a sample."""
     a = np.pi * hz / (1e3 * KHZ)
     return complex(np.sin(a) / a * np.exp(-1j * a))
 
@@ -43,7 +43,7 @@ def held(hz: float) -> complex:
 @pytest.mark.parametrize("axis", ["x", "y"])
 @pytest.mark.parametrize("drive", ["held", "analogue"])
 def test_tones_tell_the_frequency_response_of_both_axes(axis, drive):
-    """After 3 s, 15 times what a swing takes to fall by e, tones at and off the modes move both axes as they should."""
+    """After 3 s, 15 times the decay time of a swing, tones at and off the modes move both axes as they should."""
     tones = [1000.0, 2800.0, 2890.0, 3760.0, 5000.0]
     wave = {"kind": "multi_sine", "amplitude_v": 0.5, "tones": [{"frequency_hz": hz} for hz in tones]}
     axis_of = {"controllers.waveform_drive.axis": axis, GAIN: 0.04}
@@ -71,7 +71,7 @@ def test_tones_tell_the_frequency_response_of_both_axes(axis, drive):
     ids=lambda one: one["kind"],
 )
 def test_any_reference_is_a_force(waveform):
-    """The motion is that of the matrix exponential under g r(t), with r as the generator says."""
+    """The motion equals the matrix exponential under g r(t), with r from the generator."""
     trace = play(bench({**waveform, "amplitude_v": 2.0}, {GAIN: -0.25}), 3000)
     np.testing.assert_array_equal(trace["drive.x.force"], -0.25 * trace["waveform.voltage"])
     assert np.ptp(trace["drive.x.force"]) >= 0.5
@@ -82,7 +82,7 @@ def test_any_reference_is_a_force(waveform):
 def test_the_rate_is_read_on_the_swing_that_a_waveform_makes():
     """A tone off the mode by 0.3 Hz of 0.42: its swing lags by 35 degrees, and carries the rate all the same.
 
-    Under a forced drive, whose carrier is that of the force at resonance, the reading falls by the cosine of the lag.
+    Under a forced drive, whose carrier is the force at resonance, the reading falls by the cosine of the lag.
     """
     device = {"id": "gyro-c", "gyroscope": {"stiffness_xy_n_m": 0.0}}
     mass, damping, stiffness = 1.42, 7.4945e-3, 863.7569
@@ -117,7 +117,7 @@ def test_a_waveform_is_silent_unless_asked_for_and_wants_volts():
         bench({"kind": "sine", "amplitude_um": 1.0})
     assert (caught.value.field, caught.value.message) == (
         "waveform.amplitude_um",
-        "no voltage alone displaces this device at rest; give amplitude_v",
+        "no constant voltage alone displaces this device; give amplitude_v",
     )
     with pytest.raises(InputError, match="needs exactly one"):
         bench({"kind": "sine"})

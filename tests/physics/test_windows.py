@@ -1,4 +1,4 @@
-"""What is concluded from a window of residuals: lock-in, consistency, performance; against direct sums."""
+"""Conclusions from a window of residuals: lock-in, consistency, performance; against direct sums."""
 
 from __future__ import annotations
 
@@ -36,7 +36,8 @@ def tone_of(nu, width, hz=2000.0, dt=0.02):
 
 
 def explained(nu, width, hz, dt):
-    """What the best cosine and sine take off the squares of the last ``width`` rows: T is the test of that fit."""
+    """The reduction of the squares of the last ``width`` rows by the best cosine and sine: T is the test of that
+    fit."""
     turn = 2 * np.pi * hz * dt * 1e-3 * np.arange(len(nu))
     basis = np.column_stack([np.cos(turn), np.sin(turn)])
     rows = []
@@ -80,7 +81,7 @@ def test_a_window_need_not_hold_whole_periods(kind, hz, width, every):
 
 
 def test_another_tone_while_running_is_heard_in_a_window_of_its_own():
-    """What was heard before of another tone is no evidence of this one; the power stays."""
+    """Earlier residuals of another tone are no evidence of this one; the power stays."""
     board = make({**BENCH, "diagnosers": {"kalman": {"kind": "consistency", "window": 50}}})
     first = play(board, 310)
     do(board, {"set": {"reference.frequency_hz": 200.0}})
@@ -123,7 +124,7 @@ def test_glr_has_the_same_tone_and_its_threshold():
 
 
 def test_verdicts_are_those_of_the_two_tests():
-    """Against the definition, through a fault of the list, one that is not, and back."""
+    """Against the definition, through a fault of the list, a fault outside it, and back."""
     bank = {"kind": "consistency", "window": 50, "significance": 1e-5, "isolated_after": 50, "unknown_after": 200}
     board = make({**BENCH, "diagnosers": {"kalman": bank}})
     parts = [play(board, 400)]

@@ -1,4 +1,4 @@
-"""The audit of packages: a known weakness stops it, an index that knows nothing is told of."""
+"""The audit of packages: a known weakness stops it, an index without knowledge is reported."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 
 @pytest.fixture
 def audit(root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """The script, with what the commands it asks answer in the given order."""
+    """The script, with the answers of its commands in the given order."""
     spec = importlib.util.spec_from_file_location("audit_script", root / "scripts" / "audit.py")
     assert spec is not None and spec.loader is not None
     script = importlib.util.module_from_spec(spec)

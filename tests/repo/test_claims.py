@@ -1,4 +1,4 @@
-"""The list of claims is complete: what it names is there, and every scenario of the text is named."""
+"""The list of claims is complete: everything it names exists, and every scenario of the text is named."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scenarios.library import ids, library
 from tests.scenarios.test_library_rules import FIGURES, TABLES
 
 OF_THE_TEXT = ("ch1-", "ch2-", "ch3-", "ch4-", "ch5-", "ch6-", "app")
-COLUMNS = ["Where", "What it shows", "Scenario or page", "Result"]
+COLUMNS = ["Where", "Subject", "Scenario or page", "Result"]
 
 
 @pytest.fixture(scope="module")

@@ -27,7 +27,7 @@ def test_named_paths_exist(name: str, root: Path, documents: dict[str, str]) -> 
     missing = []
     for span in code_spans(documents[name]):
         top = span.split("/")[0]
-        if "/" in span and (new := PLACEHOLDER.search(span)):  # the folder of a new file is there
+        if "/" in span and (new := PLACEHOLDER.search(span)):  # the folder of a new file exists
             folder = span[: new.start()].rpartition("/")[0]
             if (root / top).is_dir() and not (root / folder).is_dir():
                 missing.append(span)
@@ -110,7 +110,7 @@ def test_documents_and_container_files_name_only_settings_that_exist(root: Path,
 
     texts = [*documents.values(), *((root / name).read_text() for name in ("Dockerfile", "compose.yaml"))]
     named = {name.lower() for text in texts for name in re.findall(rf"{PREFIX}(\w+)", text)}
-    # The cache of numba is needed before there are settings; the seed is that of the long suite.
+    # The cache of numba is needed before the settings exist; the seed belongs to the long suite.
     assert named <= {*Settings.model_fields, "kernel_cache", "test_seed"}
 
 

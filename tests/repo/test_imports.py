@@ -15,7 +15,7 @@ Graph = dict[str, set[str]]
 
 
 def module_of(path: Path, root: Path) -> str:
-    """Return the name of a file as a module; that of ``__init__.py`` is the package's."""
+    """Return the name of a file as a module; ``__init__.py`` has the package's name."""
     parts = path.relative_to(root).with_suffix("").parts
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 

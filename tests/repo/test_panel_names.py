@@ -1,4 +1,4 @@
-"""The panels and views that documents, sheets, lectures, tours and the page itself name are those of the page."""
+"""The panels and views in documents, sheets, lectures, tours and the page itself have the names of the page."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 FORMER = {"Bench", "Blind diagnosis", "Controllers", "Editor", "Locus", "Parameter sets", "Swept sine"}
-"""Names that panels had once; those of the others are names of panels or of views now."""
+"""Former names of panels; the other former names are names of panels or of views now."""
 ELSEWHERE = {"Bench", "Controllers", "Editor"}
 """Names of other things of the page too."""
 PLACES = ["*.md", "docs/*.md", "scenarios/sheets/*.md", "scenarios/lectures/*.toml", "server/**/*.py"]

@@ -1,4 +1,4 @@
-"""The shell scripts can be run, and the Dockerfile copies what is there."""
+"""The shell scripts can be run, and the Dockerfile copies only existing files."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ LEAVES_OUT = re.compile(
 
 
 def collected(path: Path) -> list[str]:
-    """Return the names of the tests of a file; those of a class follow its name."""
+    """Return the names of the tests of a file; tests of a class follow its name."""
     body = ast.parse(path.read_text()).body
     classes = [node for node in body if isinstance(node, ast.ClassDef) and node.name.startswith("Test")]
     return [f"{node.name}::{name}" for node in classes for name in _functions(node.body)] + _functions(body)

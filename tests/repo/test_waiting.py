@@ -1,4 +1,4 @@
-"""Tests wait for states and messages; only those of tests/wall_clock.txt wait for the clock of the machine."""
+"""Tests wait for states and messages; only the tests in tests/wall_clock.txt wait for the clock of the machine."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def is_turn(node: ast.AST) -> bool:
 
 
 def waits(path: Path) -> Iterator[str]:
-    """Name the functions and classes of a file that wait by the clock; what stands outside of them has no name."""
+    """Name the functions and classes of a file that wait by the clock; code outside of them has no name."""
     for part in ast.parse(path.read_text()).body:
         turns = {id(node.func) for node in ast.walk(part) if isinstance(node, ast.Call) and is_turn(node)}
         if any(is_wait(node) and id(node) not in turns for node in ast.walk(part)):

@@ -1,8 +1,8 @@
 """The bits of every library scenario, and of fifty benches put together at random.
 
-``digests.json`` keeps the scenarios of the benches and all digests, and a test holds what the code gives to them: a
-change that is not meant to change a bit changes none. When physics changes on purpose, renew the digests with ``make
-digests``, look at which ones the diff names, and say in CHANGELOG.md why each of them changed. ``make digests
+``digests.json`` keeps the scenarios of the benches and all digests, and a test compares the results of the code with
+them: a change that is not meant to change a bit changes none. When physics changes on purpose, renew the digests with
+``make digests``, look at which ones the diff names, and say in CHANGELOG.md why each of them changed. ``make digests
 ARGS=--draw`` also draws other benches.
 
 Runs do not depend on the machine: a test computes them again with `OLDER` libraries. Studies, whose figures numpy and
@@ -132,13 +132,13 @@ def draw_bench(number: int) -> dict[str, Any]:
 
 
 def kept() -> dict[str, Any]:
-    """Return what the file holds: ``library`` (digest by id) and ``benches`` (scenario and digest of each)."""
+    """Return the content of the file: ``library`` (digest by id) and ``benches`` (scenario and digest of each)."""
     found: dict[str, Any] = json.loads(FILE.read_text())
     return found
 
 
 def computed(benches: list[dict[str, Any]], *, studies: bool) -> dict[str, Any]:
-    """Return what the file should hold, computed anew, with or without the studies."""
+    """Return the expected content of the file, computed anew, with or without the studies."""
     chosen = [scenario for scenario in library() if studies or scenario.study is None]
     return {
         "library": {scenario.id: run(scenario).digest for scenario in chosen},
@@ -147,7 +147,7 @@ def computed(benches: list[dict[str, Any]], *, studies: bool) -> dict[str, Any]:
 
 
 def apart(*arguments: str, machine: dict[str, str] = SAME_EVERYWHERE) -> str:
-    """Run this file in a process whose libraries are told what machine they are on; return what it prints."""
+    """Run this file in a process whose libraries assume a fixed machine; return its output."""
     command = [sys.executable, "-W", "ignore", "-m", "tests.scenarios.digests", *arguments]
     told = subprocess.run(command, cwd=ROOT, env=os.environ | machine, capture_output=True, text=True, check=False)
     assert told.returncode == 0, told.stderr
@@ -155,7 +155,8 @@ def apart(*arguments: str, machine: dict[str, str] = SAME_EVERYWHERE) -> str:
 
 
 def main() -> None:
-    """Print what the file should hold, ``--runs`` without studies; ``--renew`` writes it, ``--draw`` other benches."""
+    """Print the expected content of the file, ``--runs`` without studies; ``--renew`` writes it, ``--draw`` other
+    benches."""
     draw, renew = "--draw" in sys.argv, "--renew" in sys.argv
     if renew:
         FILE.write_text(apart(*(["--draw"] if draw else [])))

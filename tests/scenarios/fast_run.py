@@ -1,7 +1,7 @@
 """Figures of a scenario at many seeds, without traces and reports: abreast as in a campaign.
 
-Left out besides is what another seed has found already, be it runs of a study or the pull-in of a device, and the trace
-of runs whose figures a read-out has gathered.
+Also left out are results that another seed has found already, be it runs of a study or the pull-in of a device, and the
+trace of runs whose figures a read-out has gathered.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def fast() -> Iterator[None]:
 
 
 def _once(function: Any) -> Any:
-    """Keep what was made for a seed: the runs of a study are those of seeds in a row."""
+    """Keep the results of a seed: the runs of a study have consecutive seeds."""
     kept: dict[Any, Any] = {}
 
     def once(board: Any, seed: int, *rest: Any, **options: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Every block of the catalogue is on a bench of the library: a scenario shows what it is for."""
+"""Every block of the catalogue is on a bench of the library: a scenario shows its use."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The word of an expectation and of a scenario: derived from what was measured and what was published."""
+"""The word of an expectation and of a scenario: derived from the measured and the published figure."""
 
 from __future__ import annotations
 
@@ -162,7 +162,7 @@ def test_a_fitted_field_is_found_wherever_it_is_kept_and_forgotten_when_it_goes(
     case = get("ch3-case1-aged-mass")
     other = with_values(case, {"controller.kind": "pid", "sensor.noise_um": 0.01})
     assert other.head.expect[0].fitted == case.head.expect[0].fitted
-    tuned = get("ch4-lcr-two-tone")  # its gain stays where gains of controllers that do not drive stand
+    tuned = get("ch4-lcr-two-tone")  # its gain stays in the table of controllers that do not drive
     assert with_values(tuned, {"controller.kind": "pid"}).head.expect[0].fitted == ["controller.adaptation_gain"]
     changed = with_values(case, {"reference.kind": "constant"})
     assert changed.head.expect[0].fitted == ["events.1.fault"]

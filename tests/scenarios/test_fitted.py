@@ -99,7 +99,7 @@ def family(path: str) -> str:
 
 
 def choices() -> list[Choice]:
-    """Return what the rows of the library name as fitted in their blocks."""
+    """Return the fields that rows of the library name as fitted in their blocks."""
     found = []
     for scenario in library():
         for row in scenario.head.expect:

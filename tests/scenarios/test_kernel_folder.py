@@ -1,4 +1,4 @@
-"""The folder of compiled kernels: what is used stays, what nobody uses goes."""
+"""The folder of compiled kernels: used kernels stay, unused kernels are deleted."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ def test_all_that_the_notes_claim_holds_on_a_real_run(name: str) -> None:
 
 
 def test_no_vote_is_answered_by_its_own_words() -> None:
-    """Neither the question nor what is shown and said before it names the right answer or its number."""
+    """Neither the question nor the picture and the words before it name the right answer or its number."""
     votes = [(cue, cue.vote) for name in lecture_ids() for cue in lecture(name).head.cues if cue.vote]
     assert votes
     for cue, vote in votes:
@@ -98,10 +98,10 @@ WRONG: list[tuple[list[str], str]] = [
     ([FIRST, 'scenario = "first-lok"'], "mine.cue 2.scenario: unknown scenario 'first-lok'"),
     ([FIRST, 'panels = ["lane"]'], "mine.cue 2.panels.0: must be one of"),
     ([FIRST, 'signals = ["plant.x"]'], "mine.cue 2.signals.0: this bench has no signal plant.x"),
-    ([FIRST, "from_ms = 1"], "mine.cue 2.from_ms: lies before 2 ms, where the cue before ends"),
+    ([FIRST, "from_ms = 1"], "mine.cue 2.from_ms: is before 2 ms, where the cue before ends"),
     ([FIRST, "until_ms = 1"], "mine.cue 2.until_ms: must be from 2 ms to"),
     ([FIRST, "seed = 3"], "mine.cue 2: seed and set go with scenario"),
-    ([FIRST, 'events = [{ at_ms = 1, heal = "all" }]'], "mine.cue 2.events.0: lies at 1 ms, outside the cue, 2 ms"),
+    ([FIRST, 'events = [{ at_ms = 1, heal = "all" }]'], "mine.cue 2.events.0: is at 1 ms, outside the cue, 2 ms"),
     ([FIRST, 'events = [{ at_ms = 2, fault = "mass", severity = 1 }]'], "mine.cue 2.events.0.fault: unknown"),
     ([FIRST, 'expect = [{ metric = "device.f0_hz" }]'], "mine.cue 2.expect.0: needs min, max, or value"),
     ([FIRST + "\nset = { reference = { frequency_hz = 0 } }"], "mine.cue 1"),

@@ -34,7 +34,7 @@ CITED = re.compile(r"(figure|equation|table)?s? ?\b((?:[1-6]|[AB])(?:\.\d+)+)", 
 
 
 def cited(source: str) -> list[tuple[str, str]]:
-    """Return what a source cites: what follows ``figures`` up to the next semicolon is figures, and so on."""
+    """Return the citations of a source: numbers after ``figures`` up to the next semicolon are figures, and so on."""
     found = []
     for part in source.split(";"):
         kind = "section"

@@ -127,7 +127,7 @@ WHERE: dict[str, dict[str, Any]] = {
     "regions.unacceptable_above": {"to": 1e-6},
     "regions.danger_above": {"to": 1e-6},
 }
-"""What must be so for a parameter to act, where it does not on a plain bench; ``own`` stands for its own table."""
+"""Conditions for a parameter to act, where it does not on a plain bench; ``own`` means its own table."""
 FAULTS: dict[str, dict[str, Any]] = {"debris.comb": {"conductive": True}}
 """Other parameters of a fault with which one of them acts."""
 

@@ -1,4 +1,4 @@
-"""Printed marks: what a scenario may say of a figure, where it is drawn, and what the library quotes."""
+"""Printed marks: their allowed content, their place, and the quotations of the library."""
 
 from __future__ import annotations
 

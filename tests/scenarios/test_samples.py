@@ -23,7 +23,7 @@ from scenarios.run import run
 
 SHORT = 200_000
 MOST_MB = 30
-"""What memory may grow by; the outputs of the longer run are 120 MB, those of its figures 80 MB."""
+"""Limit of the growth of memory; the outputs of the longer run are 120 MB, the outputs of its figures 80 MB."""
 PEAK = """
 import json, re, sys
 from scenarios import samples

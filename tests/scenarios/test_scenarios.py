@@ -1,4 +1,4 @@
-"""Scenarios: the library holds what it promises, every field can be reached, bad input is named."""
+"""Scenarios: the library keeps its promises, every field can be reached, bad input is named."""
 
 from __future__ import annotations
 
@@ -150,7 +150,7 @@ def other_value(parameter: registry.ParameterCard) -> Any:
 
 
 AXES: dict[str, Any] = {"device": {"id": "gyro-a"}, "plant": {"model": "gyroscope_pair"}}
-"""What a bench needs for blocks of axes."""
+"""Settings of a bench for blocks of axes."""
 
 
 def tables(family: str) -> Iterator[tuple[str, Any, dict[str, Any]]]:

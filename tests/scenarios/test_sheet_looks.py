@@ -1,4 +1,4 @@
-"""What a step measures over a window, when it holds, and what answers earn one after another."""
+"""Measurements of a step over a window, the condition of its end, and the points of answers one after another."""
 
 from __future__ import annotations
 

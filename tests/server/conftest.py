@@ -52,7 +52,7 @@ class Stream:
         return [event for m in self.messages if m["type"] == "events" for event in m["events"]]
 
     def until_event(self, timeout: float = HANGS_S, **fields: Any) -> dict[str, Any]:
-        """Return the first event with these fields: one that has come already, or else one that comes."""
+        """Return the first event with these fields: an event that has come already, or the next one."""
 
         def found() -> list[dict[str, Any]]:
             return [event for event in self.events if fields.items() <= event.items()]
@@ -62,7 +62,7 @@ class Stream:
         return found()[0]
 
     def step(self, timeout: float = HANGS_S) -> dict[str, Any] | Frame:
-        """Take one message; acknowledge frames unless told not to."""
+        """Take one message; acknowledge frames unless disabled."""
         data = self.connection.recv(timeout=timeout)
         if isinstance(data, bytes):
             frame = decode(data)
@@ -171,7 +171,7 @@ class Live:
         return found
 
     def show(self) -> None:
-        """Let the server carry out what it was asked, and show it on all streams, without a wait for the frame rate."""
+        """Make the server carry out its requests, and show them on all streams, without a wait for the frame rate."""
 
         async def shown() -> None:
             await self.service.engine.call(lambda: None)
@@ -313,5 +313,5 @@ def close_benches(live: Live) -> None:
 
 @pytest.fixture
 def serve(tmp_path: Path) -> Any:
-    """A server of one's own, with other settings: ``with serve(max_benches=2) as live``."""
+    """A separate server, with other settings: ``with serve(max_benches=2) as live``."""
     return lambda **fields: serving(fields.pop("folder", tmp_path), **fields)

@@ -1,7 +1,7 @@
 """Serves by forking, one server for each line read: all is loaded once, so that a test can start and kill many.
 
 A line is a JSON object: settings of the server, ``largest_file`` in bytes if the disk is to refuse more, and ``log``, a
-file for its log. Each server prints its process id, then what every server prints.
+file for its log. Each server prints its process id, then the output of every server.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ def main() -> None:
         os.setsid()
         print(os.getpid(), flush=True)
         given = json.loads(line)
-        os.umask(0o022)  # what it keeps is to be private for people with the usual mask, too
+        os.umask(0o022)  # its files are to be private for users with the usual mask, too
         if log := given.pop("log", None):
             os.dup2(os.open(log, os.O_WRONLY | os.O_CREAT), 2)
         largest = given.pop("largest_file", None)

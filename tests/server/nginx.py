@@ -36,7 +36,7 @@ http {{
 
 
 def site(folder: Path, port: int, services: dict[str, int]) -> str:
-    """Return what the document says, with the ports and paths of here: the port of each service by its prefix."""
+    """Return the text of the document, with the ports and paths of the test: the port of each service by its prefix."""
     whole, below = re.findall(r"```nginx\n(.*?)```", (ROOT / "docs" / "behind-a-proxy.md").read_text(), re.S)
     if "" not in services:
         blocks = [below.replace("/bench/", f"{prefix}/").replace("8000", str(to)) for prefix, to in services.items()]

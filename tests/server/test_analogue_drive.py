@@ -1,4 +1,4 @@
-"""An analogue drive over REST: no feedback beside it, and what is lost by it stands in the run."""
+"""An analogue drive over REST: no feedback with it, and its loss is in the run."""
 
 from __future__ import annotations
 

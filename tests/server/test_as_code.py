@@ -1,4 +1,4 @@
-"""Commands that the page copies from its log, read by those who are given them: shell, server, command line, Python."""
+"""Commands that the page copies from its log, read by their receivers: shell, server, command line, Python."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def logged(live: Live, bench: str) -> dict[str, Any]:
 
 
 def curl(live: Live, text: str) -> Any:
-    """Send what a shell would let curl send."""
+    """Send the data that a shell would let curl send."""
     command, *words = shlex.split(text.replace("$COMBBENCH_TOKEN", TOKEN))
     assert command == "curl" and words[0::2][:3] == ["-H", "-H", "-d"] and len(words) == 7
     headers = dict(header.split(": ", 1) for header in (words[1], words[3]))

@@ -12,7 +12,7 @@ from websockets.exceptions import ConnectionClosed
 
 
 def check(answer: Any, status: int, code: str | None, *words: str) -> None:
-    """One error in the one shape, in one line that says what is wrong."""
+    """One error in the one shape, in one line that names the fault."""
     assert answer.status_code == status, answer.text
     assert set(answer.json()) == {"error"}
     error = answer.json()["error"]

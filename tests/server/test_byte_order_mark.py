@@ -49,7 +49,7 @@ COMMANDS = {
 
 
 def said(folder: Path, mark: str, command: list[str], monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Return what a command says of files that begin with a mark, without the times that it measures."""
+    """Return the output of a command for files that begin with a mark, without the times that it measures."""
     folder.mkdir()
     monkeypatch.chdir(folder)
     for name, text in FILES.items():

@@ -1,4 +1,4 @@
-"""Claims of a live bench: what is measured over what has run is what a headless run gives, to the last bit."""
+"""Claims of a live bench: the measured figures equal the figures of a headless run, to the last bit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The address students open: found without asking anybody, printed with its QR code."""
+"""The address for students: found without a request, printed with its QR code."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ LAPTOP = {
     "tun0": (TUNNEL, ["10.8.0.2"]),
     "usb0": (UP, ["169.254.3.4"]),
 }
-"""It has a network, one that is unplugged, a tunnel, one for containers, and one that gave it no address."""
+"""It has a network, an unplugged network, a tunnel, a network for containers, and a network without an address."""
 
 
 @pytest.mark.parametrize("leaving", ["192.168.1.5", "172.17.0.1"])
@@ -109,7 +109,7 @@ def test_no_way_out_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def modules(drawn: str) -> list[list[int]]:
-    """Read what a terminal shows: of each character the upper and the lower half, 1 where it is dark."""
+    """Read the output of a terminal: of each character the upper and the lower half, 1 where it is dark."""
     halves = {"\u2588": (0, 0), "\u2580": (0, 1), "\u2584": (1, 0), " ": (1, 1)}
     rows: list[list[int]] = []
     for line in drawn.splitlines():
@@ -226,7 +226,7 @@ def pester(host: str, port: int, secrets: dict[str, str]) -> None:
 def test_a_class_on_one_address_leaves_the_teacher_theirs_and_logs_no_secret(tmp_path: Path) -> None:
     """The token is accepted from loopback alone, so the service listens there too, on the same port.
 
-    Neither token nor code is in the log, at the level that logs most, whoever sends them.
+    Neither token nor code is in the log, at the most detailed level, for any sender.
     """
     found = [str(address) for address in network_addresses() if address.version == 4]
     if not found:

@@ -1,4 +1,4 @@
-"""A bench that was closed takes no command, neither a new one nor one whose turn comes later."""
+"""A bench that was closed takes no command, neither a new command nor a waiting one."""
 
 from __future__ import annotations
 

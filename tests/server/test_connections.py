@@ -1,4 +1,4 @@
-"""Connections that nobody has asked for: bounded, closed in time, and in nobody's way."""
+"""Unrequested connections: bounded, closed in time, and harmless."""
 
 from __future__ import annotations
 
@@ -39,7 +39,8 @@ def is_closed(line: socket.socket) -> bool:
 
 
 def test_idle_connections_leave_room_for_requests(serve: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Room is for 257 here; those that have waited longest make way, those with a request under way do not."""
+    """Room is for 257 here; connections that have waited longest are closed, connections with an active request are
+    not."""
     monkeypatch.setattr(connection, "HEAD_S", 600.0)  # none ends by its time
     with serve(max_clients=1) as live, opened(live.address, 300) as lines:
         for _ in range(3):

@@ -56,7 +56,7 @@ def test_figures_follow_the_drawing(live):
 
 
 def test_pull_in_is_the_reference_figure_and_goes_with_the_root_of_the_force(live):
-    """V^2 dC/dx is the same at pull-in for the same beams: a device without a drawing has those of LCR-350."""
+    """V^2 dC/dx is the same at pull-in for the same beams: a device without a drawing has the beams of LCR-350."""
     assert figures(live, device={"id": "lcr-350"})["pull_in_v"]["value"] == pytest.approx(28.08, rel=5e-3)
     drawn, ch3 = (figures(live, device={"id": name}) for name in ("lcr-350", "ch3"))
     ratio = ch3["pull_in_v"]["value"] / drawn["pull_in_v"]["value"]
@@ -90,7 +90,7 @@ def test_bode_is_the_oscillator_and_the_band_of_given_values_is_its_extreme_devi
     h = k / (k - m * w**2 + 1j * b * w)
     assert found["magnitude_db"]["nominal"] == pytest.approx(20 * np.log10(abs(h)), abs=1e-9)
     assert found["phase_deg"]["nominal"] == pytest.approx(np.degrees(np.angle(h)), abs=1e-9)
-    # at rest only k counts: 1 / 0.95 and 1 / 1.05
+    # statically only k counts: 1 / 0.95 and 1 / 1.05
     assert found["magnitude_db"]["high"][0] == pytest.approx(-20 * math.log10(0.95), abs=0.02)
     assert found["magnitude_db"]["low"][0] == pytest.approx(-20 * math.log10(1.05), abs=0.02)
 
@@ -99,7 +99,8 @@ def test_the_band_of_a_drawing_is_that_of_devices_drawn_from_the_process(live):
     found = ask(live, "bode", device={"id": "lcr-350"}, start_hz=1.0, stop_hz=200_000.0, points=60, seed=4)
     db = {name: np.array(values) for name, values in found["magnitude_db"].items()}
     assert np.all(db["low"] < db["nominal"]) and np.all(db["nominal"] < db["high"])
-    # far above resonance x / v = F / m w^2: thickness cancels, so the band is narrower than at rest, where k varies
+    # far above resonance x / v = F / m w^2: thickness cancels, so the band is narrower than the static band, where k
+    # varies
     width = db["high"] - db["low"]
     assert width[-1] < 0.5 * width[0]
     again = ask(live, "bode", device={"id": "lcr-350"}, start_hz=1.0, stop_hz=200_000.0, points=60, seed=4)
@@ -155,7 +156,7 @@ def test_a_drawn_gyroscope_follows_its_drawing(live):
 
 @pytest.mark.parametrize("stators", [{"bias_v": 0}, {"opposite_bias_v": 10.0}])
 def test_without_a_force_the_response_is_that_of_the_mechanics(live, stators):
-    """Displacement per volt over that at rest does not depend on the bias: its limit is the same at none."""
+    """Displacement per volt over the static value does not depend on the bias: its limit is the same at none."""
     found, usual = (ask(live, "bode", device={"id": "lcr-350", **own}) for own in (stators, {}))
     assert found["magnitude_db"] == usual["magnitude_db"] and found["static_gain_um_per_v"] == 0.0
     assert usual["static_gain_um_per_v"] != 0.0

@@ -1,4 +1,4 @@
-"""What a live bench tells of its diagnosers: one sample explained, aliases, operations."""
+"""Data of a live bench about its diagnosers: one sample explained, aliases, operations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tutorials do what they say: every block is run as it stands, and prints what is printed beneath it."""
+"""The tutorials are right: every block is run unchanged, and its output equals the output printed beneath it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def blocks(text: str) -> list[tuple[str, str | None]]:
-    """Code, and what it should print where that is given; ``...`` stands for anything."""
+    """Code, and its expected output where that is given; ``...`` matches any text."""
     found = re.findall(r"```python\n(.*?)```(?:\n\n```text\n(.*?)```)?", text, re.S)
     return [(code, said or None) for code, said in found]
 

@@ -23,7 +23,7 @@ PLACES = {
     "rate": ("rate", "kind"),
     "readout": ("readouts.mine", "kind"),
 }
-"""Where the blocks of a family stand in a scenario, and what chooses one."""
+"""The place of the blocks of a family in a scenario, and the field that chooses one."""
 
 
 def parameters() -> list[tuple[str, str, str, bool]]:

@@ -1,4 +1,4 @@
-"""Requests nobody thought of, made up from the OpenAPI document: never a failure of the server, one error shape.
+"""Unexpected requests, generated from the OpenAPI document: never a failure of the server, one error shape.
 
 Schemathesis makes them, one by one for each operation and in sequences that follow what earlier answers gave. Names a
 guess would never hit (of scenarios, faults, benches) are put in now and then, so that requests get beyond the door.
@@ -71,7 +71,7 @@ EASY = settings(deadline=None, derandomize=True, database=None, suppress_health_
 
 @pytest.fixture
 def target(tmp_path: Path) -> Iterator[Live]:
-    """A server of its own with small limits: what is made up here is not to keep the machine busy."""
+    """A server of its own with small limits: generated requests are not to keep the machine busy."""
     small = {"max_run_ticks": 5000, "max_sweep_runs": 10, "max_recording_ticks": 5000, "history_ticks": 2000}
     with serving(tmp_path, max_benches=16, **small) as live:
         yield live
@@ -133,7 +133,7 @@ def api(target: Live, things: dict[str, str]) -> Any:
         return body
 
     def there(context: Any, parameters: Any) -> Any:
-        """Name what is there, two times in three; deleting it is left to the sequences."""
+        """Name an existing object, two times in three; deleting it is left to the sequences."""
         if (
             not parameters
             or context.operation.method == "delete"
@@ -166,7 +166,7 @@ def accepted(operation: Any, examples: int) -> int:
 @pytest.mark.parametrize("examples", [1, pytest.param(8, marks=pytest.mark.long)])
 def test_no_request_brings_a_failure(api: Any, examples: int) -> None:
     operations = [found.ok() for found in api.get_all_operations()]
-    # what takes things away or hides them comes last, so that the others find them
+    # requests that remove or hide objects come last, so that the others find them
     last = ("/remove", "/blind", "/games")
     operations.sort(key=lambda one: one.method == "delete" or any(name in one.path for name in last))
     counts = {operation.label: accepted(operation, examples) for operation in operations}
@@ -179,8 +179,8 @@ def test_no_request_brings_a_failure(api: Any, examples: int) -> None:
 def sequences(api: Any, least: int, first_seed: int) -> None:
     """Ask at least so many requests in sequences.
 
-    What a server answers depends on what it has, so the maker of sequences may find itself contradicted and stop. It is
-    then started anew; failures are collected here, where no contradiction can hide them.
+    The answers of a server depend on its objects, so the maker of sequences may find itself contradicted and stop. It
+    is then started anew; failures are collected here, where no contradiction can hide them.
     """
     asked: list[int] = []
     failures: list[FailureGroup] = []

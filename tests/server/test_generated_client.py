@@ -1,4 +1,4 @@
-"""A client that another program generates from the OpenAPI document does what a script needs."""
+"""A client that another program generates from the OpenAPI document serves a script."""
 
 from __future__ import annotations
 

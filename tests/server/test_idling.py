@@ -1,4 +1,4 @@
-"""Benches that nobody needs are let go, and come back as they were; the tests hold the clock."""
+"""Unused benches are closed, and come back unchanged; the tests hold the clock."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from tests.server.conftest import Live
 
 
 class Clock:
-    """A clock that moves when it is told to."""
+    """A clock that moves on command."""
 
     def __init__(self, live: Live) -> None:
         self.now, self._live = 0.0, live
         live.service.idling.clock = lambda: self.now
 
     def pass_minutes(self, minutes: float) -> set[str]:
-        """Let time pass and the server look at its benches; return those that are left."""
+        """Pass time and make the server check its benches; return the remaining benches."""
         self.look()
         self.now += 60.0 * minutes
         return self.look()
@@ -61,10 +61,10 @@ def test_a_bench_that_nobody_needs_goes_and_comes_back_as_it_was(live: Live, clo
         assert back[field] == before[field], field
     assert back["opened"]["same_bits"] and back["opened"]["link"] is None
     assert live.http.get(f"/api/v1/benches/{bench}/digest").json() == digest
-    assert reopen(live, bench).json()["id"] == bench  # it is there: nothing more is done
+    assert reopen(live, bench).json()["id"] == bench  # it is open: nothing more is done
     assert len(live.http.get("/api/v1/benches").json()["benches"]) == 1
     live.http.delete(f"/api/v1/benches/{bench}")
-    assert reopen(live, bench).status_code == 404  # closed by somebody: it does not come back
+    assert reopen(live, bench).status_code == 404  # closed by a user: it does not come back
 
 
 def test_what_is_needed_stays(live: Live, clock: Clock) -> None:

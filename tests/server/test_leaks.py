@@ -13,7 +13,7 @@ from tests.server.conftest import serving
 from tests.server.people.group import join, open_class
 
 MANY = pytest.param(50, 8, marks=[pytest.mark.long, pytest.mark.timeout(900)])
-"""Starts, and those that may still load what stays, such as modules and kernels."""
+"""Starts, and starts that may still load permanent objects, such as modules and kernels."""
 
 
 @pytest.mark.parametrize(("starts", "first"), [(3, 1), MANY])
@@ -38,7 +38,7 @@ def test_starts_leave_nothing_behind(tmp_path: Path, starts: int, first: int) ->
         memory.append(process.memory_info().rss / 1e6)
     assert max(files[first:]) - files[first] <= 2, files
     assert max(threads[first:]) <= threads[first], threads
-    # what a start leaves, and not what the allocator keeps for the next one
+    # the remains of a start, without the reserve of the allocator for the next one
     if starts < 50:  # one start may need more, and the next ones no more than that
         return
     grown = sum(memory[-5:]) / 5 - sum(memory[first : first + 5]) / 5

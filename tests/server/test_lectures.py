@@ -36,12 +36,12 @@ def test_a_cue_is_the_same_bits_forwards_and_back_in_one_bench(live: Any) -> Non
     bench = first["bench"]["id"]
     assert first["bench"]["state"] == "paused" and digest(live, bench) == (first["tick"], first["digest"])
     forward = [first] + [put(live, "ch5-diagnosis", number, bench) for number in (5, 6)]
-    assert live.command(bench, fault="damping", severity=0.5).status_code == 200  # somebody tries something
+    assert live.command(bench, fault="damping", severity=0.5).status_code == 200  # a user changes the bench
     live.command(bench, "pause")
     back = [put(live, "ch5-diagnosis", number, bench) for number in (6, 5, 4)]
     assert [one["bench"]["id"] for one in forward + back] == [bench] * 6
     assert [one["digest"] for one in forward] == [one["digest"] for one in reversed(back)]
-    assert len({one["digest"] for one in forward}) == 2  # cue 5 goes on from where cue 4 stands
+    assert len({one["digest"] for one in forward}) == 2  # cue 5 continues from the end of cue 4
     assert digest(live, bench) == (first["tick"], first["digest"])
     live.http.delete(f"/api/v1/benches/{bench}")
 

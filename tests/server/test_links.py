@@ -1,4 +1,4 @@
-"""A link is the experiment: the same bits again, whoever opens it and whenever."""
+"""A link is the experiment: the same bits again, for any user at any time."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LAYOUT = {"grid": {"root": {"data": []}}, "panels": {"motion": {"params": {"curs
 
 
 def worked_on(live: Any, ticks: int = 150, **fields: Any) -> dict[str, Any]:
-    """Return a bench that stands after a long story, some of it still to come."""
+    """Return a paused bench after a long story, some of it still to come."""
     later = {"fault": "drive_gain", "severity": -0.2, "at_sample": 400}
     bench: dict[str, Any] = live.bench({**RICH, "schema": 1, "id": "story", "events": [*STORY, later]}, **fields)
     live.command(bench["id"], "step", ticks=ticks)

@@ -1,4 +1,4 @@
-"""Live benches: exact bits whoever watches, honest pacing, commands at tick edges."""
+"""Live benches: exact bits with any watchers, true pacing, commands at tick edges."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def until_it_stands(live: Any, bench_id: str) -> dict[str, Any]:
 
 
 def test_live_with_watchers_and_headless_give_the_same_bits(live: Any) -> None:
-    """Three watchers, one that stalls, a snapshot in the middle: the digest is that of the headless run."""
+    """Three watchers, one that stalls, a snapshot in the middle: the digest equals the digest of the headless run."""
     expected = run(get("ch5-seven-step"))
     bench = live.bench(time_scale=0.1, paused=True)
     key, names = bench["id"], [signal["name"] for signal in bench["signals"]][:12]
@@ -105,7 +105,7 @@ def test_time_runs_at_its_scale(on_the_wall: Any, scale: float) -> None:
             status = stream.until_type("status")
         device_s = (status["tick"] - first["tick"]) * bench["dt_ms"] * 1e-3
         wall_s = time.perf_counter() - began
-        # On a busy machine time may be given up, but then it is counted: nothing is slow in silence.
+        # On a busy machine time may be dropped, but then it is counted: nothing is slow without notice.
         given_up_s = (status["given_up_ms"] - first["given_up_ms"]) * 1e-3
         assert device_s / scale + given_up_s == pytest.approx(wall_s, rel=0.12)
         if given_up_s == 0.0:

@@ -1,4 +1,4 @@
-"""Metrics and health: what an operator sees."""
+"""Metrics and health: the view of an operator."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Names that people choose leave the house in many formats; each is held to the rule of those who read it."""
+"""Chosen names leave the server in many formats; each follows the rule of its readers."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def strict_rows(text: str) -> list[list[str]]:
 
 
 class Tags(HTMLParser):
-    """The tags of a page, and what is said between them."""
+    """The tags of a page, and the text between them."""
 
     def __init__(self, text: str) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""The notebooks run from top to bottom in a kernel of their own, and print what they promise."""
+"""The notebooks run from top to bottom in a kernel of their own, and print the promised output."""
 
 from __future__ import annotations
 

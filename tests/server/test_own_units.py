@@ -1,4 +1,4 @@
-"""Units of one's own over the network: whose scenarios may carry them, live and as runs, the same bits everywhere."""
+"""User units over the network: the scenarios that may carry them, live and as runs, the same bits everywhere."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Places of the page: who may open each, which of them exist, and what a path that is none says."""
+"""Places of the page: the roles that may open each, their existence, and the answer to an unknown path."""
 
 from __future__ import annotations
 

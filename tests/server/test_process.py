@@ -1,4 +1,4 @@
-"""The service as a process: what it prints, how it ends, what a kill leaves."""
+"""The service as a process: its output, its end, the remains after a kill."""
 
 from __future__ import annotations
 
@@ -215,7 +215,7 @@ def test_a_kill_loses_nothing_that_was_written(loaded: Forks, tmp_path: Path) ->
 
 
 def test_it_does_not_start_with_wrong_settings(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """Each is told in one line. In `test_a_port_that_is_taken_is_told_in_one_line` a process says so."""
+    """Each is reported in one line. In `test_a_port_that_is_taken_is_told_in_one_line` a process prints it."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(logs, "configure", lambda _: None)
     wrong: list[tuple[list[str], dict[str, str], list[str]]] = [
@@ -242,7 +242,7 @@ def test_a_port_that_is_taken_is_told_in_one_line(tmp_path: Path) -> None:
 
 
 def test_a_data_folder_serves_one_server_until_that_has_ended(loaded: Forks, tmp_path: Path) -> None:
-    """The second one touches nothing: the recording of the first goes on. A killed one leaves the folder free."""
+    """The second server touches nothing: the recording of the first continues. A killed one leaves the folder free."""
     data = tmp_path / "data"
     with loaded.serve(data, figures=False, run_workers=0) as served:
         bench = served.http.post("/api/v1/benches", json={"scenario": "first-look"}).json()

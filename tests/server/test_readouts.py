@@ -1,4 +1,4 @@
-"""The read-out of a live gyroscope: what the route tells is what its signals say."""
+"""The read-out of a live gyroscope: the route agrees with its signals."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def test_the_record_so_far_in_deg_h_with_what_it_tells(live):
     found = readout(live, bench).json()
     assert found["tick"] == 600_000 and found["record_s"] == pytest.approx(4.0)
     octaves = found["octaves"]
-    # two means of 1.28 s lie within 4 s, two of 2.56 s do not
+    # two means of 1.28 s fit into 4 s, two of 2.56 s do not
     assert [octave["tau_s"] for octave in octaves] == pytest.approx([0.005 * 2**j for j in range(9)])
     assert [octave["pairs"] for octave in octaves][:2] == [800 - 1, 800 - 3]
 

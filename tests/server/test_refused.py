@@ -1,6 +1,6 @@
-"""What is refused has not happened: each database call of each door fails once, and all is as before.
+"""A refused request has no effect: each database call of each door fails once, and all is as before.
 
-All is what the server has in memory, and what is on its disk.
+All means the memory of the server, and its disk.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Settings: who wins, what is refused, what is told."""
+"""Settings: their priority, refused values, reported values."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ LONG: dict[str, Any] = {"set": {"events": [], "samples": 10_000_000}, "time_scal
 
 @pytest.fixture
 def live(serve: Any) -> Iterator[Live]:
-    """A server of one's own: no other test should meet a trip."""
+    """A separate server: no other test should meet a trip."""
     with serve(run_workers=0, clock="machine") as found:
         yield found
 
@@ -146,7 +146,7 @@ def test_a_dead_thread_is_replaced_and_its_benches_are_safe(live: Live) -> None:
 
 
 def stick(live: Live, bench: str) -> Callable[[], None]:
-    """Let the next slice of a bench hang; return what lets it go on."""
+    """Let the next slice of a bench hang; return the function that releases it."""
     let_go, board = threading.Event(), live.service.benches.get(bench).board
     real = board.advance
 

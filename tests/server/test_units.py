@@ -1,4 +1,4 @@
-"""The doors of units: what one may begin with, the check as one types, the folder of the server."""
+"""The doors of units: texts for a start, the check during typing, the folder of the server."""
 
 from __future__ import annotations
 

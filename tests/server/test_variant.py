@@ -23,7 +23,7 @@ def test_a_variant_has_the_live_changes_and_meets_the_same_noise(live: Any) -> N
     assert made["title"] == bench["title"] and made["seed"] == bench["seed"]
     assert made["parameters"]["sensors"]["ideal"]["noise_um"] == 0.07
     assert made["parameters"]["diagnosers"]["kalman"]["assumed_noise_scale"] == 3.0
-    assert made["faults"] == [] and len(made["pending"]) == 1  # what happened is not repeated, the story is
+    assert made["faults"] == [] and len(made["pending"]) == 1  # past commands are not repeated, the story is
 
     live.command(made["id"], fault="added_mass", severity=0.1)
     live.command(made["id"], "step", ticks=100)

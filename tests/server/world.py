@@ -1,4 +1,4 @@
-"""A server with what a test needs of a class, and all that it knows and has on its disk."""
+"""A server with a class for a test, and all its memory and disk."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ ASKED = (
 
 @dataclass
 class World:
-    """A server with what a case needs; what a case makes goes with it."""
+    """A server for a case; the objects of a case go with it."""
 
     live: Live
     groups: list[dict[str, Any]] = field(default_factory=list)
@@ -94,7 +94,7 @@ class World:
         service = self.live.service
 
         async def memory() -> dict[str, Any]:
-            await service.database.run(lambda _: None)  # behind what is written later
+            await service.database.run(lambda _: None)  # after later writes
             people, benches, works = service.people, service.benches.all(), service.sheets._works._all
             return {
                 "people": {one.id: one.name for one in people._by_hash.values()},
@@ -132,7 +132,7 @@ class World:
 
 
 class Injector:
-    """Fails one database call, counted from the moment it is told to."""
+    """Fails one database call, counted from a given moment."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.left, self.has_failed = -1, False

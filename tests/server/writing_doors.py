@@ -1,4 +1,4 @@
-"""How each door that writes is asked so that it does what it is for."""
+"""A successful request for each door that writes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ CASES: dict[tuple[str, str], Callable[[World], Asked]] = {}
 
 
 def case(method: str, path: str) -> Any:
-    """Say how a door is asked, so that it would do what it is for."""
+    """Return a request with which a door would succeed."""
 
     def put(made: Callable[[World], Asked]) -> Callable[[World], Asked]:
         CASES[method, path] = made
@@ -140,7 +140,7 @@ def _(w: World) -> Asked:
 def _(w: World) -> Asked:
     service, bench = w.live.service, w.bench()
     w.live.on_loop(service.reopening._let_go(service.benches.get(bench)))
-    if service.benches.find(bench) is not None:  # nobody needs it from now on
+    if service.benches.find(bench) is not None:  # it is unused from now on
         service.idling._seen[bench], service.idling._patience_s = -1e9, 1.0
         w.live.on_loop(service.reopening._let_go(service.benches.get(bench)))
         service.idling._patience_s = 60.0 * service.settings.idle_minutes
@@ -188,7 +188,7 @@ def _(w: World) -> Asked:
 
 
 def at_step(word: str, text: str, body: Any) -> None:
-    """Say how somebody does something at a step."""
+    """Return a request of a student at a step."""
 
     def made(w: World) -> Asked:
         ada = w.student()
@@ -209,7 +209,7 @@ def _(w: World) -> Asked:
 
 
 def at_game(word: str, body: dict[str, Any]) -> None:
-    """Say how somebody does something at a game."""
+    """Return a request of a player at a game."""
 
     def made(w: World) -> Asked:
         ada = w.student()
@@ -306,7 +306,7 @@ AFTER_ALL: dict[tuple[str, str], Callable[[Live, dict[str, str]], bool]] = {
     ("DELETE", f"{API}/sweeps/{{sweep_id}}"): lambda live, ids: _has_ended(live, f"sweeps/{ids['sweep_id']}"),
     ("POST", f"{API}/gallery/run"): lambda live, _: len(live.http.get(f"{API}/runs").json()["runs"]) == 1,
 }
-"""Doors that do something, then look at what has become of it: if that look fails, all of it is done."""
+"""Doors that act, then read the result: if that read fails, all of the action is done."""
 
 
 def _has_ended(live: Live, path: str) -> bool:

@@ -65,7 +65,7 @@ async function openBench(page: Page, server: LabServer, set: object = {}): Promi
   await expect(page.getByTestId("bench-state")).toHaveText("running");
 }
 
-/** The same with an empty editor beside it. */
+/** The same with an empty editor. */
 async function openEditor(page: Page, server: LabServer): Promise<void> {
   await openBench(page, server);
   await page.keyboard.press("o");

@@ -38,7 +38,7 @@ test("an injected fault is found and explained, the delay is printed, and healin
   await expect(page.getByText("The device is healthy")).toBeVisible();
 });
 
-test("a fault is set exactly and waits for its moment; a fault that no hypothesis describes is called so", async ({
+test("a fault is set exactly and waits for its moment; a fault outside the hypotheses is marked as such", async ({
   page,
   server,
   openBench,

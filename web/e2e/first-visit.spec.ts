@@ -14,7 +14,7 @@ const LATER = [
   "healed",
 ];
 
-test("a first visit opens a bench that runs, ticks off what was tried, and shows the seven steps at a press", async ({
+test("a first visit opens a running bench, ticks off the tried actions, and shows the seven steps at a press", async ({
   page,
   server,
 }) => {

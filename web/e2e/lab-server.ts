@@ -103,7 +103,7 @@ export class LabServer {
     return (await this.ask<Record<string, { id: string; state: string }[]>>("GET", `/${kind}`))[kind];
   }
 
-  /** What it warned of so far, the last lines. */
+  /** Its warnings so far, the last lines. */
   get warnings(): string[] {
     return this.said
       .split("\n")

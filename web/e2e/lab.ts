@@ -4,7 +4,7 @@ import { LabServer } from "./lab-server";
 interface LabFixtures {
   /** Whether the device is drawn in 3D: done in software, it takes half of the machine. */
   drawn: boolean;
-  /** Closes what a test has opened, for the next one to find the server empty. */
+  /** Closes the objects of a test, so that the next test finds the server empty. */
   tidy: undefined;
   /** Open a fresh bench of the first-look scenario in a layout, with values written over; closed after the test. */
   openBench(layout?: "lecture" | "lab" | "research", set?: Record<string, unknown>): Promise<void>;
@@ -100,7 +100,7 @@ export async function chooseMore(page: Page, name: string | RegExp): Promise<voi
 export const withoutScene = (page: Page): Promise<unknown> =>
   page.route(/\/3d\/(\?|$)/, (route) => route.fulfill({ contentType: "text/html", body: "" }));
 
-/** What a canvas shows, as text that can be compared. */
+/** The content of a canvas, as text for comparisons. */
 export const pictureOf = (page: Page, selector: string): Promise<string> =>
   page
     .locator(selector)
@@ -124,6 +124,6 @@ export const HYPOTHESES = [
 
 const FACTORS: Record<string, string> = { m: "mass", k: "stiffness", b: "damping" };
 
-/** What the page calls a hypothesis: "m+5" is "mass +5 %". */
+/** The page's name of a hypothesis: "m+5" is "mass +5 %". */
 export const inWords = (name: string): string =>
   name.replace(/^([mkb])\+(\d+)$/, (_, factor, percent) => `${FACTORS[factor]} +${percent}\u00a0%`);

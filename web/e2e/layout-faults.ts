@@ -1,10 +1,10 @@
 import type { Page } from "@playwright/test";
 
 /**
- * What is wrong with how a page or a part of it lies, one line each: what is cut, out of reach, over something else, or
- * too small to read or, on a touch screen, to hit.
+ * Faults in the layout of a page or a part of it, one line each: parts that are cut, out of reach, over another part,
+ * or too small to read or, on a touch screen, to hit.
  *
- * It knows nothing of what is drawn on a canvas.
+ * It does not see the drawing on a canvas.
  */
 export const layoutFaults = (page: Page, within = "body"): Promise<string[]> => page.evaluate(findFaults, within);
 
@@ -59,7 +59,7 @@ function findFaults(within: string): string[] {
     return known;
   };
   const shown = (e: Element) => e.checkVisibility({ opacityProperty: true, visibilityProperty: true });
-  /** For those who listen only. */
+  /** For screen readers only. */
   const hidden = new Map<Element, boolean>();
   const unseen = (e: Element): boolean => {
     const known = hidden.get(e);
@@ -71,10 +71,10 @@ function findFaults(within: string): string[] {
     hidden.set(e, is);
     return is;
   };
-  /** Menus and dialogs are meant to lie over the page. */
+  /** Menus and dialogs are meant to cover the page. */
   const layer = (e: Element) => e.closest("[data-portal], [role=dialog], [role=menu]");
 
-  /** What hiding ancestors cut off of a box, where nothing between scrolls to it; and what is left in sight. */
+  /** The part of a box that hiding ancestors cut off, where nothing between scrolls to it; and the visible part. */
   const clip = (e: Element, box: Box) => {
     const seen = { left: box.left, top: box.top, right: box.right, bottom: box.bottom };
     const reach = { ...seen };
@@ -116,7 +116,7 @@ function findFaults(within: string): string[] {
   const whole = (seen: Box, box: Box) =>
     seen.right - seen.left >= box.right - box.left - 1 && seen.bottom - seen.top >= box.bottom - box.top - 1;
 
-  /** Whether something opaque lies over an element at a point. */
+  /** Whether an opaque element covers an element at a point. */
   const covered = (e: Element, x: number, y: number) => {
     for (const top of document.elementsFromPoint(x, y)) {
       if (top.contains(e) || e.contains(top)) return false;
@@ -197,7 +197,7 @@ function findFaults(within: string): string[] {
       if (!covered(a.node, x, y) && !covered(b.node, x, y)) found.add(`text "${a.says}" and "${b.says}" overlap`);
     }
   });
-  // what is wider than any window may scroll in a place of its own, a panel as a whole may not
+  // an element that is wider than any window may scroll in a place of its own, a panel as a whole may not
   for (const e of roots.flatMap((root) => Array.from(root.querySelectorAll("*")))) {
     const over = e.scrollWidth - e.clientWidth;
     if (over <= 1 || e.clientWidth === 0 || !/auto|scroll/.test(styleOf(e).overflowX) || !shown(e)) continue;

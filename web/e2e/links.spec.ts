@@ -63,7 +63,7 @@ test("links to an experiment and to a layout open the same tick, log, cursors an
   await expect(other.getByRole("tab", { name: "Voltage", exact: true })).toHaveCount(0);
 });
 
-test("a shared link lets people watch who have no token, once the teacher lets them, until that ends", async ({
+test("a shared link lets people without a token watch, once the teacher allows it, until the permission ends", async ({
   page,
   openBench,
   elsewhere,

@@ -8,8 +8,9 @@ import { sceneOf } from "./scene";
 
 const ROOT = join(import.meta.dirname, "..", "..");
 
-// The course is at 127.0.0.1 and the bench at localhost: two sites, of which the second gets no cookie in a frame. What
-// pages of the second keep is kept apart for each first, as browsers do; that is off in tests unless a list is given.
+// The course is at 127.0.0.1 and the bench at localhost: two sites, of which the second gets no cookie in a frame. Data
+// of pages of the second site is kept apart for each first site, as browsers do; that is off in tests unless a list is
+// given.
 const FLAGS = ["--test-third-party-cookie-phaseout", "--disable-features=HttpsUpgrades,Translate"];
 
 test.use({
@@ -55,7 +56,7 @@ test.afterAll(async () => {
   await lab?.destroy();
 });
 
-/** What the server refused, for a test that expects nothing of it. */
+/** The refusals of the server, for a test that expects none. */
 function refusals(page: Page): string[] {
   const refused: string[] = [];
   page.on("response", (answer) => answer.status() >= 400 && refused.push(`${answer.status()} ${answer.url()}`));

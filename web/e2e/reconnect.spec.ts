@@ -1,7 +1,7 @@
 import { expect, test } from "@playwright/test";
 import { LabServer } from "./lab-server";
 
-test("a hidden page stays connected; a page outlives its server and goes on when it is back", async ({ page }) => {
+test("a hidden page stays connected; a page outlives its server and continues when it is back", async ({ page }) => {
   const server = await LabServer.create();
   try {
     const closed: string[] = [];
@@ -48,7 +48,7 @@ test("a hidden page stays connected; a page outlives its server and goes on when
   }
 });
 
-test("a full server says what to do, and a bench that it closed while idle opens again as it was", async ({ page }) => {
+test("a full server shows the next step, and a bench that it closed while idle opens again unchanged", async ({ page }) => {
   const server = await LabServer.create({ COMBBENCH_MAX_BENCHES: "1", COMBBENCH_IDLE_MINUTES: "0.001" });
   const benches = () => server.ask<{ benches: { watchers: number }[] }>("GET", "/benches").then((all) => all.benches);
   try {

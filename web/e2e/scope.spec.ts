@@ -7,7 +7,7 @@ interface Capture {
   end_tick: number;
 }
 
-test("a scope moves with device time, looks back while it runs on, and measures what it shows; the picture is kept", async ({
+test("a scope moves with device time, looks back while it runs on, and measures its signals; the picture is saved", async ({
   page,
   server,
   openBench,
@@ -104,7 +104,7 @@ test("the captures of a trigger outlive the history: previous, next, newest, by 
   const at = (index: number) =>
     `capture ${index + 1} of 50 at ${(captures[index].trigger_tick * dt).toFixed(3)}\u00a0ms`;
   const picture = () => pictureOf(page, SCOPE_CANVAS);
-  // the page may not have been told of the newest yet
+  // the page may not have the newest yet
   await expect(async () => {
     await scope.getByRole("group", { name: /^Plot\./ }).press("l");
     await older.click();

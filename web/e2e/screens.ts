@@ -24,9 +24,9 @@ export const nameOf = ({ width, height }: Screen): string => `${width} x ${heigh
 
 const sessions = new WeakMap<Page, CDPSession>();
 
-/** Show a page on a screen, without loading it again; what is small is touched. */
+/** Show a page on a screen, without loading it again; small screens are touched. */
 export async function showOn(page: Page, { width, height }: Screen): Promise<void> {
-  // what a session emulates ends with it
+  // an emulation ends with its session
   const session = sessions.get(page) ?? (await page.context().newCDPSession(page));
   sessions.set(page, session);
   await session.send("Emulation.setTouchEmulationEnabled", { enabled: width < 1000 });
@@ -34,7 +34,7 @@ export async function showOn(page: Page, { width, height }: Screen): Promise<voi
   await expect.poll(() => dockFollows(page)).toBe(true); // a layout chosen earlier would be that of the screen before
 }
 
-/** Whether the panels, if there are any, stand as wide as the place they have. */
+/** Whether the panels, if any, are as wide as their place. */
 const dockFollows = (page: Page): Promise<boolean> =>
   page.evaluate(() => {
     const dock = document.querySelector<HTMLElement>(".dockview-theme-combbench");
@@ -42,7 +42,7 @@ const dockFollows = (page: Page): Promise<boolean> =>
     return !dock || !root || Math.abs(dock.clientWidth - root.clientWidth) < 2;
   });
 
-/** Nothing overlaps or is cut in either scheme; what comes or goes may do so for a moment. */
+/** Nothing overlaps or is cut in either scheme; an element that appears or disappears may do so for a moment. */
 export async function expectClean(page: Page, where: string, within?: string): Promise<void> {
   await expect.soft.poll(() => faultsInBothSchemes(page, within), where).toEqual([]);
 }
@@ -77,7 +77,7 @@ export async function openOnPhone(page: Page, view: string): Promise<void> {
   await expect(page.getByRole("dialog", { name: "Panels" })).toHaveCount(0);
 }
 
-/** A page, or a part of it, lies right on every screen and can be read; a phone shows a panel when it is chosen. */
+/** A page, or a part of it, fits on every screen and can be read; a phone shows a panel when it is chosen. */
 export async function expectFits(page: Page, what: string, within?: string, panel?: string): Promise<void> {
   const before = page.viewportSize() ?? SCREENS[0];
   for (const screen of SCREENS) {

@@ -5,7 +5,7 @@ import type axe from "axe-core";
 
 const SOURCE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 
-// what fades in has the contrast of its end once it is there
+// an element that fades in reaches its final contrast at the end
 const stillness = async (page: Page) => {
   // it begins to fade with the next frame
   await page.evaluate(() => new Promise((seen) => requestAnimationFrame(() => requestAnimationFrame(seen))));

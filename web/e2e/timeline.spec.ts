@@ -12,7 +12,7 @@ interface Bench {
   origin: { bench: string; tick: number; is_past: boolean } | null;
 }
 
-test("the timeline goes back, branches begin there with one change each, and the other future lies behind them", async ({
+test("the timeline goes back, branches begin there with one change each, and the other future is drawn behind them", async ({
   page,
   server,
   openBench,

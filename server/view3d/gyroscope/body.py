@@ -31,7 +31,7 @@ class Body:
     Parameters
     ----------
     stage : Stage
-        Where it stands.
+        Its place.
     name : str
         First part of the names of its nodes.
     centre : tuple of float
@@ -88,7 +88,7 @@ class Body:
         return self._stage.mesh(f"{self.name}/{name}", at_rest, color), part
 
     def add(self, name: str, mesh: Mesh, rides: str) -> Any:
-        """Put the mark of a fault on a part that moves, or on one that does not."""
+        """Put the mark of a fault on a moving or a fixed part."""
         return self._stage.mesh("/".join(part for part in (self.name, rides, name) if part), mesh, ATTENTION)
 
 

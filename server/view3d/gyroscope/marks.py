@@ -1,4 +1,4 @@
-"""The mark of each fault of a gyroscope on the part it acts on; one without a mark is a label at the part it names."""
+"""The mark of each fault of a gyroscope on its part; a fault without a mark is a label at its part."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from server.view3d.marks import Place, arrow, turned, words
 from server.view3d.pose import Active
 
 TILT = 0.15
-"""Angle of a turned suspension, rad; the true one is far below what can be seen."""
+"""Angle of a turned suspension, rad; the true angle is invisibly small."""
 AXIS_UM = 330.0
 
 
 @dataclass(frozen=True)
 class Solid:
-    """A solid on the device, and what it moves with: nothing, the mass, or the bars of an axis."""
+    """A solid on the device, and the part that carries it: nothing, the mass, or the bars of an axis."""
 
     name: str
     mesh: Mesh
@@ -33,7 +33,7 @@ class GyroscopeMarks:
     solids : list of Solid
         Solids on the device.
     labels : dict
-        Words, by the place they stand at, um from the middle of the device.
+        Words, by their place, um from the middle of the device.
     flexures, stators : dict
         How much of the colour of attention the beams and the fixed combs of each axis take.
     gas : float
@@ -119,7 +119,7 @@ def marks(faults: Sequence[Active]) -> GyroscopeMarks:
 
 
 def place_of(part: str) -> Place:
-    """Return the place of the label of a part; labels of parts that are not on the device stand at its edge."""
+    """Return the place of the label of a part; labels of parts that are not on the device are at its edge."""
     places: dict[str, Place] = {
         "plate": (-0.6 * MASS_UM, -0.6 * MASS_UM, TOP_UM),
         "beams": fold("x"),

@@ -1,4 +1,4 @@
-"""What is shown of an orbit: the sample that a strobe meets, and the factors that make it visible."""
+"""The visible part of an orbit: the sample of a strobe, and the factors that make it visible."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def magnified(largest: tuple[float, float], now: tuple[float, float]) -> tuple[f
 
 
 def full_scale(largest: float, now: float) -> float:
-    """Return the round rate that half the ring stands for; it stays while the rate is well seen on it."""
+    """Return the round rate of half the ring; it stays while the rate is well visible on it."""
     if largest == 0.0 or 0.15 * now <= largest <= 0.85 * now:
         return now
     power = 10.0 ** np.floor(np.log10(largest))
@@ -65,7 +65,7 @@ def caption(factors: tuple[float, float], half_ring: float, is_strobed: bool) ->
     factors : tuple of float
         Exaggeration of the motion along x and y.
     half_ring : float
-        The rate that half the ring stands for, deg/s.
+        The rate of half the ring, deg/s.
     is_strobed : bool
         Whether the motion shown is slower than the true one.
     """

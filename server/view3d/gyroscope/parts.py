@@ -14,9 +14,9 @@ from server.view3d.marks import Place
 from server.view3d.suspension import Flexure
 
 GROUND_UM, LOW_UM, TOP_UM = 4.0, 14.0, 30.0
-"""Heights of the ground, and of the lower and upper surface of what moves."""
+"""Heights of the ground, and of the lower and upper surface of moving parts."""
 MASS_UM, BAR_UM, BAR_LENGTH_UM, BAR_WIDTH_UM = 100.0, 172.0, 80.0, 12.0
-"""Half the mass, where the bars stand, half their length, their width."""
+"""Half the mass, place of the bars, half their length, their width."""
 RETURN_UM, ANCHOR_UM, FOLD_UM = 232.0, 71.0, 140.0
 """Where beams come back to the anchors, where these are, and where beams fold."""
 TIP_UM, STATOR_UM, BASE_UM, PITCH_UM, FINGER_UM = 260.0, 222.0, 313.0, 16.0, 4.0
@@ -162,7 +162,7 @@ def flexures(axis: str) -> Flexure:
 
 
 def along(axis: str) -> FloatArray:
-    """Return what follows the mass along one axis alone."""
+    """Return the factors of a part that follows the mass along one axis alone."""
     return np.diag([float(axis == name) for name in AXES])
 
 

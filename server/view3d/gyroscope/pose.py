@@ -37,7 +37,7 @@ class GyroscopePose:
     orbits : tuple of ndarray, shape (points, 2)
         The same over the last periods; they change only with the places.
     turn : float
-        The rate as a share of what half the ring stands for, signed.
+        The rate as a share of the rate of half the ring, signed.
     rate : str
         The rate in words.
     force : float or None
@@ -49,7 +49,7 @@ class GyroscopePose:
     caption : str
         The differences from the true motion, in words.
     when : str
-        The moment in words, if it is not that of now.
+        The moment in words, if it is not the present.
     """
 
     places: tuple[tuple[float, float], ...] = ()
@@ -84,7 +84,7 @@ class GyroscopeObserver:
         self._half_ring = 100.0
 
     def pose(self, looked: int | None = None) -> GyroscopePose:
-        """Return the pose of a tick of the history; else that of now, or of the moment that the strobe shows."""
+        """Return the pose of a tick of the history; else the present pose, or the pose of the strobe."""
         session, history = self._session, self._session.history
         looked = kept(history, looked)
         head = history.end_tick if looked is None else looked + 1
@@ -127,7 +127,7 @@ class GyroscopeObserver:
 
 
 def _follows(spec: Spec) -> bool:
-    """Say whether what drives makes a device follow its partner."""
+    """Return whether a driving controller makes a device follow its partner."""
     driving = (spec.controllers[name].params for name in spec.driving.values())
     return any(isinstance(params, SenseAxisSync.Params) and params.follow == "partner" for params in driving)
 

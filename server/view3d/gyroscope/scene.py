@@ -1,4 +1,4 @@
-"""The scene of gyroscopes: one or two on a frame, the rate it turns with, and what one is pushed with to follow."""
+"""The scene of gyroscopes: one or two on a frame, its rate, and the force that makes one follow the other."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class GyroscopeScene(Stage):
         first.tint(self._marks, before)
 
     def _name_axes(self) -> None:
-        """Write at the combs of the first device what they do."""
+        """Write the functions of the combs next to the combs of the first device."""
         x, y = self._bodies[0].centre
         for axis, words in (("x", "x: drive"), ("y", "y: sense")):
             u, v, z = parts.base(axis)

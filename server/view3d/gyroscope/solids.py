@@ -47,7 +47,7 @@ def beam(
     start, end : tuple of float
         Its ends, um.
     width, low, high : float
-        Its width, and the heights between which it stands, um.
+        Its width, and its lower and upper height, um.
     follow : ndarray, shape (2, 2, 2)
         For each end, the displacement of that end along x and y per displacement of the mass along x and y.
     """
@@ -69,7 +69,7 @@ def rigid(mesh: Mesh, follow: FloatArray) -> Flexure:
     Parameters
     ----------
     mesh : Mesh
-        The part at rest.
+        The undeformed part.
     follow : ndarray, shape (2, 2)
         Its displacement along x and y per displacement of the mass along x and y.
     """
@@ -78,7 +78,7 @@ def rigid(mesh: Mesh, follow: FloatArray) -> Flexure:
 
 
 def join(parts: list[Flexure]) -> Flexure:
-    """Join what bends into one surface."""
+    """Join bending parts into one surface."""
     first = np.cumsum([0, *(len(part.rest) for part in parts[:-1])])
     return Flexure(
         np.vstack([part.rest for part in parts]),

@@ -77,7 +77,7 @@ def test_boards_with_other_devices_commands_and_moments():
 
 
 def test_boards_of_other_devices_follow_one_of_them_and_get_faults_of_their_own():
-    """What a broken truss does follows from the drawing, and where a dropout strikes from the seed."""
+    """The effects of a broken truss follow from the drawing, and the lost samples of a dropout from the seed."""
     documents = [
         with_values(RICH, {"device": {"id": "lcr-350", "geometry": {"beam_width_um": width}}, "seed": seed})
         for width, seed in ((2.0, 1), (2.0, 2), (2.1, 2), (2.1, 2), (2.2, 5))

@@ -104,7 +104,7 @@ class PushAB(Block):
 
 
 class PushBC(Block):
-    """Pushes the last two masses, against what is measured."""
+    """Pushes the last two masses, against the measurement."""
 
     title = "Push b and c"
     axes = ("b", "c")
@@ -177,7 +177,7 @@ def at(board: Board, *names: str) -> list[float]:
 
 def test_each_axis_is_driven_by_the_last_slot_that_has_a_command_for_it() -> None:
     board = run(Board(BENCH))
-    # a: 1 uN from the first slot; b: -1 - 2 b from the last, at rest k b = -1 - 2 b; c: 3 uN
+    # a: 1 uN from the first slot; b: -1 - 2 b from the last, in equilibrium k b = -1 - 2 b; c: 3 uN
     rest = [1.0 / SPRING, -1.0 / (SPRING + 2.0), 3.0 / SPRING]
     assert at(board, "plant.a", "plant.b", "plant.c") == pytest.approx(rest, rel=1e-3)
     assert at(board, "sensor.a.displacement", "sensor.c.displacement") == at(board, "plant.a", "plant.c")

@@ -1,4 +1,4 @@
-"""The digest of a run: every bit of what a bench puts out counts, and what only looks on does not."""
+"""The digest of a run: every bit of the outputs of a bench counts, and blocks in shadow do not."""
 
 from __future__ import annotations
 
@@ -161,7 +161,7 @@ def test_chunks_and_copies_do_not_matter() -> None:
 
 
 def test_a_controller_counts_once_it_drives() -> None:
-    """Its whole past counts then, so a controller that looks on otherwise changes nothing until it drives."""
+    """Its whole past counts then, so a controller in shadow changes nothing until it drives."""
     other = {"controllers.pid.integral_v_um_ms": 0.01}
     assert lab.run_digest(lab.make(), 200) == lab.run_digest(lab.make(other), 200)
     switch = {"switch": "pid", "at_sample": 150}

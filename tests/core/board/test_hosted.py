@@ -159,7 +159,7 @@ def test_it_begins_anew_when_it_takes_over_after_it_ran_away_in_shadow() -> None
 
 
 def test_a_sample_begun_is_finished_by_the_next_advance() -> None:
-    """What a step at a time shows and asks is what `advance` alone does."""
+    """A step at a time shows and asks the same as `advance` alone."""
     board, voltages = hosted(lambda _: voltages[-1]), [0.0]
     law, whole = pi(), play(hosted(pi()), 100)
     drive = []

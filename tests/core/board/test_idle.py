@@ -1,4 +1,4 @@
-"""What looks on to the end is left out, and no bit of what counts depends on it."""
+"""A block that stays in shadow to the end is left out, and no bit of the results depends on it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def live(scenario: Scenario) -> str:
 
 
 def check(scenario: Scenario) -> Any:
-    """Return a run without what looks on, compared with one that has it."""
+    """Return a run without blocks in shadow, compared with a run that has them."""
     alone, everything = run(scenario, taps=True), run(scenario, taps=True, everything=True)
     assert alone.digest == everything.digest == live(scenario), scenario.id
     assert alone.metrics == everything.metrics and alone.warnings == everything.warnings, scenario.id

@@ -1,4 +1,4 @@
-"""What takes a change back: after a command and its inverse every parameter of every block is as before."""
+"""Inverse commands: after a command and its inverse every parameter of every block is as before."""
 
 from __future__ import annotations
 
@@ -37,7 +37,8 @@ COMMANDS: list[dict[str, Any]] = [
 
 
 def state(board: Board) -> tuple[Any, ...]:
-    """Everything a command can change: parameters of all blocks, who drives, what acts (the tick it began aside)."""
+    """Everything a command can change: parameters of all blocks, driving controllers, active faults (without their
+    first tick)."""
     params = [
         (one.key, one.block.name, one.params) for one in board.wiring.instances if not one.key.startswith("faults")
     ]

@@ -1,4 +1,4 @@
-"""The length of what a step reads and keeps, and commands that would change it."""
+"""The length of the records of a step, and commands that would change it."""
 
 from __future__ import annotations
 

@@ -71,7 +71,7 @@ def test_a_copy_trips_as_the_board_does(again: Callable[[Board], Board], ticks: 
 
 
 def test_a_board_with_a_part_from_outside_trips_at_the_same_tick() -> None:
-    """What is asked outside may answer nothing for as long as it likes: its state begins as no number."""
+    """An outside part may give no answer for any time: its state begins as NaN."""
     answers = {"odd": lambda _: repeat(math.nan, 3)}
     one = Hosted(parse(document({}, RICH)), identifiers=answers)
     play(one, 2 * EVERY)

@@ -1,4 +1,4 @@
-"""Thousands of commands: each costs what the first did, and they take effect in the order in which they were asked."""
+"""Thousands of commands: each costs as much as the first, and they take effect in the order of their requests."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_a_command_among_many_costs_no_more_than_one_among_few() -> None:
 
 @pytest.mark.parametrize("compiled", [True, False])
 def test_commands_of_one_tick_take_effect_in_the_order_asked(compiled: bool) -> None:
-    """Also when others were asked for in between, and when what was asked for first waits for a condition."""
+    """Also when others were requested in between, and when the first requested command waits for a condition."""
     board = make(compiled=compiled)
     path = "reference.amplitude_v"
     for at, value in ((50, 1.0), (30, 2.0), (50, 3.0), (40, 4.0)):
@@ -48,7 +48,7 @@ def test_commands_of_one_tick_take_effect_in_the_order_asked(compiled: bool) -> 
 
 
 def test_a_change_of_some_parameters_gives_the_wiring_of_a_new_board() -> None:
-    """A change takes over packed parameters that packing anew would repeat; state and signals go on."""
+    """A change takes over packed parameters that packing anew would repeat; state and signals continue."""
     values = {
         "sensor.noise_um": 0.2,
         "drive.limit_v": 20.0,

@@ -24,7 +24,7 @@ def running(name: str) -> Board:
 
 
 def outputs(board: Board) -> list[float]:
-    """Return what the drives put out."""
+    """Return the outputs of the drives."""
     drives = [one for one in board.wiring.instances if one.prefix.split(".")[0] == "drive"]
     return [board.value(f"{one.prefix}.{port.name}") for one in drives for port in one.block.outputs]
 

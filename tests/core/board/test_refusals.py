@@ -1,4 +1,4 @@
-"""What is refused changes nothing; what may change while running does."""
+"""Refused commands change nothing; live parameters may change while running."""
 
 from __future__ import annotations
 

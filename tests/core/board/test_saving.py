@@ -1,4 +1,4 @@
-"""What happened on a board, saved and run again to the same bits."""
+"""The history of a board, saved and run again to the same bits."""
 
 from __future__ import annotations
 

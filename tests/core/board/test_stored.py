@@ -1,4 +1,4 @@
-"""A board goes on from plain data, written as JSON and arrays, bit for bit."""
+"""A board continues from plain data, written as JSON and arrays, bit for bit."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from scenarios.schema import Scenario
 
 
 def written(kept: Stored) -> Stored:
-    """What comes back from a file."""
+    """Return the data after a file."""
     file = io.BytesIO()
     np.savez(file, **kept.arrays)
     file.seek(0)
@@ -32,7 +32,7 @@ def written(kept: Stored) -> Stored:
 
 
 def same(first: Board, second: Board, ticks: int) -> None:
-    """Both go on alike: rows, log, digest, scores."""
+    """Both continue alike: rows, log, digest, scores."""
     seen = first.log.last, second.log.last
     for _ in range(ticks // 256):
         rows, others = first.advance(256), second.advance(256)

@@ -1,4 +1,4 @@
-"""The past of a board, computed again: rows and digests are those of the straight run."""
+"""The past of a board, computed again: rows and digests equal the rows and digests of the straight run."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def twins() -> Board:
 
 
 class Straight:
-    """A board that runs on, its track, and what it put out at every tick."""
+    """A board that runs on, its track, and its outputs at every tick."""
 
     def __init__(self, board: Board, deeds: dict[int, list[Command]], most_bytes: int = MEMORY) -> None:
         self.board, self.track = board, Track(board, most_bytes)

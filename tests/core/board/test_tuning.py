@@ -1,4 +1,4 @@
-"""Sets of parameters: what a set takes from a bench, put on another it gives the values of the set."""
+"""Sets of parameters: a set taken from a bench gives its values on another bench."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ X, Y = Axis(350, 2.0, 87), Axis(340, 2.0, 87)
 S = (np.arange(20_000) + 0.5) / 20_000
 BEND = 3 * S**2 - 2 * S**3
 MOTION = np.concatenate([1 - BEND / 2, BEND / 2])
-"""Motion of outer and inner beams of a flexure, over that of its moving end; its trusses move by half."""
+"""Motion of outer and inner beams of a flexure, over the motion of its moving end; its trusses move by half."""
 
 
 def mass(bent: Axis, carried: Axis) -> float:

@@ -93,7 +93,7 @@ def test_band_holds_every_device_between_the_limits_and_no_more():
                 early, late = np.minimum(early, deg), np.maximum(late, deg)
     assert np.all(band.low_db <= low + 1e-9) and np.all(band.high_db >= high - 1e-9)
     np.testing.assert_allclose(band.low_db, low, atol=1e-6)
-    np.testing.assert_allclose(band.high_db, high, atol=0.15)  # the peak may lie between two of the grid
+    np.testing.assert_allclose(band.high_db, high, atol=0.15)  # the peak may be between two of the grid
     np.testing.assert_allclose(band.low_deg, early, atol=1e-6)
     np.testing.assert_allclose(band.high_deg, late, atol=1e-6)
     np.testing.assert_allclose(band.nominal_db, 20 * np.log10(np.abs(response(M, B, K, f)) * K), atol=1e-12)

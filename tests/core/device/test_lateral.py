@@ -98,7 +98,7 @@ def test_the_plant_in_the_plane_follows_the_drawing():
 
 @pytest.mark.parametrize("name", ["ch3", "ch4", "lcr-350", "fabricated-1", "table-1-1-400-std"])
 def test_every_device_has_a_pull_in(name):
-    """V goes with one over the root of the force constant; without a drawing the suspension is that of LCR-350."""
+    """V is proportional to one over the root of the force constant; without a drawing the suspension is LCR-350's."""
     found = device_pull_in(device({"id": name}))
     gradient = device({"id": name}).capacitance_gradient
     if device({"id": name}).geometry is None:

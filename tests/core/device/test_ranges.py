@@ -1,4 +1,4 @@
-"""Devices at the ends of what is allowed: every figure and every controller is made of finite numbers."""
+"""Devices at the ends of the allowed ranges: every figure and every controller has finite numbers."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_a_resonator_at_the_ends_of_its_ranges(values: tuple[float, ...], bias_v
 @pytest.mark.parametrize(("first", "last"), [*itertools.product(SIZES, SIZES)])
 @pytest.mark.parametrize("unit", [1e-6, 1e6])
 def test_a_transfer_function_at_the_ends_of_its_ranges(first: float, last: float, unit: float) -> None:
-    """One that would grow beyond all numbers within a sample is refused."""
+    """A transfer function that would grow beyond all numbers within a sample is refused."""
     for lead in (1e-9, 1e9):
         with suppress(InputError):
             judged({"transfer_function": {"gain": last, "denominator": [lead, first, last], "time_unit_ms": unit}})

@@ -1,4 +1,4 @@
-"""What tests of units of one's own share."""
+"""Shared fixtures of the tests of user units."""
 
 from __future__ import annotations
 

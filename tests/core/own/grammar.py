@@ -44,7 +44,7 @@ def turn(r, y):
     r.line[int(bump(r))] += bump(r)
     y.seen = mix(bump(r), r.line[int(r.a)])
     return stir(r.grid, r.a) + bump(r)"""
-"""Functions of the unit: one that only computes, and those that also write what they are given."""
+"""Functions of the unit: one that only computes, and others that also write their arguments."""
 
 
 class Writer:

@@ -135,7 +135,7 @@ PACKS = (
 
 
 def corpus() -> dict[str, list[str]]:
-    """Return whole texts, by the place of what is hostile in them."""
+    """Return whole texts, by the place of their hostile part."""
     whole = [
         *(
             "",

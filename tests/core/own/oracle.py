@@ -1,4 +1,4 @@
-"""The text of a unit as Python itself runs it, on plain records: the oracle of what is written anew from it.
+"""The text of a unit as Python itself runs it, on plain records: the oracle of the rewritten code.
 
 Nothing of what `core.own` makes of the step is used. Python works out values, indices and calls in its own order; only
 numbers are doubles that divide by 0 as a processor does, and a vector has NaN where it has no item.

@@ -1,4 +1,4 @@
-"""A price in place of a measured time: what a sample takes depends on the machine and on all else that it does."""
+"""A price in place of a measured time: the time of a sample depends on the machine and on all its other work."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Units for gyroscopes: the same bits as the library's in both slots, a read-out, and what is refused."""
+"""Units for gyroscopes: the same bits as the library's in both slots, a read-out, and refused units."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ DRIVE, SENSE = source_of("control", "forced_drive"), source_of("control", "open_
 def test_a_controller_of_the_library_as_a_unit_gives_its_own_digest(
     name: str, base: str, values: dict[str, Any]
 ) -> None:
-    """The copy takes the place of the original: the text is compiled, and stands on the bench, as a unit."""
+    """The copy takes the place of the original: the text is compiled, and is on the bench, as a unit."""
     document = {key: value for key, value in get(base).document.items() if key not in ("duration_ms", "expect")}
     table: dict[str, Any] = {**document, **SHORT, "events": []}
     slots = {"controller": {"kind": values["controller.kind"]}} if "controller.kind" in values else {}

@@ -1,4 +1,4 @@
-"""Steps, random ones too: one that is admitted stays in its slots, and computes what Python makes of its text."""
+"""Steps, random ones too: an admitted step stays in its slots, and computes the same as Python from its text."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ ALLOWED = {"exp", "sin", "floor", "flush_tiny", "abs", "min", "max", "float", "i
 
 
 def admitted(seeds: Iterable[int]) -> Iterator[tuple[int, Unit | None]]:
-    """Yield seeds and the units they make, None for one that is refused."""
+    """Yield seeds and the units they make, None for a refused unit."""
     for seed in seeds:
         try:
             yield seed, unit("odd", Writer(seed).text())
@@ -53,7 +53,7 @@ class Slots:
         self.block = block
 
     def stimulate(self, tick: int) -> None:
-        """Set what the step reads."""
+        """Set the inputs of the step."""
         self.w[0], self.w[1] = tick, 0.01 * tick
         inputs = len(self.block.inputs)
         self.w[self.io[:inputs]] = [np.sin(0.7 * tick + k) * 10.0**k for k in range(inputs)]

@@ -1,4 +1,4 @@
-"""The units of ``docs/units``: each against an oracle of its own, and doing what it claims on a library scenario."""
+"""The units of ``docs/units``: each against an oracle of its own, and with its claims on a library scenario."""
 
 from __future__ import annotations
 
@@ -152,7 +152,8 @@ def test_page_adds_up_the_ratios_and_alarms_in_time() -> None:
     got = np.column_stack([result.signal(f"mine.sum.{name}") for name in names])
     np.testing.assert_allclose(got, np.array(wanted), atol=1e-5)
 
-    # the sum is at least that of the ratios since the fault; its mean and variance follow from the motion without noise
+    # the sum is at least the sum of the ratios since the fault; its mean and variance follow from the motion without
+    # noise
     motion, fault = result.signal("plant.displacement"), slice(2001, 2200)
     mean = np.cumsum(((motion - said[0]) ** 2 - (motion - said[1]) ** 2)[fault]) / (2.0 * 0.05**2)
     variance = np.cumsum((said[1] - said[0])[fault] ** 2) / 0.05**2
@@ -239,7 +240,7 @@ SLIDING = {"controller.kind": "sliding_observer", "duration_ms": 40.0}
 
 
 def test_sliding_observer_is_wrong_by_the_sample_and_its_square() -> None:
-    """Levant 1998: homogeneity makes the error of the velocity O(h), that of the displacement O(h^2)."""
+    """Levant 1998: homogeneity makes the error of the velocity O(h), the error of the displacement O(h^2)."""
     worst = []
     for rate_khz in (100, 200, 400):
         values = {**SLIDING, "sample_rate_khz": rate_khz}

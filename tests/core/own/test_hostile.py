@@ -65,7 +65,7 @@ def test_a_storm_of_numbers_that_are_none_stays_in_its_own_slots() -> None:
 
 
 def test_a_step_that_is_slow_to_compile_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The process that compiles has a limit of time; the one that asks goes on."""
+    """The process that compiles has a limit of time; the caller continues."""
     code = (
         "import scenarios.own as own; own.MOST_S = 0; import sys; from tests.core.own.texts import PI;"
         "sys.argv = ['own']; import io, json; sys.stdin = io.StringIO(json.dumps(['pi', PI])); own.main()"

@@ -1,4 +1,4 @@
-"""Units of one's own: the same bits as the library's, all executions alike, and safe when they misbehave."""
+"""User units: the same bits as the library's, all executions alike, and safe when they misbehave."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ COPIED = (
     *("sensor_quantisation", "shock", "stiffness", "vacuum_loss"),
     "ideal",
 )
-"""Units of the library whose file is a unit of one's own as it is."""
+"""Units of the library whose file is a valid user unit without change."""
 
 
 def with_unit(name: str, source: str, values: dict[str, Any] | None = None, base: str = BASE) -> Scenario:
@@ -196,7 +196,8 @@ def test_the_document_lists_what_is_offered_and_what_is_public() -> None:
 
 
 def test_no_public_source_carries_the_truth() -> None:
-    """Of what controllers and diagnosers may read, a fault moves only what it would move in a laboratory."""
+    """In the inputs of controllers and diagnosers, a fault moves only the signals that it would move in a
+    laboratory."""
     hidden = ("effects.", "plant.", "faults.", "environment.", "guard.", "score", "truth")
     for family in {*PUBLIC} - {"sense", "faults"}:
         assert not [source for source in PUBLIC[family] if source.startswith(hidden) or "truth" in source]

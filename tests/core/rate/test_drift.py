@@ -38,7 +38,7 @@ def mean_and_error(counts: tuple[int, ...] = COUNTS, **figures: float) -> tuple[
 def markov_variance(count: int, hold: int, decay: float) -> float:
     """Allan variance of a unit Markov process of one step every ``hold`` samples, its phase unknown.
 
-    Between its steps the covariance is a straight line; that of two means is a sum over the covariance of all pairs.
+    Between its steps the covariance is a straight line; the covariance of two means is a sum over all pairs.
     """
     weights = np.repeat([-1.0, 1.0], count) / count
     pairs = np.correlate(weights, weights, "full")[2 * count - 1 :]
@@ -81,7 +81,7 @@ def test_the_floor_is_flat_over_the_span_that_is_declared():
     assert 0.955 < min(whole) < max(whole) < 1.01
     inside = [floor(tau) for tau in np.logspace(2, 6, 801)]
     assert 0.985 < min(inside) < max(inside) < 1.015
-    # what is sampled is what is continuous
+    # the sampled process equals the continuous process
     decay = math.exp(-0.1)
     sampled = math.log(10.0) / (2 * math.log(2.0)) * sum(markov_variance(1000, 10**i, decay) for i in range(9))
     assert math.sqrt(sampled) == pytest.approx(floor(100.0), rel=2e-3)

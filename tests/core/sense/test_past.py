@@ -1,4 +1,4 @@
-"""A unit that takes over in full motion: it begins with the place and the speed of what was measured before."""
+"""A unit that takes over in full motion: it begins with the place and the speed of the measurements before."""
 
 from __future__ import annotations
 

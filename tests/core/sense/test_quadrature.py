@@ -48,7 +48,7 @@ def test_filters_are_told_the_noise(kind, spacing):
 
 @pytest.mark.parametrize("spacing", [0.5, 1.3])
 def test_the_noise_told_is_the_noise_there_is(spacing):
-    """The mean over a pitch of what two detectors leave in the phase, and the residuals of a bank that is told it."""
+    """The mean over a pitch of the phase error of two detectors, and the residuals of a bank that knows it."""
     apart = {"sensors.dual_beam.spacing_um": spacing, "sensors.quadrature.spacing_um": spacing}
     bank = {"kind": "mmae", "process_noise_v": 0.01, "hypotheses": [{"name": "healthy"}, {"name": "m", "mass": 2.0}]}
     values = {**PAIR, **apart, "sensors.dual_beam.spot_um": 2.0, "sensors.dual_beam.snr_db": 40.0}

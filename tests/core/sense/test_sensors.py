@@ -1,4 +1,4 @@
-"""How sensors are wired: what runs, in which order, and what others are told of them."""
+"""The wiring of sensors: running sensors, their order, and the information about them."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ def test_reflections_are_what_bears_a_model_far_off():
 
 
 def test_reflections_do_no_harm_near_resonance():
-    # with 20 % less stiffness the resonance comes down to 2.2 kHz, and the stroke is twice what it is tuned for
+    # with 20 % less stiffness the resonance comes down to 2.2 kHz, and the stroke is twice the tuned stroke
     noisy = {**UNIT, "sensors.through_wafer.snr_db": 20.0}
     error = errors(noisy, range(1, 11), stiffness=-0.2)
     assert not lost(error).any()

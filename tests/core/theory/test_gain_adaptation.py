@@ -83,7 +83,7 @@ def test_transition_over_a_period_is_that_of_the_whole_loop(rule):
     filtered = size / (1 + 1.2 * s)
     found = monodromy(loop.packed(), rule, rate, w)
     for column in range(3):
-        # a sine is the imaginary part; the steady state starts at that of the phasor
+        # a sine is the imaginary part; the steady state starts at the phasor's value
         start = [*np.eye(3)[column], model.imag, (model * s).imag, filtered.imag]
         exact = solve_ivp(law(rule, loop, rate, w), (0, 2 * math.pi / w), start, rtol=1e-10, atol=1e-12)
         np.testing.assert_allclose(found[:, column], exact.y[:3, -1], rtol=2e-6, atol=2e-6)

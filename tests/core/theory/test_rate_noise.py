@@ -54,7 +54,7 @@ def test_one_noise_alone_is_that_one_and_the_others_are_bounded(which, true):
     for other in {0, 1, 2} - {which}:
         assert noise[other].value is None and noise[other].error > 0.0
         needs = "averages shorter than 0.010\u00a0s" if other == 0 else "a record longer than 1000\u00a0s"
-        assert noise[other].reason.startswith("does not stand out, at most") and needs in noise[other].reason
+        assert noise[other].reason.startswith("is below the noise, at most") and needs in noise[other].reason
 
 
 def test_a_floor_that_the_record_does_not_reach_is_not_told():
@@ -103,7 +103,7 @@ def test_what_is_no_noise_is_not_taken_for_noise():
 
 
 def told(seed: int, seconds: int, **values: float) -> RateNoise:
-    """Return what a read-out concludes from a rate with noise of its own, which is flat from 1 s on at 100 Hz."""
+    """Return the conclusion of a read-out from a rate with noise of its own, which is flat from 1 s on at 100 Hz."""
     row = Row(("rate", "noise", values), ("readout", "allan", {"interval_ms": 1000.0}), dt_ms=10.0, seed=seed)
     for _ in range(10):
         row.play(seconds * 10)

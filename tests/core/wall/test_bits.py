@@ -35,13 +35,13 @@ from tests.core.own.texts import FIT, PI, ROOT, odd
 
 @pytest.fixture(autouse=True)
 def _wall() -> Iterator[None]:
-    """Take the wall down at the end; no unit is compiled to machine code while it stands."""
+    """Take the wall down at the end; no unit is compiled to machine code while the wall is up."""
     yield
     wall.demand(False)
 
 
 def behind(made: Callable[[], Any]) -> Any:
-    """Return what is made behind the wall."""
+    """Return the result of a call behind the wall."""
     known = {*program._addresses}, {*code._addresses}
     wall.demand()
     try:

@@ -1,4 +1,4 @@
-"""WebAssembly made by hand that does what no unit may: it reaches nothing, and the bench goes on."""
+"""Handmade WebAssembly with operations that no unit may have: it reaches nothing, and the bench continues."""
 
 from __future__ import annotations
 

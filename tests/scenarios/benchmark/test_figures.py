@@ -74,7 +74,7 @@ def test_alarms_by_hand() -> None:
 
 
 def test_a_standing_alarm_detects_nothing() -> None:
-    """An alarm that is on before the fault has no delay, so that one that never goes off is not the quickest."""
+    """An alarm that is on before the fault has no delay, so a permanent alarm is not the quickest."""
     found = figures.alarms(np.ones(10), 0.0, 2, 6)
     assert (found.delay, found.missed, found.false_alarm, found.detection) == (None, None, 1.0, 1.0)
 
@@ -90,7 +90,8 @@ def test_isolation_by_hand() -> None:
 
 
 def test_reliability_of_a_calibrated_source_is_a_straight_line() -> None:
-    """Truths drawn from what was said: in every bin the share of right ones is the mean said, within 4 sigma."""
+    """Truths drawn from the stated probabilities: in every bin the share of right ones is the mean probability, within
+    4 sigma."""
     samples = 200_000
     p = said(3, samples)
     truth = (GENERATOR.random(samples) > np.cumsum(p, axis=0)).sum(axis=0)

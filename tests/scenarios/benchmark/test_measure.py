@@ -113,8 +113,8 @@ def judged(name: str, sharpen: float) -> results.Row:
 def test_overconfidence_ranks_below_honesty(name: str) -> None:
     """The same verdicts at the same samples, said with the odds to the fifth power.
 
-    Log score and Brier's score are worse, and the reliability curve lies further below the diagonal, while the mean
-    probability given to the truth, by which a competition was ranked, is better.
+    Log score and Brier's score are worse, and the reliability curve is further below the diagonal, while the mean
+    probability given to the truth, a former ranking of a competition, is better.
     """
     honest, sure = judged(name, 1.0), judged(name, 5.0)
     sure = sure.model_copy(update={"unit": "sure"})

@@ -1,4 +1,4 @@
-"""Seeds of the benchmark: anyone works out the public ones, and nobody changes the hidden ones unseen."""
+"""Seeds of the benchmark: anyone works out the public seeds, and a change of the hidden seeds is visible."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tracks of the benchmark: what is drawn follows from the seed alone, and stays within what the track says."""
+"""Tracks of the benchmark: the draws follow from the seed alone, and stay within the ranges of the track."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ ALONE = (
     "ch6-drift ch6-phase-sync gyro-comb-device gyro-forced-drive gyro-half-sample gyro-not-exciting "
     "gyro-off-resonance gyro-small-rates"
 ).split()
-"""Scenarios with twins, commands that wait for conditions; and one that trips."""
+"""Scenarios with twins, commands that wait for conditions; and a scenario that trips."""
 
 
 def said(found: Outcome) -> str:
@@ -125,7 +125,8 @@ def test_a_block_that_a_command_exchanges(abreast):
 
 
 def test_warnings_are_those_of_a_run_alone_in_their_order(abreast):
-    """Of taps that rise, of blocks before the first tick, and of what a command changes; shadows warn of nothing."""
+    """Warnings of taps that rise, of blocks before the first tick, and of changes by a command; shadows warn of
+    nothing."""
     slow, slower = ({"kind": "arx_bank", "every": every} for every in (5, 20))
     thin = {"at_sample": 200, "set": {"controller.layer_um": 1e-4}}
     tone = {"at_sample": 120, "set": {"reference.frequency_hz": 4000.0}}

@@ -26,7 +26,7 @@ from tests.scenarios.campaign.cluster import Cluster, free_port
 
 
 class Memory:
-    """A run table that remembers what was put into it, and how often."""
+    """A run table that remembers its entries, and their number."""
 
     def __init__(self) -> None:
         self.found: dict[str, Outcome] = {}
@@ -65,7 +65,7 @@ def test_processes_give_what_single_runs_give_and_nothing_is_run_twice() -> None
     assert Campaign(sweep, table, workers=2, on_progress=lambda *now: seen.append(now)).run()
     assert {key: found.digest for key, found in table.found.items()} == digests(sweep)
     assert len(table.puts) == 12 and seen[0] == (0, 12) and seen[-1] == (12, 12)
-    # again: everything is there, nothing is computed; with more seeds only those that are new
+    # again: everything is stored, nothing is computed; with more seeds only the new runs
     assert Campaign(sweep, table, workers=1).run() and len(table.puts) == 12
     assert Campaign(small(7), table, workers=1).run() and len(table.puts) == 14
 
@@ -88,7 +88,7 @@ def test_a_run_that_cannot_be_carried_out_does_not_stop_the_others() -> None:
 
 
 def test_a_point_of_which_no_scenario_comes_does_not_stop_the_others() -> None:
-    """Points are read when their runs are made: one that is wrong is a result, and is not made again."""
+    """Points are read when their runs are made: a faulty point is a result, and is not made again."""
     document = {**small().document, "grid": {"sensor.noise_um": [0.1, -1.0], "plant.model": ["linear", "none"]}}
     table, error = Memory(), Outcome(seed=2).error
     assert Campaign(Sweep(document), table, workers=1).run()
@@ -110,7 +110,7 @@ def test_a_cancelled_campaign_keeps_what_is_done_and_goes_on_from_there() -> Non
 
 
 class Unsteady(Executor):
-    """Works at once, and loses the pieces of work whose numbers it is told, on their way in or out."""
+    """Works at once, and loses the pieces of work with the given numbers, on their way in or out."""
 
     width = 2
 
@@ -194,7 +194,7 @@ def test_without_a_scheduler_a_campaign_stops_and_says_so(monkeypatch: pytest.Mo
 def test_a_batch_that_is_done_but_cannot_be_fetched_is_computed_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As when the scheduler goes while it hands over what a worker has done."""
+    """As when the scheduler goes while it hands over the result of a worker."""
     from distributed import Client
 
     gather, failed = Client._gather, list[bool]()

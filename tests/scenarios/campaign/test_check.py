@@ -1,4 +1,4 @@
-"""What somebody wrote is refused before a campaign begins; what chance draws is left to its runs."""
+"""A faulty document is refused before a campaign begins; random draws are left to its runs."""
 
 from __future__ import annotations
 

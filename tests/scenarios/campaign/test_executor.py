@@ -1,4 +1,4 @@
-"""Worker processes: shared, told to stop in the middle of their work, made anew when one dies."""
+"""Worker processes: shared, stopped in the middle of their work, made anew when one dies."""
 
 from __future__ import annotations
 

@@ -217,7 +217,7 @@ def test_the_picture_of_files_is_that_of_outcomes(made: tuple[Sweep, Parts, Tabl
 def test_a_file_of_many_runs_of_a_point_holds_what_they_add_up_to(
     made: tuple[Sweep, Parts, Table], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What is read of it is bit for bit what its runs add up to, and none of them is read."""
+    """Its stored totals equal bit for bit the totals of its runs, and none of the runs is read."""
     sweep, parts, table = made
     table.show()
     parts.keep_up(table.read, to_end=True)

@@ -1,4 +1,4 @@
-"""What is still to be made: handed out once, taken back when it is lost, and small."""
+"""The remaining runs: handed out once, taken back when they are lost, and small."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_points_of_one_content_count_once() -> None:
 
 
 def test_what_the_table_has_is_passed_over_in_ever_larger_steps() -> None:
-    """A campaign that goes on has most of its runs there: it comes to the first that is missing with few questions."""
+    """A resumed campaign has most of its runs: it comes to the first missing run with few questions."""
     sweep, asked = Sweep({**SEVEN, "seeds": {"count": 20_000}}), list[int]()
     lacks = {sweep.key(19_998), sweep.key(19_999)}
 

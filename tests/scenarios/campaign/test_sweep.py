@@ -1,4 +1,4 @@
-"""What a campaign file means: points, seeds, keys, and one clear line for what is wrong."""
+"""The meaning of a campaign file: points, seeds, keys, and one clear line for each error."""
 
 from __future__ import annotations
 

@@ -82,7 +82,7 @@ def test_a_campaign_leaves_report_and_tables(sweep: Any, tmp_path: Path) -> None
     assert "12 of 12 runs" in report and "Receiver operating characteristic" in report and "Detection delay" in report
     assert "as printed, kind mrac" in report and not re.search(r"(src|href)=|url\(|@import|<script|<link", report)
     assert len(json.loads((folder / "points.json").read_text())) == 4
-    # again without --resume: refused in one line; with it nothing is computed twice, and a larger one goes on
+    # again without --resume: refused in one line; with it nothing is computed twice, and a larger campaign continues
     before = made(folder)
     again = sweep()
     assert again.exit_code == 2 and "--resume" in again.stderr and len(again.stderr.strip().splitlines()) == 1
@@ -126,7 +126,7 @@ def test_the_results_of_another_campaign_are_left_alone(sweep: Any, tmp_path: Pa
     assert refused.exit_code == 2 and "here holds the campaign one, not two" in refused.stderr
     assert len(refused.stderr.strip().splitlines()) == 1
     assert files(tmp_path / "here") == before
-    (tmp_path / "mine.toml").write_text((tmp_path / "here" / "campaign.toml").read_text())  # it says what was run
+    (tmp_path / "mine.toml").write_text((tmp_path / "here" / "campaign.toml").read_text())  # the campaign that was run
     assert sweep("--out", "here", "--resume").exit_code == 0
 
 
@@ -146,7 +146,7 @@ def test_one_that_stops_says_how_to_go_on(sweep: Any, monkeypatch: pytest.Monkey
     monkeypatch.setattr("scenarios.campaign.campaign.Campaign.run", stops)
     ended = sweep("--out", "here")
     assert ended.exit_code == 1 and "3 of 12 runs are done" in ended.stderr
-    assert "go on with: combbench sweep mine.toml --out here --resume" in ended.stderr
+    assert "continue with: combbench sweep mine.toml --out here --resume" in ended.stderr
 
     def interrupted(*_: Any) -> None:
         raise KeyboardInterrupt

@@ -53,7 +53,7 @@ def test_the_curve_of_two_normal_densities_is_the_one_in_closed_form() -> None:
     for false_alarm, detection in zip(roc.false_alarm, roc.detection, strict=True):
         if 0.001 < false_alarm < 0.999:
             assert detection == pytest.approx(1.0 - normal.cdf(normal.inv_cdf(1.0 - false_alarm) - 2.0), abs=5e-3)
-    # the threshold beside a point is the one that gives it
+    # the threshold of a point is the threshold that gives it
     for at in range(1, len(roc.false_alarm)):
         if 0.01 < roc.false_alarm[at] < 0.99:
             assert roc.false_alarm[at] == pytest.approx(1.0 - normal.cdf(roc.log10_odds[at - 1] + 1.0), abs=5e-3)
@@ -114,7 +114,7 @@ def test_the_report_is_one_whole_file_that_loads_nothing(campaign: tuple[Sweep, 
 
 
 def test_the_report_tells_few_errors_from_none(campaign: tuple[Sweep, dict[str, Outcome]]) -> None:
-    """A share that is almost all keeps its digits, and what was counted is whole."""
+    """A share that is almost all keeps its digits, and counts are whole."""
     sweep, outcomes = campaign
     means = {"diagnosis.kalman.correct_fraction": 0.99997, "diagnosis.kalman.false_switches": 53.0}
     metrics = {name: Spread(count=3, mean=mean, std=0.0, min=mean, max=mean) for name, mean in means.items()}

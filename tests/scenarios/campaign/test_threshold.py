@@ -21,7 +21,7 @@ from tests.lab import QUIET
 def look(
     function: Callable[[float], float | None], bears_out: Callable[[float | None], bool], **given: Any
 ) -> tuple[Threshold, int]:
-    """Halve over a function; return what was found, and how many rounds it took."""
+    """Halve over a function; return the result, and the number of rounds."""
     halving = Halving(Wanted(metric="f", path="x", **given), bears_out)
     while values := halving.next():
         halving.take([(value, function(value)) for value in values])
@@ -123,7 +123,7 @@ def test_the_amplitude_reaches_a_micrometre_at_the_voltage_of_the_equation() -> 
     assert amplitude_um(turn.value) == pytest.approx(1.0, rel=2e-3)
     assert search.done == search.total == len(found.tried) == 17 + ROUNDS
     assert search.progress == 1.0
-    # what is published decides, and what we expect where nothing is
+    # the published value decides, and the expected value without a published one
     wanted = Wanted(metric="control.effort_rms_v", path="reference.amplitude_v", low=0.5, high=10.0)
     search = Search(Scenario.load(resonator()), wanted, Memory())
     search.run()

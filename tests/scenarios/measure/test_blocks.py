@@ -28,7 +28,7 @@ LONG = 2 * BLOCK + 4321
 
 @pytest.fixture(params=["memory", "file"])
 def column(request, tmp_path: Path):
-    """Put numbers where they are to lie."""
+    """Put numbers into memory or into a file."""
 
     def put(values: np.ndarray) -> np.ndarray:
         if request.param == "memory":
@@ -88,6 +88,6 @@ def test_a_tone_longer_than_a_block(column):
 
 @pytest.mark.parametrize("corner", [0.05, 2.0, 4000.0])
 def test_bandwidth_of_a_lag_in_a_long_record(column, corner):
-    """Of 20 s at 100 kHz every eighth sample is taken, of those of the fastest lag only the beginning."""
+    """Of 20 s at 100 kHz every eighth sample is taken, of the fastest lag's samples only the beginning."""
     lag = 1.0 - np.exp(-2e-5 * np.pi * corner * np.arange(2_000_000))
     assert bandwidth_hz(column(lag), 1.0, 0.01) == pytest.approx(corner, rel=0.015, abs=0.3 if corner > 1.0 else 0.02)

@@ -121,7 +121,7 @@ def test_errors_settling_and_overshoot_by_hand():
     [(0.0, 0.0, 10.0), (5.0, 0.0, 10.0), (5.0, 0.0, -10.0), (20.0, 6.0, 4.0), (20.0, 6.0, -6.0), (20.0, -2.0, 8.0)],
 )
 def test_overshoot_is_over_the_last_step_wherever_it_is_and_begins(start_ms, offset_v, amplitude_v):
-    """exp(-pi z / sqrt(1 - z^2)) of the height of the step, up or down, once what was before is at rest."""
+    """exp(-pi z / sqrt(1 - z^2)) of the height of the step, up or down, once the earlier motion has decayed."""
     values = {
         "sample_rate_khz": 200,
         "reference": {"kind": "step", "amplitude_v": amplitude_v, "offset_v": offset_v, "start_ms": start_ms},
@@ -202,7 +202,7 @@ def test_first_peak_is_over_the_first_peak_of_the_model():
     for sign in (1.0, -1.0):
         assert first_peak(sign * 1.3 * model, sign * model) == pytest.approx(30.0, abs=1e-6)
         assert first_peak(sign * 0.8 * model, sign * model) == pytest.approx(-20.0, abs=1e-6)
-    late = np.where(t < 0.4, model, 5.0)  # the model turns again at 3/8 s: what comes then is not the first peak
+    late = np.where(t < 0.4, model, 5.0)  # the model turns again at 3/8 s: a later peak is not the first peak
     assert first_peak(late, model) == pytest.approx(0.0, abs=1e-6)
     assert first_peak(model, np.zeros(1000)) is None
     assert first_peak(model, t) is None

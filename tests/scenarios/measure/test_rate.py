@@ -60,7 +60,7 @@ def test_settling_is_that_of_two_lags():
 
 
 def test_nothing_is_said_of_what_never_happened():
-    """No step, no settling; nobody turns, no error; one displacement, no rate."""
+    """No step, no settling; no rotation, no error; one displacement, no rate."""
     found = run(Scenario.load({**GYRO, "rate": {"kind": "constant"}})).metrics
     absent = {"rate.settling_ms", "rate.error_pct", "rate.scale_pm_per_dps", "rate.bandwidth_hz", "gyro.trusted"}
     assert not absent & set(found)

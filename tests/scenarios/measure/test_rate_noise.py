@@ -13,7 +13,7 @@ TAUS = [0.01 * 2.0**level for level in range(LEVELS)]
 
 
 def state(record_s: float) -> Allan.State:
-    """Return what a record leaves whose noise is N 0.6 deg/rt h, B 36 deg/h, K 216 deg/h/rt h to the digit."""
+    """Return the state of a record whose noise is N 0.6 deg/rt h, B 36 deg/h, K 216 deg/h/rt h to the digit."""
     s = Allan.State.zeros()
     for level, tau in enumerate(TAUS):
         stride = max(1, 2**level // 8)

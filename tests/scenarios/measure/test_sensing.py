@@ -76,7 +76,7 @@ def test_a_bias_of_an_absolute_sensor_is_its_error(sensor, bias_um):
 
 
 def test_each_sensor_says_its_own_ambiguity():
-    """Whoever reads the light of a grating has its pitch, the others none; the default pitch is 4 um everywhere."""
+    """A sensor with the light of a grating has its pitch, the others none; the default pitch is 4 um everywhere."""
     found = {}
     for name, block in registry.blocks("sense").items():
         if any(port.name == "displacement" for port in block.outputs):
@@ -90,7 +90,7 @@ LIGHT = {"ch2-dual-beam": "dual_beam", "ch2-through-wafer": "through_wafer", "ch
 
 
 def test_the_period_is_the_pitch_of_the_grating_of_the_sensor():
-    """A pitch of 5 um of its own grating is its period, and that of another grating is nothing to it."""
+    """A pitch of 5 um of its own grating is its period, and the pitch of another grating has no effect on it."""
     for name, own in LIGHT.items():
         for light in LIGHT.values():
             spec = with_values(get(name), {f"sensors.{light}.pitch_um": 5.0}).spec
@@ -107,7 +107,7 @@ def test_the_counter_tells_the_interpolation_error_of_the_grating_it_reads():
 
 
 def test_only_what_the_sensor_in_use_told_counts():
-    """A thousand times the density makes 12 um until the other sensor takes over; the figure is that of the second."""
+    """A thousand times the density makes 12 um until the other sensor takes over; the figure belongs to the second."""
     document = {
         "schema": 1,
         "id": "exchanged",

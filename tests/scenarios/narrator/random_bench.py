@@ -1,4 +1,4 @@
-"""Benches drawn from a seed, on which much happens, and what an oracle needs of their runs."""
+"""Benches drawn from a seed, with many events, and the inputs of an oracle from their runs."""
 
 from __future__ import annotations
 

@@ -74,7 +74,7 @@ def expected_settled(found: Result, doings: list[tuple[int, str]]) -> list[tuple
 
 
 def doings(found: Result) -> list[tuple[int, str]]:
-    """List what the scenario does before its end or a trip: (tick, kind)."""
+    """List the events of the scenario before its end or a trip: (tick, kind)."""
     kinds = {"fault": "fault", "heal": "heal", "switch": "switch"}
     events = [(event["at_sample"], next(kinds[key] for key in event if key in kinds)) for event in done(found)]
     return [event for event in events if event[0] < found.samples]
@@ -177,7 +177,7 @@ def test_the_numbers_of_faults_switches_and_trips_follow_from_the_trace(seed: in
                 if scale[said.tick] != scale[said.tick - 1]:
                     numbers[f"{noun}_scale"] = scale[said.tick]
                     times = "again" if scale[said.tick] == 1.0 else f"{format_short(scale[said.tick], '', 3)} times"
-                    assert f"the {noun} is {times} that of a healthy device" in said.text
+                    assert f"the {noun} is {times} the healthy value" in said.text
         assert said.numbers == pytest.approx(numbers, rel=1e-9)
     for said in of(found, "trip"):
         assert found.trip is not None
@@ -256,7 +256,7 @@ def test_the_seven_steps_in_order() -> None:
         *("heal", "fault", "verdict", "heal", "verdict"),
     ]
     delays = [int(said.numbers["delay_samples"]) for said in found.narration if said.kind == "verdict"]
-    assert delays == found.board.scores()["kalman"].delays[1:]  # the first is that of the start, healthy
+    assert delays == found.board.scores()["kalman"].delays[1:]  # the first belongs to the healthy start
 
 
 def test_a_gyroscope_misses_by_what_noise_does_not_explain() -> None:

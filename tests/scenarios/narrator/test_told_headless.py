@@ -1,4 +1,4 @@
-"""The narrator headless: printed and in JSON where somebody asks, and part of the report."""
+"""The narrator headless: printed and in JSON on request, and part of the report."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_hypotheses_are_said_in_words() -> None:
         hypothesis_words(Hypothesis(name="x2", mass=0.9, gain=1.1)) == f"mass {MINUS}10\u00a0%, drive gain +10\u00a0%"
     )
     assert hypothesis_words(Hypothesis(name="healthy")) == "healthy"
-    assert hypothesis_words(Hypothesis(name="heavy", mass=1.05)) == "heavy"  # somebody's choice of words
+    assert hypothesis_words(Hypothesis(name="heavy", mass=1.05)) == "heavy"  # a user's choice of words
 
 
 def test_words_read_as_people_write_them() -> None:

@@ -100,7 +100,8 @@ def test_an_identifier_in_python_has_the_digest_and_the_error_of_the_unit() -> N
 
 
 def test_a_controller_and_diagnosers_from_outside_go_together_compiled_or_not() -> None:
-    """The controller is the open loop; each diagnoser says what it has read, so the trace shows who was asked when."""
+    """The controller is the open loop; each diagnoser writes its inputs, so the trace shows the calls and their
+    times."""
 
     def board(compiled: bool) -> Hosted:
         spec = parse(document({}, RICH))

@@ -1,4 +1,4 @@
-"""The document of other languages does what it says: its blocks run as they stand, and print what is printed there."""
+"""The document of other languages is right: its blocks run unchanged, and their output equals the printed output."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ def point(labels: dict[str, str | float], **figures: tuple[float, float]) -> Poi
 
 
 def results(sweep: Sweep, of: Callable[[dict[str, Any]], float], std: float = 0.01) -> dict[int, PointTally]:
-    """Return a point for each of a campaign, whose error is a function of what it sets."""
+    """Return a point for each of a campaign, whose error is a function of its settings."""
     return {
         number: point(one.labels, error=(of(one.values), std), f0=(2484.0, 0.0))
         for number, one in enumerate(sweep.points)

@@ -1,4 +1,4 @@
-"""Figures of runs: each in the shape of what its scenario is about, with axes, units and what was measured."""
+"""Figures of runs: each in the shape for the subject of its scenario, with axes, units and measured values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is kept of a run: a report and a drawing that need nothing else, and a script that says what was run."""
+"""Files of a run: a report and a drawing that need nothing else, and a script that repeats the run."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ LIGHT, ORDER = SHARED["colours"]["light"], SHARED["hypotheses"]
 
 
 def test_lines_and_hypotheses_follow_the_rules_of_the_page():
-    """Those that ``trace-style.test.ts`` and ``line-field.tsx`` have."""
+    """The rules in ``trace-style.test.ts`` and ``line-field.tsx``."""
     assert [palette.line(number).slot for number in range(8)] == [*range(1, 8), 1]
     assert palette.line(0).dash == "" and palette.line(1).dash == "8 4"
     assert [palette.hypothesis(number).slot for number in range(8)] == ORDER

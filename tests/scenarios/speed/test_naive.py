@@ -1,4 +1,4 @@
-"""The loop in plain numpy gives what the board gives, and takes much longer."""
+"""The loop in plain numpy gives the same results as the board, and takes much longer."""
 
 from __future__ import annotations
 

@@ -175,7 +175,7 @@ def test_a_diagnoser_that_costs_nothing_fits_any_board(monkeypatch):
 
 
 def test_counting_does_not_take_longer_for_a_bank_that_seldom_runs():
-    """A turn, and what is done at each of the other ticks: two states of three products and two sums for each model."""
+    """A turn, and the work of each other tick: two states of three products and two sums for each model."""
     few, many = (
         count(build(with_values(get("ch5-seven-step"), {"diagnosers.kalman.every": n})), "kalman") for n in (2, 10_000)
     )

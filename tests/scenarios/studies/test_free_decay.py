@@ -1,4 +1,4 @@
-"""A shuttle let go decays as beta/2m says; transfer functions combined as in A.11."""
+"""A released shuttle decays by beta/2m; transfer functions combined as in A.11."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Captures: what they keep, in what order they go, and what they may cost."""
+"""Captures: their content, the order of their removal, and the limit of their cost."""
 
 from __future__ import annotations
 
@@ -172,7 +172,7 @@ def test_what_comes_before_the_first_tick_is_left_out_and_captures_do_not_overla
     view, kept = opened(bench, window=240)
     bench.run(1000)
     bench.look(view)
-    # 50 - 60 lies before tick 0; the next windows begin at 190, 490 and 790 at the earliest
+    # 50 - 60 is before tick 0; the next windows begin at 190, 490 and 790 at the earliest
     assert [(one.crossing.tick, one.start, one.stop) for one in kept.captures] == [
         (50, 0, 230),
         (350, 290, 530),
@@ -271,7 +271,7 @@ def test_a_bench_keeps_so_many_triggers_and_never_drops_one_that_is_shown() -> N
     del views[3]
     views.append(opened(bench, level=0.9))
     assert views[-1][1] is not None and opened(bench, level=0.01 * 3)[1] is None
-    # a second page with the same subscription, and one that comes back, see the same
+    # a second page with the same subscription, and a page that comes back, see the same
     assert opened(bench, level=0.02)[1] is views[2][1]
 
 
@@ -288,7 +288,7 @@ def test_window_hysteresis_and_single_capture_what_they_trigger_on() -> None:
     assert ticks_of(leaves[1]) == [50, 150, 250, 350, 450]
     assert ticks_of(enters[1]) == [100, 200, 300, 400, 500]
     assert ticks_of(far[1]) == []  # it goes back by 1
-    # in another sweep the same trigger has the same captures, and what the history has beside them
+    # in another sweep the same trigger has the same captures, and the additional windows of the history
     auto, same = opened(bench)
     assert same is kept
     bench.run(200)

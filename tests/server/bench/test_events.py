@@ -1,4 +1,4 @@
-"""The event log: numbers without gaps, and an honest count of what is forgotten."""
+"""The event log: numbers without gaps, and a true count of forgotten events."""
 
 from __future__ import annotations
 

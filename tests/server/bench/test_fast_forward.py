@@ -23,7 +23,7 @@ WATCHED = "plant.displacement > 2.0"
 
 
 class Clock:
-    """Wall time that passes when it is told to."""
+    """Wall time that passes on command."""
 
     now = 0.0
 
@@ -40,7 +40,7 @@ def session(lead: bool, scale: float | None = SCALE, **values: Any) -> tuple[Ses
 
 
 def go(bench: Session, clock: Clock, wall_s: float) -> None:
-    """Let wall time pass in rounds, as the engine does; what runs fast gets the time of a round to do it in."""
+    """Pass wall time in rounds, as the engine does; a fast-forwarding bench gets the time of a round."""
     for _ in range(round(wall_s * 120)):
         clock.now += 1 / 120
         if bench.is_running:

@@ -37,7 +37,7 @@ def session(**more: Any) -> Session:
 
 
 def told(bench: Session, after: int = 0) -> list[tuple[int, str]]:
-    """Return tick and kind of what happened; the numbers have no gap."""
+    """Return tick and kind of the events; the numbers have no gap."""
     lost, events = bench.events.after(after)
     assert not lost and [event.seq for event in events] == list(range(after + 1, bench.events.last + 1))
     return [(event.tick, event.kind) for event in events]
@@ -119,7 +119,7 @@ def test_twins_do_what_the_board_does_and_tell_it_to_the_same_log() -> None:
     bench.advance(25)
     do(bench, switch="mrac")
     bench.advance(5)
-    # what a twin found in a slice comes behind what the board did in it
+    # events of a twin in a slice come after the events of the board in it
     assert told(bench)[4:] == [(20, "inject"), (3, "twin_tripped"), (25, "switch")]
     calm = bench.board.twins["calm"]
     assert calm.spec.active == bench.board.spec.active == "mrac"

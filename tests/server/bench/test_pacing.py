@@ -15,7 +15,7 @@ DT_S = 1e-5
 
 @given(st.floats(1e-6, 1.0), st.lists(st.floats(1e-4, 0.02), min_size=1, max_size=200))
 def test_targets_do_not_drift(scale: float, pauses: list[float]) -> None:
-    """After any sequence of rounds the target is what one step would have given."""
+    """After any sequence of rounds the target equals the target of one step."""
     pacer, now, tick = Pacer(DT_S, scale), 100.0, 0
     pacer.anchor(0, now)
     for pause in pauses:
@@ -36,7 +36,7 @@ def test_a_long_stall_is_given_up_and_counted() -> None:
     assert target is not None
     assert pacer.given_up_s == pytest.approx(1.0 - CATCH_UP_S, abs=2 * DT_S)
     pacer.record(target, target, 1.0)
-    assert not pacer.capped  # a single stall is over before anybody can read of it
+    assert not pacer.capped  # a single stall is over before a page can show it
     # From here on it runs at its rate again.
     assert pacer.target(target, 1.01) == pytest.approx(target + 1000, abs=1)
 
@@ -99,7 +99,7 @@ def test_a_change_of_scale_counts_from_there() -> None:
 
 
 def test_changes_of_scale_lose_no_time() -> None:
-    """Forty a second, each in the middle of a round: what was due before stays due."""
+    """Forty a second, each in the middle of a round: ticks that were due before stay due."""
     pacer, tick, now = Pacer(DT_S, 1.0), 0, 0.0
     pacer.anchor(0, 0.0)
     for number in range(400):

@@ -1,4 +1,4 @@
-"""The pulse of threads: blocked is told from at work, by what the system says of each."""
+"""The pulse of threads: blocked threads are distinguished from working threads by the data of the system."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ def test_the_thread_of_the_engine_takes_the_outputs_to_safe_values(monkeypatch: 
     careful.hung([bench], [], "the engine broke off")
     assert bench.status.state == "tripped" and bench.board.trip is None and threads == []
     engine.start()
-    engine.submit(lambda: None).result(30)  # what is urgent is done before it
+    engine.submit(lambda: None).result(30)  # urgent jobs are done before it
     engine.stop()
     assert threads == [engine.crew.main]
     assert bench.board.trip is not None and bench.board.value("drive.voltage") == 0.0

@@ -112,7 +112,7 @@ def test_steps_are_exact() -> None:
 
 
 def test_a_long_step_is_taken_in_slices_with_commands_between() -> None:
-    """A pause ends it, and the log says how far it came; the bits are those of a bench that runs."""
+    """A pause ends it, and the log shows its length; the bits equal the bits of a running bench."""
     bench = session(samples=9000)
     asked, behind = step(bench, ticks=5000), step(bench, ticks=3)
     bench.slice(bench.target(0.0))
@@ -197,7 +197,7 @@ def test_going_back_and_on_gives_the_same_bits_and_keeps_the_past() -> None:
     np.testing.assert_array_equal(bench.history.read([0], 0, 1500), past)
     advance(bench, 4000)
     assert bench.board.digest() == digest
-    # The pyramid over the seam is whole: minima and maxima are those of the samples.
+    # The pyramid over the seam is whole: minima and maxima are the minima and maxima of the samples.
     samples = bench.history.read([0], 1400, 1656)[0]
     columns = bench.history.columns([0], 1400, 1656, 4)[0]
     np.testing.assert_array_equal(columns[0], samples.reshape(4, 64).min(1))

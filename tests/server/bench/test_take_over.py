@@ -1,4 +1,4 @@
-"""Other threads take the place of those that hang: jobs go on, and whoever comes back changes nothing."""
+"""Other threads take the place of hanging threads: jobs continue, and a thread that comes back changes nothing."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.server.bench.test_engine import Work, until
 
 
 class Stuck(Work):
-    """A bench that waits in a slice until it is let go."""
+    """A bench that waits in a slice until it is released."""
 
     def __init__(self, engine: Engine, name: str = "stuck") -> None:
         super().__init__(name, 1e4, engine.clock)

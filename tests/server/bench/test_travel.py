@@ -19,7 +19,7 @@ from tests.server.bench.test_session import advance, session
 
 
 class Slow:
-    """A moment of the past whose last half waits until the test lets it go on."""
+    """A moment of the past whose last half waits until the test releases it."""
 
     def __init__(self, tick: int) -> None:
         self.origin = SimpleNamespace(tick=tick)
@@ -37,7 +37,7 @@ class Slow:
 
 
 class Asked:
-    """A bench that shows the past; it keeps each status it is told to have."""
+    """A bench that shows the past; it keeps each of its statuses."""
 
     def __init__(self) -> None:
         self.travel = None

@@ -29,7 +29,7 @@ class Clock:
 
 
 class Main:
-    """A thread that is told whether it lives."""
+    """A thread whose life is set by a test."""
 
     alive = True
 
@@ -38,7 +38,7 @@ class Main:
 
 
 class FakeCrew:
-    """Threads that do as they are told."""
+    """Threads that obey the test."""
 
     def __init__(self) -> None:
         self.main, self.threads, self.held, self.in_hand = Main(), [], [], {}
@@ -59,7 +59,7 @@ class FakeEngine:
 
 
 class Heard:
-    """What the watchdog has said."""
+    """The messages of the watchdog."""
 
     def __init__(self) -> None:
         self.hangs: list[tuple[list[str], list[str], str]] = []
@@ -73,7 +73,7 @@ class Heard:
 
 
 class Told(Finger):
-    """Feels what a test says."""
+    """Returns the pulse that a test sets."""
 
     pulse = BLOCKED
 
@@ -122,7 +122,7 @@ def test_whoever_comes_back_may_hang_again(yard: Yard) -> None:
 
 
 def test_looks_that_are_late_count_little(yard: Yard) -> None:
-    """A machine that stands still now and then delays the engine and the watchdog alike."""
+    """A machine that stalls now and then delays the engine and the watchdog alike."""
     late = SILENT_S / MOST_S
     yard.look(10.0 * (late - 1), every=10.0)
     assert yard.heard.hangs == []

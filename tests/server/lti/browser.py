@@ -34,20 +34,20 @@ class Browser:
         return answer
 
     def end(self, message: str, state: str | None = None) -> httpx.Response:
-        """Bring what the platform signed."""
+        """Bring the signed message of the platform."""
         form = {"id_token": message, "state": self.asked["state"] if state is None else state}
         with self.live.anonymous(headers={"Origin": self.platform.url}) as client:
             return client.post("/lti/launch", data=form)
 
     def exchange(self, answer: httpx.Response, framed: bool = True, **changed: Any) -> httpx.Response:
-        """Exchange what the address has for a session."""
+        """Exchange the code in the address for a session."""
         where = parse_qs(urlsplit(answer.headers["location"]).fragment)
         body = {"code": where["launch"][0], "browser": self.secret, "framed": framed, **changed}
         with self.live.anonymous(headers={"Origin": self.live.address}) as client:
             return client.post("/lti/session", json=body)
 
     def launch(self, **claims: Any) -> httpx.Response:
-        """Come, and bring what the platform signed."""
+        """Come, and bring the signed message of the platform."""
         assert self.begin().status_code == 200
         return self.end(self.platform.sign(self.platform.claims(self.asked["nonce"], **claims)))
 

@@ -40,13 +40,13 @@ class Platform:
     Parameters
     ----------
     client_id : str
-        What it calls the tool.
+        Its name for the tool.
     port : int
         Where it listens; 0 picks a free one.
     tool : str
         Address of the tool, for the page of the course.
     sheet : str
-        What the link on that page leads to.
+        The target of the link on that page.
     """
 
     def __init__(self, client_id: str = "combbench", port: int = 0, tool: str = "", sheet: str = "first-look") -> None:
@@ -55,7 +55,7 @@ class Platform:
         self.scores: list[dict[str, Any]] = []
         self.tokens: list[dict[str, str]] = []
         self.key_set: Any = None
-        """What it answers instead of its keys."""
+        """Its answer instead of its keys."""
         self.asked = 0
         """How often it was asked for its keys."""
         self.shows_keys = threading.Event()
@@ -82,7 +82,7 @@ class Platform:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """What the tool has to know of it."""
+        """The data of the tool about it."""
         return {
             "issuer": self.url,
             "client_id": self.client_id,

@@ -55,7 +55,7 @@ class AtSheet:
         return self.view
 
     def step(self, name: str) -> dict[str, Any]:
-        """Return a step as it is now; one that is done too, or nothing while it is closed."""
+        """Return a step as it is now; also a finished step, or nothing while it is closed."""
         return next((s["step"] for s in self.look()["sections"] if s["step"] and s["step"]["id"] == name), {})
 
     def answer(self, name: str, text: str) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""A class under test: students who joined by its code, each with a bearer and a stream of one's own."""
+"""A class under test: students who joined by its code, each with an own bearer and stream."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def advance(live: Live, **how: Any) -> dict[str, int]:
 
 
 def closed_with(stream: Stream) -> int:
-    """Take what comes until the server closes the stream; return the code that it gives."""
+    """Take messages until the server closes the stream; return the code that it gives."""
     with pytest.raises(ConnectionClosed) as closed:
         while True:
             stream.step()

@@ -1,4 +1,4 @@
-"""Hidden faults: for a class and for a person alone, from the question to the answer and what is kept of it."""
+"""Hidden faults: for a class and for a single user, from the question to the answer and its storage."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def test_each_student_has_a_device_and_noise_of_ones_own(live: Live, group: dict
     benches = [live.get(student.bench) for student in students]
     assert len({bench["seed"] for bench in benches}) == 3
     assert len({bench["parameters"]["device"]["mass_kg"] for bench in benches}) == 3
-    for student in students:  # what they see is the device as it is meant to be
+    for student in students:  # they see the device as designed
         seen = student.ask("GET", f"/api/v1/benches/{student.bench}").json()
         assert seen["parameters"]["device"] == get("ch5-seven-step").document["device"]
         assert (seen["seed"], seen["samples"], seen["diagnosers"]) == (0, None, {})

@@ -1,4 +1,4 @@
-"""While a fault is hidden, no door tells it: what comes out of all of them is the same whatever the fault is."""
+"""While a fault is hidden, no door reveals it: the answers of all of them are the same for every fault."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ BEFORE, AFTER = 50, 450
 ENDING = {("DELETE", "/api/v1/benches/{bench_id}/blind"), ("DELETE", "/api/v1/benches/{bench_id}")}
 WATCHING = {("GET", "/watch"), ("GET", "/watch/{secret}")}
 JOINING = {("POST", "/join"), ("POST", "/api/v1/classes/{class_id}/join"), *WATCHING}
-"""Doors that end the exercise, and those that know no bench and count tries."""
+"""Doors that end the exercise, and doors without a bench that count tries."""
 LONG = {("GET", f"/api/v1/{noun}") for noun in ("catalog", "gallery", "devices", "scenarios", "openapi.json")}
 """Doors that know no bench and say much: asked while the first two faults are hidden."""
 FORBIDDEN = ("plant.displacement", "kalman.winner", "faults.added_mass", "effects.mass_scale", "nobody.knows")
@@ -90,7 +90,7 @@ def hide(live: Live, group: str, student: Somebody, faults: list[Any], monkeypat
 
 
 def run(live: Live, bench: str, tick: int) -> None:
-    """Run a bench that stands still to a tick."""
+    """Run a paused bench to a tick."""
     session, submit = live.service.benches.get(bench), live.service.engine.submit
     while session.board.tick < tick:
         submit(session.advance, tick - session.board.tick).result(10)
@@ -121,7 +121,7 @@ def fetched(student: Somebody, left_out: Collection[tuple[str, str]] = ()) -> di
             if path.endswith("/trace") and answer.status == 200:
                 text = re.sub(r"\[[^\[\]]*\]", "[]", text)
             if path.endswith("/identification") and answer.status == 200:
-                swept = json.loads(text)  # what is measured has a test of its own
+                swept = json.loads(text)  # the measurement has a test of its own
                 text = json.dumps([*swept, swept["tick"], swept["nominal"]])
             found[key] = plain(f"{answer.status} {text}", student.bench)
             kept = {name: value for name, value in answer.getheaders() if name not in ("date", "content-length")}
@@ -211,7 +211,7 @@ def all_say_the_same(live: Live, hidden: list[list[Any]], monkeypatch: pytest.Mo
         assert len(first) - len(got) in (0, 2 * len(LONG))
         assert [(key, got[key], first[key]) for key in got if got[key] != first[key]] == []
     assert len({json.dumps(faults) for faults in hidden}) > len(hidden) / 2
-    path = f"/api/v1/benches/{student.bench}/events"  # the teacher, who is not blind, is told more
+    path = f"/api/v1/benches/{student.bench}/events"  # the teacher, who is not blind, gets more
     assert the_teacher(live).ask("GET", path).json() != student.ask("GET", path).json()
 
 

@@ -240,7 +240,7 @@ def test_sessions_survive_a_restart_no_secret_is_on_the_disk_and_a_class_ends_by
 
 
 def test_the_addresses_to_join_are_those_that_students_can_open(serve: Any, live: Live, group: dict[str, Any]) -> None:
-    assert group["addresses"] == []  # nobody can come to loopback
+    assert group["addresses"] == []  # no other machine can reach loopback
     with serve(public_origin="https://lab.example/bench") as live:
         headers = {"Host": "lab.example", "Origin": "https://lab.example"}
         made = live.http.post("/api/v1/classes", json={"name": "Proxy"}, headers=headers).json()

@@ -1,4 +1,4 @@
-"""What is drawn for a student: HMAC-SHA256 (RFC 2104), so that nothing of it can be told without the secret."""
+"""Draws for a student: HMAC-SHA256 (RFC 2104), so that they cannot be predicted without the secret."""
 
 from __future__ import annotations
 

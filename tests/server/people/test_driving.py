@@ -155,7 +155,7 @@ def test_a_driver_who_is_not_heard_for_5_s_drives_no_more(silent: bool) -> None:
     group.wait(0.25)
     assert not group.refused(TEACHER)
     assert group.lost == ["Ada, who drove, has not been heard for 5 s"]
-    # somebody still there drives as soon as something is done, and the other one is refused; alone it is not felt
+    # a present person drives at the next command, and the other person is refused; alone there is no effect
     assert group.refused(ADA) == silent and group.drives() == ("teacher" if silent else None)
 
 

@@ -84,7 +84,7 @@ def test_a_class_has_games_of_its_own_and_a_table_that_keeps_secrets(live: Live)
     assert first["attempts"][0]["outcome"] != own["attempts"][0]["outcome"]  # each has a game of their own
     others = post(eve, f"{FILTER}/attempts", 201, seed=1, hand_in={"assumed_noise_scale": 3.0})
     assert others["best"] != own["best"] and [line["name"] for line in others["table"]] == ["Eve"]
-    assert look(master, FILTER, 1)["table"] == []  # of those in no class
+    assert look(master, FILTER, 1)["table"] == []  # of players outside classes
 
     better = post(bob, f"{FILTER}/attempts", 201, seed=1, hand_in={"assumed_noise_scale": 3.0})
     ranked = better["table"]
@@ -110,7 +110,7 @@ def test_a_class_has_games_of_its_own_and_a_table_that_keeps_secrets(live: Live)
     assert {line["name"] for line in look(bob, FILTER, 1)["table"]} == {"Bob"}
     assert live.http.delete(f"/api/v1/classes/{group['id']}").status_code == 204
     kept = live.service.database.transact(lambda session: [row.name for row in session.scalars(select(GameAttemptRow))])
-    assert "Eve" in kept and not {"Ada", "Bob"} & {*kept}  # what a class did goes with it
+    assert "Eve" in kept and not {"Ada", "Bob"} & {*kept}  # the answers of a class go with it
     live.http.delete(f"/api/v1/classes/{other['id']}")
 
 
@@ -140,7 +140,7 @@ def test_attempts_are_limited_and_refused_in_one_line(
     assert wrong["field"] == "mass" and "must be <= 2" in wrong["message"]
     assert post(ada, f"{FILTER}/attempts", 422, seed=4, hand_in={"weight": 1.0})["error"]["field"] == "weight"
     assert ada.ask("GET", "/api/v1/games/chess").status_code == 422
-    assert look(ada, FILTER, 4)["left"] == 5  # what is refused does not count
+    assert look(ada, FILTER, 4)["left"] == 5  # refused answers do not count
     onlooker = watcher(live, ada.bench)
     assert onlooker.ask("GET", f"{FILTER}?seed=1").status_code == 409
     monkeypatch.setattr(live.service.games, "_is_open", False)
@@ -148,7 +148,7 @@ def test_attempts_are_limited_and_refused_in_one_line(
 
 
 class Waiting(Executor):
-    """Judges nothing before it is told to."""
+    """Judges nothing before the test allows it."""
 
     def __init__(self) -> None:
         self.asked, self.told = Event(), Future[Any]()

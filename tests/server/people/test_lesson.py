@@ -41,7 +41,7 @@ def test_one_drives_the_others_are_refused_by_rest_and_stream(live: Live, group:
         assert turn(ada, ada.bench, "take")["error"]["code"] == "driving"
         replaced = ada.ask("POST", "/api/v1/benches", json={"scenario": "first-look"})
         assert replaced.json()["error"]["code"] == "driving"
-        # a command to all passes whoever drives
+        # a command to all passes any driver
         live.http.post(f"/api/v1/classes/{group['id']}/commands", json={"command": {"kind": "pause"}})
         advance(live, seconds=1.0)
         theirs.until_type("ping")
@@ -71,7 +71,7 @@ def test_a_driver_whose_connection_is_cut_loses_the_bench(live: Live, group: dic
         if what == "safe":
             assert live.get(bench)["trip"]["tick"] == event["tick"]
             assert theirs.command(reset_trip=True)["ok"]
-            # a repetition of what happened has the same bits
+            # a repetition of the history has the same bits
             toml = live.http.get(f"/api/v1/benches/{bench}/scenario").text
             digest = toml.partition("digest ")[2].split()[0]
             again = live.http.post("/api/v1/benches", json={"scenario": toml, "time_scale": None}).json()["id"]
@@ -116,7 +116,7 @@ def test_a_bench_is_shown_to_all_until_the_teacher_ends_it(live: Live, group: di
         shown.until_type("hello")
         assert shown.command("pause")["error"]["code"] == "forbidden"
         assert ada.ask("POST", f"/api/v1/benches/{own}/driving", json={"do": "take"}).status_code == 403
-        assert live.http.get(f"{path}/members").json()["members"][0]["watchers"] == 1  # she is there
+        assert live.http.get(f"{path}/members").json()["members"][0]["watchers"] == 1  # she is present
         assert live.http.delete(f"{path}/shown").status_code == 204
         assert closed_with(shown) == 4403
     assert ada.ask("GET", f"/api/v1/benches/{own}").status_code == 403
@@ -138,7 +138,7 @@ def test_all_benches_start_together_from_tick_0(live: Live, group: dict[str, Any
     students[0].ask("POST", f"/api/v1/benches/{students[0].bench}/commands", json=fault)
     answer = live.http.post(f"{path}/start", json={"members": [one.id for one in students[:2]]})
     assert answer.json() == {"done": 2, "failed": []}
-    assert live.get(students[0].bench)["faults"] != []  # at tick 0 already, it keeps what was set there
+    assert live.get(students[0].bench)["faults"] != []  # at tick 0 already, it keeps its settings
     live.http.post(f"{path}/commands", json={"command": {"kind": "pause"}})
     for one in students[:2]:
         events = one.ask("GET", f"/api/v1/benches/{one.bench}/events").json()["events"]

@@ -57,7 +57,7 @@ class Lab:
         return self._stack.enter_context(httpx.Client(transport=transport, **base))  # type: ignore[arg-type]
 
     def teacher(self, letter: str) -> httpx.Client:
-        """Somebody who opened the address that a process printed."""
+        """A teacher who opened the address that a process printed."""
         client = self.browser()
         led = client.get("/", params={"shard": letter, "token": TOKEN})
         assert (led.status_code, led.headers["location"]) == (303, "/")
@@ -65,7 +65,7 @@ class Lab:
         return client
 
     def student(self, code: str, name: str) -> httpx.Client:
-        """Somebody who typed a code on the page to join without one, which is that of the first."""
+        """A student who typed a code on the page to join without one, which belongs to the first process."""
         client, typed = self.browser(), {"code": code, "name": name}
         form = form_of(client.get("/join"))
         assert form == "/join?shard=a"
@@ -236,7 +236,7 @@ def test_one_that_is_killed_takes_nothing_of_the_other_along(lab: Lab, folder: P
         assert students["b"].get(f"/api/v1/benches/{benches['b']}").json()["tick"] > 0
         with lab.socket(students["b"], f"/api/v1/benches/{benches['b']}/stream") as stream:
             frames(stream, 2)
-        # a class that ends leaves that of the other as it is
+        # a class that ends leaves the class of the other unchanged
         assert lab.teachers["a"].delete(f"/api/v1/classes/{lab.groups['b']['id']}").status_code == 204
         assert students["b"].get("/api/v1/me").status_code == 401
         assert bench_of(students["a"]) == benches["a"]

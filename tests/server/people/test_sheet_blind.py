@@ -1,4 +1,4 @@
-"""A sheet tells nothing of a bench on which a fault is hidden: at no door, and not by what it closes."""
+"""A sheet reveals nothing of a bench with a hidden fault: at no door, and not by the steps it closes."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def told(at: AtSheet, sheet: str) -> dict[str, str]:
 
 @pytest.fixture
 def sheet(live: Live) -> Iterator[str]:
-    """The sheet; what was done at it, and the classes that did it, are deleted."""
+    """The sheet; the work at it, and its classes, are deleted."""
     made = live.http.post(f"{API}/sheets", json={"text": SHEET}).json()["id"]
     yield made
     live.http.delete(f"{API}/sheets/{made}")
@@ -175,7 +175,7 @@ def cases(live: Live) -> Iterator[tuple[str, dict[str, Any]]]:
 
 
 def truth_of(live: Live, bench: str) -> str:
-    """Return what is hidden on a bench; no door tells it."""
+    """Return the hidden fault of a bench; no door reveals it."""
     return str(live.service.benches.get(bench).hiding.blind.truth)
 
 
@@ -222,7 +222,7 @@ def test_a_fault_that_is_given_up_earns_nothing_and_one_whose_bench_has_gone_is_
 
 
 def test_no_two_names_and_no_two_steps_share_what_is_drawn(live: Live, cases: tuple[str, dict[str, Any]]) -> None:
-    """A second name that joins by the same code is told nothing of the first."""
+    """A second name that joins by the same code gets nothing of the first."""
     sheet, group = cases
     drawn: set[tuple[Any, ...]] = set()
     for name in ("Ada", "Ben"):

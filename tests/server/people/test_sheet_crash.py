@@ -1,4 +1,4 @@
-"""A crash in mid-sheet: what is found is what would have been found without it, bit for bit."""
+"""A crash in mid-sheet: the results equal the results without it, bit for bit."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tests.server.people.test_survival import LEFT_OR_KILLED, Servers
 
 
 class Crashing(Offline):
-    """A student at a sheet whose server crashes again and again, and goes on from its checkpoint."""
+    """A student at a sheet whose server crashes again and again, and continues from its checkpoint."""
 
     crashes = 0
 

@@ -44,7 +44,7 @@ def resonance(at: AtSheet) -> None:
     at.right("peak_guess", "below")
     at.set(reference__frequency_hz=round(f0, 1))
     at.held("resonance", 60.0)
-    # the amplitude that the server has measured is that of the closed form, static gain times Q
+    # the amplitude that the server has measured equals the closed form, static gain times Q
     measured = at.measured("resonance", "Amplitude of the displacement")
     assert measured == pytest.approx(4.0 * abs(d["static_gain_um_per_v"]) * q, rel=0.02)
     at.right("f0", f"{f0 / 1e3:.4f} kHz")

@@ -1,4 +1,4 @@
-"""Sheets on the server: points, order, what is told when, classes, grades, and what survives."""
+"""Sheets on the server: points, order, hidden parts, classes, grades, and survival."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ The end.
 
 @pytest.fixture
 def own(live: Live) -> Any:
-    """A sheet of one's own; it is deleted behind the test."""
+    """A user's sheet; it is deleted after the test."""
     made = live.http.post(f"{API}/sheets", json={"text": OWN})
     assert made.status_code == 201, made.text
     yield made.json()["id"]
@@ -130,7 +130,7 @@ def test_what_is_found_depends_on_ticks_alone(live: Live, own: str, ticks: tuple
     """Conditions count from the first whole window behind the opening, however the bench is made to run."""
     at = AtSheet(live, own)
     at.do(kind="step", ticks=5)
-    at.do(kind="reset")  # what was before does not count, and does not shorten what comes
+    at.do(kind="reset")  # earlier ticks do not count, and do not shorten the rest
     at.set(reference__amplitude_v=volts_of(at))
     asked = cycle(ticks)
     while not at.step("run")["earned"]:
@@ -265,7 +265,7 @@ def test_nobody_hands_in_a_recording_of_somebody_else(live: Live, own: str) -> N
         made = who.ask("POST", f"{API}/benches/{bench}/recordings", json={"ticks": 0, "past_ticks": 10}).json()["id"]
         status[name] = ada.ask("PUT", f"{API}/sheets/{own}/recordings/{made}").status_code
     assert status == {"own": 200, "other": 404, "shown": 404}
-    ada.ask("POST", f"{API}/sheets/{own}/begin")  # another bench; what was recorded before stays one's own
+    ada.ask("POST", f"{API}/sheets/{own}/begin")  # another bench; the earlier recordings stay with the student
     assert ada.ask("PUT", f"{API}/sheets/{own}/recordings/{made}").status_code == 404
     kept = ada.ask("GET", f"{API}/sheets/{own}").json()["recordings"]
     assert ada.ask("PUT", f"{API}/sheets/{own}/recordings/{kept[0]}").json()["recordings"] == kept

@@ -1,4 +1,4 @@
-"""A server that ends in mid-class: students come back to their benches, which go on bit for bit."""
+"""A server that ends in mid-class: students come back to their benches, which continue bit for bit."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def test_students_come_back_to_their_benches(servers: Servers) -> None:
         assert [fault["name"] for fault in now["faults"]] == ["added_mass"] and now["controller"] == "mrac"
         assert len(now["pending"]) == 1 and now["parameters"]["reference"]["amplitude_v"] == 9
         again = got(teacher, f"{ada}/events")["events"]
-        assert again[: len(events)] == events  # the log is complete and goes on
+        assert again[: len(events)] == events  # the log is complete and continues
         advance(live, seconds=0.2)
         assert back[0].ask("POST", f"{ada}/commands", json={"kind": "pause"}).is_success
         saved, digest = teacher.ask("GET", f"{ada}/scenario").text, got(teacher, f"{ada}/digest")
@@ -170,7 +170,7 @@ def test_a_blind_bench_comes_back_blind_and_answers_stay(servers: Servers) -> No
 def test_a_bench_is_there_for_who_asks_before_all_have_come_back(
     servers: Servers, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """From the first request on, and one that hides a fault hides it from then on too."""
+    """From the first request on, and a bench that hides a fault hides it from then on too."""
     first, second = servers
     with first as live:
         group = open_class(live)

@@ -1,4 +1,4 @@
-"""A vote: one answer of each student, which can be changed, and which nobody sees before it is revealed."""
+"""A vote: one answer of each student, which can be changed, and which is secret before it is revealed."""
 
 from __future__ import annotations
 

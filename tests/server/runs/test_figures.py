@@ -1,4 +1,4 @@
-"""Figures of the gallery: made once, kept, and told in one line where they cannot be."""
+"""Figures of the gallery: made once, kept, and reported in one line where they cannot be made."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_figures_are_made_once_and_survive_a_restart(
             picture = live.http.get(f"/api/v1/gallery/{card['id']}/figure")
             assert picture.headers["content-type"].startswith("image/svg+xml")
             assert ElementTree.fromstring(picture.text).attrib["aria-label"] == card["title"]
-        assert live.http.get("/api/v1/runs").json()["runs"] == []  # figures are no runs that somebody asked for
+        assert live.http.get("/api/v1/runs").json()["runs"] == []  # figures are no requested runs
         assert live.http.get("/api/v1/gallery/none/figure").status_code == 404
         assert live.http.get("/api/v1/gallery/appA-spr/figure").json()["error"]["code"] == "not_found"
     kept = {path: path.stat().st_mtime_ns for path in (tmp_path / "figures").iterdir()}

@@ -67,7 +67,8 @@ def test_a_wrong_value_among_many_is_refused_at_once_and_so_is_what_is_too_long(
 
 
 def test_a_point_that_cannot_be_carried_out_is_a_row_with_its_error(live: Any) -> None:
-    """Each value is possible, two of them together are not: the campaign goes on, and says so at that point."""
+    """Each value is possible, two of them together are not: the campaign continues, and reports the error at that
+    point."""
     grid = {"drive.kind": ["held", "analogue"], "controller.kind": ["open_loop", "mrac"]}
     made = live.http.post("/api/v1/sweeps", json={"sweep": {**MANY, "grid": grid}})
     assert made.status_code == 202

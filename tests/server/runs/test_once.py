@@ -1,4 +1,5 @@
-"""A run and a campaign are one mechanism: every single run is computed once, whoever asks, whatever comes between."""
+"""A run and a campaign are one mechanism: every single run is computed once, whatever the requests and
+interruptions."""
 
 from __future__ import annotations
 
@@ -34,7 +35,7 @@ VALUES: dict[str, Any] = {**SHORT, "comparator": {"pole": 2.0, "feedforward": 1.
 
 @pytest.fixture
 def handed(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, int]]:
-    """What was handed to the worker processes: scenario by its controller, seed."""
+    """The work of the worker processes: scenario by its controller, seed."""
     found: list[tuple[str, int]] = []
     submit = Processes.submit
 
@@ -111,7 +112,7 @@ def test_one_summary_whoever_makes_it(live: Any) -> None:
 
 
 def rows(data: Path) -> dict[str, Any]:
-    """What is in the table of results, and since when."""
+    """The table of results, with times."""
     database = Database(data / "combbench.sqlite3")
     try:
         return {row.key: row.created for row in database.transact(lambda session: session.query(ResultRow).all())}
@@ -142,7 +143,7 @@ def test_a_server_that_is_killed_between_two_seeds_goes_on_with_the_next(loaded:
 
 
 def test_a_run_that_is_cancelled_in_mid_tick_goes_on_from_there(tmp_path: Path) -> None:
-    """What is in the table stays, no file does, and nobody waits for the seed under way."""
+    """Rows of the table stay, no file does, and no request waits for the active seed."""
     with serving(tmp_path) as live:
         run_id = live.http.post(RUNS, json={**LONG, "set": {"samples": 100_000}}).json()["id"]
         live.wait(lambda: rows(tmp_path))

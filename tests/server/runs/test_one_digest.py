@@ -1,4 +1,4 @@
-"""The same scenario and seed give the same bits, whoever computes them."""
+"""The same scenario and seed give the same bits on every path."""
 
 from __future__ import annotations
 

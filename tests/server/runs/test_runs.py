@@ -62,7 +62,7 @@ def test_several_seeds_give_means_and_deviations(live: Any) -> None:
     # scripts from earlier send the first seed and the one behind the last
     earlier = live.http.post("/api/v1/runs", json={**body, "seeds": [1, 4]})
     assert earlier.status_code == 200 and earlier.json()["id"] == found["id"]
-    # one digest and one spread, whoever is asked
+    # one digest and one spread on every path
     assert found["summary"]["digest"] == run_seeds(get("ch5-seven-step"), [1, 2, 3])["digest"]
 
 
@@ -122,7 +122,7 @@ def test_the_queue_is_bounded_and_any_run_can_be_cancelled(serve: Any) -> None:
         assert until_running(live, ids[1])["state"] == "running"
         status = live.get(bench["id"])
         assert status["state"] == "running" and status["tick"] > 0
-    # The server has gone while one was under way: it begins again, and what was cancelled stays so.
+    # The server has gone while one was under way: it begins again, and cancelled runs stay cancelled.
     with serve() as live:
         states = {found["id"]: found["state"] for found in live.http.get("/api/v1/runs").json()["runs"]}
         assert states[ids[0]] == states[ids[2]] == "cancelled"
@@ -164,7 +164,7 @@ def test_a_run_keeps_all_signals_when_it_is_asked_to(live: Any) -> None:
     assert every["all"] is True
     assert names_of(live, run_id)[2:] == build(with_values(get("ch5-seven-step"), body["set"])).signals.names
     assert all(every["summary"][key] == few["summary"][key] for key in ("digest", "metrics", "warnings"))
-    # what has all signals has those that are usually kept
+    # a run with all signals has the usual signals
     again = live.http.post("/api/v1/runs", json=body)
     assert again.status_code == 200 and again.json()["all"] is True
 
@@ -212,7 +212,7 @@ def test_a_run_a_crash_interrupted_begins_again_but_not_for_ever(serve: Any, tmp
 
 
 def kill_workers(live: Any, killed: set[int]) -> set[int]:
-    """Kill the workers there are, but for those that were killed before; wait for some."""
+    """Kill the present workers, except workers that were killed before; wait for some."""
     processes = live.service.queue.processes
     fresh = live.wait(lambda: set(getattr(processes._pool, "_processes", None) or {}) - killed)
     for pid in fresh:

@@ -84,7 +84,7 @@ def test_a_campaign_is_read_from_its_files(serve: Any, tmp_path: Path, monkeypat
 
 
 def test_files_grow_while_a_campaign_runs(serve: Any, tmp_path: Path) -> None:
-    """What is asked for while it runs is read from files that hold what was done by then."""
+    """Requests during the run are read from files that hold the finished runs."""
     long = {**CAMPAIGN, "set": {"samples": 9000}, "seeds": {"count": 300}}
     with serve() as live:
         sweep_id = live.http.post("/api/v1/sweeps", json={"sweep": long}).json()["id"]

@@ -29,7 +29,7 @@ def test_a_threshold_is_found_as_it_is_headless(live: Any) -> None:
     search = Search(get(NAME), Wanted(**ASKED), Memory())
     search.run()
     assert found["found"] == search.kept
-    # 80 % more effort is that of a severity between the two
+    # 80 % more effort belongs to a severity between the two
     begins, ends = found["found"]["turns"]
     assert (begins["begins"], ends["begins"]) == (True, False)
     again = live.http.post(PATH, json={"scenario": NAME, **ASKED})

@@ -19,11 +19,11 @@ OPEN = {
     ("GET", "/watch/secret"): (403, "the link itself is the secret"),
     ("GET", "/watch"): (422, "a shared link, by which the teacher lets people watch"),
 }
-"""Doors that need no token, what a stranger with nothing gets there, and why."""
+"""Doors that need no token, the answer to a stranger there, and the reason."""
 
 
 def routes(app: Any) -> list[Any]:
-    """All routes with their full paths, those of included routers too."""
+    """All routes with their full paths, including routes of included routers."""
     flat: list[Any] = []
     for route in app.routes:
         contexts = getattr(route, "effective_route_contexts", None)

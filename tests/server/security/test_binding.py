@@ -1,4 +1,4 @@
-"""Other machines are let in only with a token somebody chose."""
+"""Other machines are admitted only with a token that a user chose."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a request comes from: what a proxy says counts only from proxies that are trusted."""
+"""Origin of a request: the headers of a proxy count only from trusted proxies."""
 
 from __future__ import annotations
 

@@ -103,7 +103,7 @@ def test_the_token_is_for_the_teachers_machine_alone(classroom: Any, network: ht
         refused = network.get("/api/v1/benches", headers=headers)
         assert refused.status_code == 401
         assert "works on the teacher's machine only" in refused.json()["error"]["hint"]
-        # What a proxy would say of the caller is not believed.
+        # The headers of a proxy about the caller are ignored.
         forged = {"X-Forwarded-For": "127.0.0.1", "X-Real-IP": "127.0.0.1", "Forwarded": "for=127.0.0.1"}
         assert network.get("/api/v1/benches", headers=headers | forged).status_code == 401
     page = network.get("/", params={"token": TOKEN}, headers=HTML)

@@ -1,4 +1,4 @@
-"""The address of the page behind a proxy: what is accepted, and what it changes."""
+"""The address of the page behind a proxy: the accepted values, and their effects."""
 
 from __future__ import annotations
 

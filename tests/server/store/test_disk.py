@@ -1,4 +1,4 @@
-"""A full disk: the bench and its streams go on, the recording ends with an alarm and can be read."""
+"""A full disk: the bench and its streams continue, the recording ends with an alarm and can be read."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def test_what_a_full_disk_could_not_take_is_closed_later(serve: Any, monkeypatch
 
         monkeypatch.setattr(database, "transact", refuse)
         answer = live.http.post(f"{recordings(bench)}/{started['id']}/stop")
-        assert answer.status_code == 200 and answer.json()["state"] == "done"  # so it is told, though not yet kept
+        assert answer.status_code == 200 and answer.json()["state"] == "done"  # reported, though not yet stored
         before = said(live, started["id"])
         is_full = False
         after = said(live, started["id"])

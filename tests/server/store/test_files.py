@@ -1,4 +1,4 @@
-"""Trace files: every format holds the same numbers, and what a crash cuts off is recovered."""
+"""Trace files: every format holds the same numbers, and files that a crash has cut off are recovered."""
 
 from __future__ import annotations
 
@@ -172,7 +172,7 @@ def test_a_disk_that_fails_ends_the_recording_and_not_the_bench(
     assert not one.is_open
     assert ends.told == [(3, "the disk failed: No space left on device")]
     assert pq.read_metadata(path).num_rows == 3
-    one.append(0, np.zeros((2, 10), np.float32))  # taken by nobody, harms nobody
+    one.append(0, np.zeros((2, 10), np.float32))  # without a reader it has no effect
 
 
 def test_a_table_of_text_has_a_header() -> None:

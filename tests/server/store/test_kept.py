@@ -1,7 +1,7 @@
 """A data folder of an earlier version, whose events are in the earlier notation: all in it is still of use.
 
-It has a recording, one the server's end cut off, and a run. While the first was made somebody injected faults,
-switched, set values, healed, let commands wait, tripped the board and reset it.
+It has a recording, a recording that the server's end cut off, and a run. While the first was made a user injected
+faults, switched, set values, healed, let commands wait, tripped the board and reset it.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def told(events: list[dict[str, Any]]) -> list[tuple[Any, ...]]:
 
 
 def deeds(kept: dict[str, Any]) -> list[dict[str, Any]]:
-    """Return what people did behind the scenario of a recording, as events of a scenario."""
+    """Return the user's commands after the scenario of a recording, as events of a scenario."""
     first = kept["scenario"]["samples"]
     done = [e for e in kept["events"] if e["kind"] in DEEDS and e["actor"] != "scenario" and e["tick"] > first]
     return [{**event["command"], "at_sample": event["tick"]} for event in done]

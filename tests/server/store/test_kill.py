@@ -27,7 +27,7 @@ SIGNAL = "sensor.displacement"
 
 
 def truth(ticks: int) -> Any:
-    """What the bench does, run headless; noise included."""
+    """The run of the bench, headless; noise included."""
     return run(with_values(get("first-look"), {"samples": ticks})).signal(SIGNAL).astype(np.float32)
 
 
@@ -61,7 +61,8 @@ def record_and_kill(served: Served, moments: random.Random) -> tuple[str, int]:
 
 
 def check(served: Served, recording_id: str, tick: int, expected: Any) -> int:
-    """What is left of a recording: no more than a second is missing, every tick is right. Returns what is missing."""
+    """Check the rest of a recording: no more than a second is missing, every tick is right. Returns the missing
+    ticks."""
     found = served.http.get(f"/api/v1/recordings/{recording_id}").json()
     assert found["state"] in ("aborted", "done") and found["finished"], found
     last = found["start_tick"] + found["ticks"]

@@ -1,4 +1,4 @@
-"""The table of links: what is kept, what is refused, what is forgotten; SQLite and PostgreSQL alike."""
+"""The table of links: stored, refused and forgotten links; SQLite and PostgreSQL alike."""
 
 from __future__ import annotations
 

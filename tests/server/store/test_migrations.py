@@ -1,4 +1,5 @@
-"""The database is brought to this version, and its tables are those of the models; SQLite and PostgreSQL alike."""
+"""The database is migrated to this version, and its tables equal the tables of the models; SQLite and PostgreSQL
+alike."""
 
 from __future__ import annotations
 
@@ -143,7 +144,7 @@ def test_runs_and_campaigns_come_into_one_table_and_lead_back(place: Any) -> Non
     command.downgrade(alembic_config(database.url), "0006")
     after = as_it_was(database)
     for row in before["runs"]:
-        row["progress"] = 1.0 if row["state"] == "done" else 0.0  # of one that did not come to its end nothing is kept
+        row["progress"] = 1.0 if row["state"] == "done" else 0.0  # of an unfinished run nothing is kept
     assert after == before
     database.close()
 
@@ -152,7 +153,7 @@ def test_runs_and_campaigns_come_into_one_table_and_lead_back(place: Any) -> Non
 def test_a_data_folder_of_the_sixth_version_opens(
     kind: str, request: pytest.FixtureRequest, serve: Any, tmp_path: Path
 ) -> None:
-    """Runs, campaigns, names and files are there; what was under way is told of."""
+    """Runs, campaigns, names and files exist; interrupted work is reported."""
     at: dict[str, Any] = {}
     if kind == "postgresql":
         at = {"database_url": new_database(request.getfixturevalue("postgres_server"), "folder")}

@@ -1,4 +1,4 @@
-"""The service on PostgreSQL: runs, campaigns and recordings do what they do on SQLite."""
+"""The service on PostgreSQL: runs, campaigns and recordings work as on SQLite."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def test_the_service_keeps_all_of_it_in_postgresql(serve: Any, postgres_server: 
         kept = live.http.post(recordings(bench), json={"past_ticks": 400, "ticks": 0}).json()
         assert ended(live, kept["id"])["ticks"] == 400
     assert not (tmp_path / "combbench.sqlite3").exists()
-    with serve(database_url=address, folder=tmp_path) as live:  # all of it is there after a restart
+    with serve(database_url=address, folder=tmp_path) as live:  # everything exists after a restart
         assert live.http.get(f"/api/v1/runs/{done['id']}").json()["summary"] == done["summary"]
         assert live.http.get(f"/api/v1/sweeps/{sweep['id']}").json()["done"] == 4
         points = live.http.get(f"/api/v1/sweeps/{sweep['id']}/points").json()["points"]

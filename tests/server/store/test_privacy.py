@@ -1,4 +1,4 @@
-"""Who may read what is stored: a data folder that a version left open to others, and what errors say."""
+"""Readers of stored data: a data folder that a version left open to others, and the content of errors."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_what_is_ours_is_closed_and_what_is_not_is_left_alone(tmp_path: Path) ->
         (data / name).write_text("x")
     keep_private(data)
     assert mode(data / "combbench.sqlite3") == mode(data / "combbench.sqlite3-wal") == mode(data / "token") == 0o600
-    assert mode(data / "recordings") == 0o700  # nobody else gets to what is in it
+    assert mode(data / "recordings") == 0o700  # other users cannot reach its content
     assert mode(data) == 0o755 and mode(data / "notes.txt") == 0o644
     (data / "later").write_text("x")
     assert mode(data / "later") == 0o600

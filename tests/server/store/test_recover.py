@@ -1,4 +1,4 @@
-"""What a server that was killed leaves beside its recordings is put in order at the next start."""
+"""The remains of a killed server in its recordings are put in order at the next start."""
 
 from __future__ import annotations
 

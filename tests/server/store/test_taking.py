@@ -1,4 +1,4 @@
-"""Recordings that take the past along, wait for a condition, say what they are, and are compared and played."""
+"""Recordings that take the past along, wait for a condition, describe themselves, and are compared and played."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def table(live: Any, recording_id: str, **query: Any) -> Any:
 
 
 def stepped(live: Any, ticks: int, scenario: str = "ch5-seven-step", **fields: Any) -> dict[str, Any]:
-    """A bench that stands at a tick."""
+    """A bench that is paused at a tick."""
     bench: dict[str, Any] = live.bench(scenario, paused=True, **fields)
     assert live.command(bench["id"], "step", ticks=ticks).status_code == 200
     return bench
@@ -232,11 +232,11 @@ def test_a_replay_seeks_and_loops(live: Any) -> None:
         seen.append(live.get(replay)["tick"])
     assert sum(later < earlier for earlier, later in pairwise(seen)) == 2
     assert live.get(replay)["state"] == "running" and all(2000 <= tick < 2200 for tick in seen)
-    # a span that begins anew keeps its pace: a step of 10 ms plays 50 ticks, less what was over at the turn
+    # a span that begins anew keeps its pace: a step of 10 ms plays 50 ticks, less the excess at the turn
     assert all(0 <= (later - earlier) % 200 <= 52 for earlier, later in pairwise(seen))
     live.command(replay, "loop")
     live.until(replay, lambda status: status["tick"] == 3000 and status["state"] == "paused")
-    # a loop asked for at the end plays on; one asked for where somebody has paused waits
+    # a loop requested at the end plays on; a loop requested during a pause waits
     live.command(replay, "loop", start_tick=2000, end_tick=2200)
     live.until(replay, lambda status: status["state"] == "running" and 2000 <= status["tick"] <= 2200)
     live.command(replay, "pause")
@@ -256,7 +256,7 @@ def test_a_live_bench_is_saved_and_graded_headless_to_the_same_bits(live: Any) -
     found = wait(live, run["id"])
     assert seen["tick"] == found["summary"]["ticks"] == 3500
     assert found["summary"]["digest"] == seen["digest"]
-    assert [entry["metric"] for entry in found["summary"]["expectations"]]  # graded by what the scenario expects
+    assert [entry["metric"] for entry in found["summary"]["expectations"]]  # graded by the expectations of the scenario
 
 
 def test_a_recording_is_deleted_once_it_has_ended(live: Any) -> None:

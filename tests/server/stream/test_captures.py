@@ -100,7 +100,7 @@ def test_captures_outlive_the_history_with_the_bits_of_a_headless_run(small: Any
             before, after = (whole["reference.voltage"][mark["tick"] + at] for at in (-1, 0))
             assert before < 0.0 <= after and mark["tick"] - mark["start_tick"] == 50
             assert mark["trigger_tick"] == pytest.approx(mark["tick"] - 1 - before / (after - before), abs=1e-4)
-        # the scope stands on one of them: at full rate, down to single ticks
+        # the scope shows one of them: at full rate, down to single ticks
         old = marks[0]
         ask = {**ASK, "mode": "frozen", "start_tick": old["start_tick"] + 20, "end_tick": old["start_tick"] + 30}
         stream.send(type="subscribe", panel=1, **ask)

@@ -33,7 +33,7 @@ def patient(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def only_client(live: Any) -> tuple[Any, threading.Event]:
-    """Return the one client there is, and what is set once its line is gone."""
+    """Return the only client, and the event of the end of its line."""
     (room,) = live.service.hub._rooms.values()
     (client,) = room.clients
     gone, lost = threading.Event(), client.line.connection_lost

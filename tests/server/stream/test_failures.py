@@ -1,4 +1,4 @@
-"""What nobody expected on a stream: it is told and logged, and what can go on goes on."""
+"""Unexpected errors on a stream: they are reported and logged, and the rest continues."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""When pages are shown something, and what they share."""
+"""The times at which pages get pictures, and their shared pictures."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from server.stream.wire import Subscribe
 
 
 class Line:
-    """A line that keeps what is written, and may be full."""
+    """A line that keeps the written bytes, and may be full."""
 
     def __init__(self) -> None:
         self.is_free = True
@@ -41,7 +41,7 @@ class Line:
         self.came.set()
 
     def messages(self) -> list[Any]:
-        """Read what was written, frame by frame of RFC 6455."""
+        """Read the written bytes, frame by frame of RFC 6455."""
         data, found = b"".join(self.written), []
         self.written = []
         while data:
@@ -249,7 +249,7 @@ async def test_a_full_line_is_left_alone_until_it_has_drained() -> None:
 
 @on_loop
 async def test_words_are_not_taken_for_deeds() -> None:
-    """A page that acknowledges all there is, while nothing leaves for it, is let go like one that says nothing."""
+    """A page that acknowledges everything, while nothing leaves for it, is closed like a silent page."""
     bench = Bench()
     client, line = bench.page()
     bench.session.slice(100)

@@ -53,7 +53,7 @@ def test_messages_are_framed_as_the_library_frames_them(size: int) -> None:
 
 def test_messages_are_heard_however_they_are_cut(live: Any) -> None:
     async def turn() -> None:
-        """Let the loop read what has come."""
+        """Let the loop read the received data."""
 
     bench = live.bench(time_scale=0.01)
     with live.stream(bench["id"]) as stream:

@@ -20,7 +20,7 @@ DT = 0.01
 
 
 def fill(history: History, values: np.ndarray[Any, Any]) -> None:
-    """Append a signal (and its negative as a tap) behind what is there."""
+    """Append a signal (and its negative as a tap) after the existing samples."""
     for start in range(0, len(values), 100):
         part = np.ascontiguousarray(values[start : start + 100, None], np.float64)
         history.append(Rows.of(history.end_tick, np.hstack([part, -part]), part.shape[1]))

@@ -99,7 +99,7 @@ def test_at_most_two_frames_are_on_their_way(live: Any) -> None:
         stream.settle()
         watched(live, bench, stream, 3)
         assert [frame.frame for frame in stream.frames] == [1, 2, 3, 4]
-        # the newest picture comes, not one that waited
+        # the newest picture comes, not a waiting one
         assert stream.frames[2].head == later
         watched(live, bench, stream, 10)
         stream.until(lambda message: isinstance(message, dict) and message.get("dropped_frames", 0) > 10)
@@ -157,7 +157,7 @@ def test_a_stalled_page_is_let_go_and_the_others_see_nothing_of_it(live: Any) ->
 
 
 def stand_still_while_reading(live: Any, seconds: float) -> None:
-    """Stop the loop where it polls its sockets: next come its timers, and only then what has arrived meanwhile."""
+    """Stop the loop where it polls its sockets: next come its timers, and only then the data received meanwhile."""
     loop = live.service._loop
     inner, outer = socket.socketpair()
 
@@ -172,7 +172,7 @@ def stand_still_while_reading(live: Any, seconds: float) -> None:
 
 @pytest.mark.long
 def test_a_server_that_stood_still_does_not_blame_its_pages(on_the_wall: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What a page acknowledged meanwhile waits to be read: nobody is let go before it has been."""
+    """Acknowledgements of the meantime wait to be read: no page is closed before they have been."""
     monkeypatch.setattr(client_module, "STALL_S", 1.0)
     bench = on_the_wall.bench()
     with on_the_wall.stream(bench["id"]) as stream:
@@ -203,7 +203,7 @@ def test_events_come_in_order_and_are_replayed_after_a_reconnect(live: Any) -> N
         stream.send(type="resume", after=seen[-1])
         stream.until_event(seq=hello["last_event"])
         again = stream.events
-        # One that happened meanwhile may come before the replay, and once more within it.
+        # An event of the meantime may come before the replay, and once more within it.
         again = again[[event["seq"] for event in again].index(seen[-1] + 1) :]
         again = [event for event in again if event["seq"] <= hello["last_event"]]
         assert [event["seq"] for event in again] == list(range(seen[-1] + 1, hello["last_event"] + 1))
@@ -241,7 +241,7 @@ def test_a_command_is_answered_with_its_tick(live: Any) -> None:
         stream.send(type="command", id="mine", command={"switch": "mrac"})
         reply = stream.until_type("reply")
         assert reply["id"] == "mine" and reply["ok"] and reply["tick"] >= before
-        # who reads the answer has read before it what the command changed
+        # a client that gets the answer has read before it the changes by the command
         said = [m for m in stream.messages if m["type"] == "status"]
         assert said[-1]["controller"] == "mrac"
         told = [m["parameters"] for m in said if m["parameters"]]
@@ -261,7 +261,7 @@ def test_the_status_stands_before_every_answer_to_a_command(live: Any) -> None:
 
 
 def faults() -> Any:
-    """Injections and cures in turn, each with what the page then sees."""
+    """Injections and cures in turn, each with the status that the page then gets."""
     for number in itertools.count():
         inject = {"fault": "damping", "severity": 0.3}
         yield (inject, np.float32(0.3)) if number % 2 == 0 else ({"heal": "all"}, np.float32(0.0))

@@ -50,7 +50,8 @@ def walk(values: Any, edge: str, level: float, hysteresis: float, upper: float =
 
 
 class Moving(Samples):
-    """A history that has lost its oldest ticks when it is read, because its bench goes on; it does so until tick 10."""
+    """A history that has lost its oldest ticks when it is read, because its bench continues; it does so until tick
+    10."""
 
     def read(self, signals: list[int], start: int, stop: int) -> NDArray[np.float32]:
         self.first_tick = min(self.first_tick + 3, 10)

@@ -1,4 +1,4 @@
-"""The shape and its motion: the drawing's numbers, what is magnified and said, what warns."""
+"""The shape and its motion: the drawing's numbers, the magnified and printed quantities, the warnings."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def test_a_comb_warns_before_stability_is_lost() -> None:
 
 
 def test_fingers_are_off_centre_by_shift_and_rotation() -> None:
-    """y + theta X at +x, y - theta X at -x, with what was off as made."""
+    """y + theta X at +x, y - theta X at -x, with the offset of fabrication."""
     plant = Planar.Params(misalignment_um=0.1, misalignment_mrad=1.0)
     right, left = combs_of(0.2, 2e-3, 166.0, plant)
     assert right == pytest.approx(0.3 + 3e-3 * 166.0) and left == pytest.approx(0.3 - 3e-3 * 166.0)

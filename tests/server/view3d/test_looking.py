@@ -1,4 +1,4 @@
-"""A page that looks at another moment: the pose of that tick from the history, and nobody else's picture moves."""
+"""A page that shows another moment: the pose of that tick from the history, and no other picture moves."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def look(page: Any, tick: int | None) -> None:
 
 
 def stepped(live: Any, *commands: tuple[int, dict[str, Any]], ticks: int, **bench: Any) -> Any:
-    """Return a session that stands, on which something was done at some ticks."""
+    """Return a paused session, with commands at some ticks."""
     made = live.bench(paused=True, **bench)["id"]
     session = live.service.benches.get(made)
     for tick, command in [*commands, (ticks, {})]:
@@ -49,7 +49,7 @@ def test_a_pose_is_that_of_the_tick(live: Any) -> None:
         ticks=900,
     )
     for tick, severity in ((250, None), (400, 0.2), (600, None), (800, 0.4)):
-        # one that has never looked before: the log tells the parameters
+        # an observer that starts now: the log gives the parameters
         observer = observer_of(session)
         assert isinstance(observer, Observer)
         pose = observer.pose(tick)
@@ -93,7 +93,7 @@ def test_a_gyroscope_is_shown_as_it_was(live: Any) -> None:
 
 
 def moments(page: Any, enough: Callable[[list[str]], bool], seen: Callable[[Any], bool] = lambda _: False) -> list[str]:
-    """Take what a scene sends until it has said enough about the moment it shows, or a message is seen."""
+    """Take messages of a scene until they describe its moment completely, or a message is seen."""
     said: list[str] = []
     while not enough(said):
         data = page.recv(timeout=60)
@@ -144,7 +144,7 @@ def test_only_the_page_that_looks_is_moved_and_it_comes_back(live: Any) -> None:
         assert moments(page, bool) == [""]
         assert own._shown == shared
         assert show.watchers == 2 and len(show._own) == 1
-    live.wait(lambda: not show._own and show._scene is None)  # no scene stays lit for nobody
+    live.wait(lambda: not show._own and show._scene is None)  # no scene stays open without a page
 
 
 def test_a_tick_that_the_history_has_not_leaves_the_page_with_now(live: Any) -> None:
@@ -173,7 +173,7 @@ def test_watchers_look_too_and_a_fault_that_is_hidden_ends_it(live: Any) -> None
         moments(page, bool)
         look(page, 100)
         moments(page, lambda said: said[-1:] == ["at 2.000 ms"])
-        # what is hidden from now on closes the scene of a page that looks, too
+        # a value hidden from now on closes the past scene of a page, too
         assert live.http.post(f"/api/v1/benches/{session.id}/blind", json={"seed": 1}).status_code == 201
         with pytest.raises(ConnectionClosed):
             moments(page, lambda _: False)

@@ -1,4 +1,4 @@
-"""Every fault is seen on its part, those nobody has drawn too."""
+"""Every fault is visible on its part, faults without a drawing too."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_faults_at_one_place_share_a_label() -> None:
 
 
 def test_an_adhesion_is_a_dot_where_it_holds() -> None:
-    """Beams begin 37.5 um from the axis, are 350 um long and stand at 15 and 45 um."""
+    """Beams begin 37.5 um from the axis, are 350 um long and are at 15 and 45 um."""
     for beam, position, x, y in (("inner", 0.75, 15.0, 300.0), ("outer", 0.5, 45.0, 212.5)):
         found = shown("point_adhesion", 1.0, beam=beam, position=position)
         (dot,) = found.solids

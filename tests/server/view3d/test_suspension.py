@@ -75,7 +75,7 @@ def test_the_energy_of_the_drawn_curves_is_that_of_the_suspension() -> None:
         length = points[-1, along] - points[0, along]
         energy += 164e3 * g.thickness_um * width**3 / 12 / 2 * abs(np.polyval(area, length))
     assert 2 * energy == pytest.approx(g.stiffness_n_m() / 2, rel=5e-3)  # of one side
-    # what is missing is in stretched beams, which no curve shows
+    # the missing part is in stretched beams, which no curve shows
     assert 4 * energy == pytest.approx(stiffness(g)[0, 0], rel=2e-3)
 
 

@@ -90,7 +90,7 @@ def test_the_scene_moves_while_somebody_watches(live: Any) -> None:
         with join(live, bench) as second:
             arrive(second, 5, live)
             assert show.watchers == 2 and show._scene.path == path
-    live.wait(lambda: show._scene is None and not path.parent.exists())  # the scene is lit for nobody
+    live.wait(lambda: show._scene is None and not path.parent.exists())  # the scene is open without a page
 
 
 def test_a_paused_bench_sends_nothing(live: Any) -> None:
@@ -141,7 +141,7 @@ def test_a_temporary_folder_without_room_for_a_socket_is_told_in_one_line(
 
 
 def test_what_a_page_says_does_not_reach_the_scene(live: Any, caplog: pytest.LogCaptureFixture) -> None:
-    """viser would open a public tunnel for who asks, and breaks at what it does not know."""
+    """viser would open a public tunnel for any client, and breaks at unknown messages."""
     bench = live.bench(time_scale=0.002)
     with join(live, bench) as page:
         for said in (b"", b"\xff" * 300, "text", msgspec.msgpack.encode({"type": "ShareUrlRequest"})):

@@ -4,7 +4,7 @@ import { nameOf, SCREENS } from "../screens";
 
 const PANELS = ["What can be turned", "Drawing", "Figures", "Frequency response", "Sensitivity"];
 
-/** What is missing, sticks out of its panel or of the page, or lies over another panel. */
+/** Parts that are missing, stick out of their panel or of the page, or cover another panel. */
 const faultsOf = (page: Page): Promise<string[]> =>
   page.locator("main").evaluate((main, wanted) => {
     const panels = Array.from(main.querySelectorAll("section, header")).map((panel) => {
@@ -33,7 +33,7 @@ const faultsOf = (page: Page): Promise<string[]> =>
     return [...missing.map((name) => `${name} is missing`), ...over, ...out];
   }, PANELS);
 
-test("no panel of the designer lies over another or is cut, at any width", async ({ page, server }) => {
+test("no panel of the designer covers another or is cut, at any width", async ({ page, server }) => {
   await page.request.get(server.url);
   await page.goto(`${server.origin}/?page=designer`);
   await expect(page.getByRole("img", { name: /^Bode diagram/ })).toBeVisible();

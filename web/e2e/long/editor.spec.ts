@@ -7,7 +7,7 @@ import { seriousViolations } from "../serious-violations";
 const DOCUMENT = readFileSync(join(import.meta.dirname, "..", "..", "..", "docs", "own-units.md"), "utf-8");
 const PI = DOCUMENT.split("```python\n")[1].split("```")[0];
 
-test("the editor and the difference of two versions lie right on a large screen and on a phone, dark and light", async ({
+test("the editor and the difference of two versions fit on a large screen and on a phone, dark and light", async ({
   page,
   openBench,
 }) => {

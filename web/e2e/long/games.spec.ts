@@ -25,7 +25,7 @@ async function fill(page: Page, name: RegExp, value: string): Promise<void> {
 /** Points as the page writes them. */
 const written = (points: number) => points.toFixed(1).replace("-", "\u2212");
 
-test("the panel lies right on every screen", async ({ page, openBench }) => {
+test("the panel fits on every screen", async ({ page, openBench }) => {
   await openBench("lab");
   await front(page, "Lesson", "Games");
   for (const game of ["be-the-filter", "fool-the-bank"]) {

@@ -19,7 +19,7 @@ const KNOWN = [
   ["Leak of the package", /^damping \+100\s%$/],
 ] as const;
 
-/** Those that any device may have. */
+/** Faults that any device may have. */
 const COMMON = [
   "Added mass",
   "Ageing",
@@ -114,7 +114,7 @@ test("a loop makes something of a fault, and controllers take over from the page
   await faults.getByRole("button", { name: "Heal all" }).click();
   await later(server, rate).toBeCloseTo(TRUE_DEG_S, -1);
 
-  // a spring between the axes is read as quadrature, beside what the device has, and not as a rate
+  // a spring between the axes is read as quadrature, in addition to the device's own, and not as a rate
   await page.getByRole("tab", { name: "Quadrature" }).click();
   const quadrature = () =>
     reading(legend(page, "(@active|force_to_rebalance).quadrature"), "force to rebalance quadrature");
@@ -168,14 +168,14 @@ test("a rate that the motion does not tell is not trusted; the faults of any dev
   await expect(row).toContainText("not trusted");
   await front(page, "Log", "Events");
   await expect(page.getByText(/^adaptive_rate: not persistently exciting/)).toBeVisible();
-  // another frequency along y, from its card, and the rate is told
+  // another frequency along y, from its card, and the rate is found
   await controllers.getByRole("button", { name: "Parameters" }).last().click();
   await page.getByRole("textbox", { name: "Frequency y, Hz" }).fill("813.282");
   await page.keyboard.press("Enter");
   await front(page, "Controller", "Choice");
   await server.advance(2);
   await expect(row).not.toContainText("not trusted");
-  // what the force to rebalance holds at this rate in 0.19 s swings past the travel when it lets go, so it is let little
+  // after 0.19 s at this rate, y swings past the travel when force to rebalance stops holding it: let little time pass
   await server.ask("POST", `/benches/${id}/commands`, { kind: "time_scale", value: 0.0005 });
   // a loop that goes after the resonance would lose it to ageing, and push too hard when that is healed
   await controllers.getByRole("radio", { name: "Drive tracking" }).click();

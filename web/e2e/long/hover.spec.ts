@@ -23,7 +23,7 @@ async function fieldOf(page: Page) {
   return { x: (share: number) => box.x + share * box.width, y: box.y + box.height / 2 };
 }
 
-test("under the pointer the device in 3D is that of the moment, and it comes back when the pointer leaves", async ({
+test("under the pointer the device in 3D shows that moment, and it comes back when the pointer leaves", async ({
   page,
   openBench,
   server,
@@ -57,7 +57,7 @@ test("under the pointer the device in 3D is that of the moment, and it comes bac
   await expect(moment).toBeHidden();
   await expect.poll(shown).toBe(now);
 
-  // a fault that came later is not on the device of before, and is there again when the pointer leaves
+  // a fault that came later is not on the device of before, and is back when the pointer leaves
   await server.ask("POST", `/benches/${bench}/commands`, { fault: "added_mass", severity: 0.3 });
   await server.ask("POST", `/benches/${bench}/commands`, { kind: "step", ticks: 3 });
   await expect.poll(shown).not.toBe(now);

@@ -32,7 +32,7 @@ test("a campaign of many points is read page by page, and its runs as a density"
   await result.getByRole("button", { name: "Page 5" }).click();
   await expect(shown).toHaveText("Points 201 to 250 of 250");
   await expect(rows).toHaveCount(50);
-  // sorted by the server: the noisiest of all comes first, not that of the page
+  // sorted by the server: the noisiest of all comes first, not the noisiest of the page
   const noise = result.getByRole("button", { name: /^noise/ });
   await noise.click();
   await expect(shown).toHaveText("Points 1 to 50 of 250");

@@ -2,7 +2,7 @@ import { expect, test } from "@playwright/test";
 import { layoutFaults } from "../layout-faults";
 import { SCREENS, showOn } from "../screens";
 
-/** A page with one thing wrong, and what is to be said of it. */
+/** A page with one fault, and its description. */
 const WRONG: [string, RegExp][] = [
   [`<div style="width: 500px; height: 10px"></div>`, /page is \d+ px wider/],
   [
@@ -37,7 +37,7 @@ const RIGHT = `
   <p style="width: 90px; overflow: hidden; text-overflow: ellipsis; white-space: nowrap">cut with a sign of it</p>
   <div data-portal="true" style="position: absolute; top: 0; background: #fff">a menu over the page</div>`;
 
-test("what is wrong with a page is seen, each by itself, and nothing else is", async ({ page }) => {
+test("each fault of a page is found by itself, and nothing else is found", async ({ page }) => {
   await showOn(page, SCREENS[3]);
   const show = (html: string) =>
     page.setContent(

@@ -60,7 +60,7 @@ const bringToFront = (page: Page, rank: number): Promise<string> =>
     return tabs.map((tab) => tab.textContent).join(", ");
   }, rank);
 
-/** Every panel of a layout as it stands at first, and some beside. */
+/** Every panel of a layout in its first state, and some more. */
 async function walkDock(page: Page, key: string, added: string[], look: (where: string) => Promise<void>) {
   await page.evaluate(() => {
     for (const name of Object.keys(localStorage))

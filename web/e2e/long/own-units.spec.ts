@@ -8,7 +8,7 @@ const [PI, JUDGE] = DOCUMENT.split("```python\n")
   .slice(1)
   .map((part) => part.split("```")[0]);
 
-test("units of one's own stand on the page as those of the library: chosen, tuned, explained, scored", async ({
+test("user units are on the page like the units of the library: chosen, tuned, explained, scored", async ({
   page,
   server,
   openDocument,

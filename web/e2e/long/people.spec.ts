@@ -25,7 +25,7 @@ test("the pages of a visitor and of a full server fit every screen", async ({ pa
   }
 });
 
-test("the page of a class and those of its students fit their screens", async ({ page, server, student }) => {
+test("the page of a class and the pages of its students fit their screens", async ({ page, server, student }) => {
   page.on("dialog", (dialog) => dialog.accept());
   const [ada, emmy] = await Promise.all([student("Ada"), student("Emmy", PHONE)]);
   await page.goto(server.url);

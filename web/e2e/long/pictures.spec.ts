@@ -4,7 +4,7 @@ import { expect, front, HYPOTHESES, inWords, openPanel, pictureOf, test } from "
 
 test.use({ colorScheme: "dark" });
 
-/** Keep what a panel shows, as a person does. */
+/** Save the content of a panel, as a user does. */
 async function keep(page: Page, within: Locator, kind: "PNG" | "SVG"): Promise<Buffer> {
   await within
     .getByRole("button", { name: /^Export/ })
@@ -18,7 +18,7 @@ async function keep(page: Page, within: Locator, kind: "PNG" | "SVG"): Promise<B
   return readFileSync(await download.path());
 }
 
-/** Read a drawing with a browser that has no page around it: what it says, and what is wrong with it. */
+/** Read a drawing with a browser that has no page around it: its text, and its faults. */
 async function examine(page: Page, svg: string) {
   const sheet = await page.context().newPage();
   await sheet.setContent(svg);
@@ -134,7 +134,7 @@ test("Bode diagrams, charts of a campaign and plots of theory are kept, in light
   expect(await svgOf(page, chart)).toEqual(expect.arrayContaining(["delay, samples", "share found by then"]));
 });
 
-test("a race, what adapts, aliases and a swept sine are kept", async ({ page, openBench, server }) => {
+test("pictures of a race, of adaptation, of aliases and of a swept sine are saved", async ({ page, openBench, server }) => {
   await openBench("lab", { "diagnosers.imm": { kind: "imm", hypotheses: HYPOTHESES } });
   const viewOf = async (panel: string, view: string) => {
     await front(page, panel, view);

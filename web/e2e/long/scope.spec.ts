@@ -2,7 +2,7 @@ import type { Locator, Page } from "@playwright/test";
 import { expect, openPanel, test } from "../lab";
 import { SCREENS, showOn } from "../screens";
 
-/** What a scope lacks at first sight: its axis of time, one row of names, traces that fill it. */
+/** Parts that a scope lacks at first sight: its axis of time, one row of names, traces that fill it. */
 const lacks = (scope: Locator): Promise<string[]> =>
   scope.evaluate((panel) => {
     const field = panel.querySelector(".u-over")?.getBoundingClientRect();
@@ -62,7 +62,7 @@ test("the strip of captures has room on every screen", async ({ page, openBench 
   }
 });
 
-/** Sizes of what a lecture writes: letters of a tab, px, and the names beside the lanes, which a canvas draws. */
+/** Sizes of the text in a lecture: letters of a tab, px, and the names of the lanes, which a canvas draws. */
 const letters = (page: Page): Promise<number[]> =>
   page.evaluate(() => {
     const tab = document.querySelector("[role=tab]");
@@ -97,7 +97,7 @@ test("the letters of a lecture grow with the window, on canvases too, and a chos
   await expect(html).toHaveAttribute("data-size", "normal");
 });
 
-/** How much longer one axis of the phase plane is than the other, px, by the lines they stand on. */
+/** How much longer one axis of the phase plane is than the other, px, by its lines. */
 function outOfSquare(canvas: HTMLCanvasElement): number {
   const context = canvas.getContext("2d") as CanvasRenderingContext2D;
   const { data } = context.getImageData(0, 0, canvas.width, canvas.height);

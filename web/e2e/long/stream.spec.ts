@@ -1,6 +1,6 @@
 import { expect, test } from "../lab";
 
-test("a hidden page stays connected although it draws nothing and its timers stand still", async ({
+test("a hidden page stays connected although it draws nothing and its timers are paused", async ({
   page,
   server,
   openBench,

@@ -27,7 +27,7 @@ const TOURS: Record<string, string[]> = {
 /** Bubbles that come once the fault of their tour has been found. */
 const FINDINGS = ["The verdict", "Found", "Mass +5 %"];
 
-test("every tour drives the page, does what it says, and puts all back, at its end or by Escape", async ({
+test("every tour drives the page, does the described actions, and puts all back, at its end or by Escape", async ({
   page,
   openBench,
   server,

@@ -13,7 +13,7 @@ export interface paths {
         };
         /**
          * Get Catalog
-         * @description List every block, or those of one family.
+         * @description List every block, or the blocks of one family.
          */
         get: operations["get_catalog"];
         put?: never;
@@ -179,7 +179,7 @@ export interface paths {
         put?: never;
         /**
          * Check Scenario
-         * @description Check a scenario without running it; the answer 422 says what is wrong with it.
+         * @description Check a scenario without running it; the answer 422 lists its errors.
          */
         post: operations["check_scenario"];
         delete?: never;
@@ -197,7 +197,7 @@ export interface paths {
         };
         /**
          * List Units
-         * @description List the units to begin with, and say whether this person may bring any.
+         * @description List the units to begin with, and whether this person may bring any.
          */
         get: operations["list_units"];
         put?: never;
@@ -249,7 +249,7 @@ export interface paths {
         };
         /**
          * List Benches
-         * @description List the live benches without those of students, which their class lists; a student sees the own bench.
+         * @description List the live benches without the benches of students, which their class lists; a student sees the own bench.
          */
         get: operations["list_benches"];
         put?: never;
@@ -280,14 +280,14 @@ export interface paths {
         post?: never;
         /**
          * Delete Bench
-         * @description Close a bench; what it recorded stays.
+         * @description Close a bench; its recordings stay.
          */
         delete: operations["delete_bench"];
         options?: never;
         head?: never;
         /**
          * Name Bench
-         * @description Call a bench something, as a branch by what differs in it.
+         * @description Name a bench, for example a branch by its difference.
          */
         patch: operations["name_bench"];
         trace?: never;
@@ -303,7 +303,7 @@ export interface paths {
         put?: never;
         /**
          * Reopen Bench
-         * @description Return a bench; one that was let go is opened again by the same id, with the same bits, standing or running.
+         * @description Return a bench; a closed idle bench is opened again under its id, with the same bits, paused or running.
          */
         post: operations["reopen_bench"];
         delete?: never;
@@ -344,7 +344,7 @@ export interface paths {
         };
         /**
          * List Events
-         * @description List what happened after an event.
+         * @description List the events after an event.
          */
         get: operations["list_events"];
         put?: never;
@@ -364,7 +364,7 @@ export interface paths {
         };
         /**
          * Save Scenario
-         * @description Return what happened as a scenario in TOML.
+         * @description Return the history of a bench as a scenario in TOML.
          *
          *     It begins with the digest. Run headless, it gives the same bits.
          */
@@ -408,7 +408,7 @@ export interface paths {
         put?: never;
         /**
          * Fork Bench
-         * @description Make a second bench that goes on from this moment, a snapshot or a tick of the past, bit for bit.
+         * @description Make a second bench that continues from this moment, a snapshot or a tick of the past, bit for bit.
          */
         post: operations["fork_bench"];
         delete?: never;
@@ -430,7 +430,7 @@ export interface paths {
          * Vary Bench
          * @description Make a second bench from tick 0, set as this one is now but for some values; other signals are allowed.
          *
-         *     With ``repeat`` it begins as this one began, but for the values, and what was done on this one is done again.
+         *     With ``repeat`` it begins as this bench began, but with the values, and the commands to this bench are repeated.
          */
         post: operations["vary_bench"];
         delete?: never;
@@ -448,7 +448,7 @@ export interface paths {
         };
         /**
          * List Narration
-         * @description List what the narrator has said after a sentence; all of it if the bench has jumped since.
+         * @description List the sentences of the narrator after a sentence; all sentences if the bench has jumped since.
          */
         get: operations["list_narration"];
         put?: never;
@@ -608,7 +608,7 @@ export interface paths {
         };
         /**
          * List Printed
-         * @description List what is printed of the figure, with the ticks at which it is drawn.
+         * @description List the printed marks of the figure, with the ticks at which they are drawn.
          */
         get: operations["list_printed"];
         put?: never;
@@ -628,7 +628,7 @@ export interface paths {
         };
         /**
          * List Claims
-         * @description Measure the claims of a bench over what it has run since tick 0, with the bits of a headless run.
+         * @description Measure the claims of a bench over its run since tick 0, with the bits of a headless run.
          */
         get: operations["list_claims"];
         put?: never;
@@ -864,7 +864,7 @@ export interface paths {
         };
         /**
          * List Recordings
-         * @description List all recordings, also of benches that are gone; a student sees those of the own benches.
+         * @description List all recordings, also of deleted benches; a student sees the recordings of the own benches.
          */
         get: operations["list_recordings"];
         put?: never;
@@ -1160,7 +1160,7 @@ export interface paths {
         };
         /**
          * Get Run Scenario
-         * @description Return what a run carries out as a scenario in TOML; a bench made of it has the same bits.
+         * @description Return the scenario of a run in TOML; a bench made of it has the same bits.
          */
         get: operations["get_run_scenario"];
         put?: never;
@@ -1206,7 +1206,7 @@ export interface paths {
         put?: never;
         /**
          * Start Sweep
-         * @description Start a campaign, or go on with one that was stopped; a second request for a campaign returns the same one.
+         * @description Start a campaign, or continue a stopped campaign; a second request for a campaign returns the same one.
          */
         post: operations["start_sweep"];
         delete?: never;
@@ -1312,7 +1312,7 @@ export interface paths {
         };
         /**
          * Get Sweep Picture
-         * @description Return a figure over what was varied, and how to draw it: rows, lines, a map, or a ranking with dots.
+         * @description Return a figure over the varied quantities, and its drawing: rows, lines, a map, or a ranking with dots.
          */
         get: operations["get_sweep_picture"];
         put?: never;
@@ -1414,7 +1414,7 @@ export interface paths {
         };
         /**
          * Get Threshold
-         * @description Return how far a search is, and what it found once it is done.
+         * @description Return the progress of a search, and its result at the end.
          */
         get: operations["get_threshold"];
         put?: never;
@@ -1662,7 +1662,7 @@ export interface paths {
         };
         /**
          * Get Link
-         * @description Return a link and what it leads to.
+         * @description Return a link and its target.
          */
         get: operations["get_link"];
         put?: never;
@@ -1692,9 +1692,9 @@ export interface paths {
         put?: never;
         /**
          * Open Link
-         * @description Open a fresh bench that repeats an experiment to its tick, and goes on or stands as it did.
+         * @description Open a fresh bench that repeats an experiment to its tick, and is then running or paused as the original was.
          *
-         *     `opened` says whether its bits are those of then.
+         *     `opened` says whether its bits equal the original bits.
          */
         post: operations["open_link"];
         delete?: never;
@@ -1772,7 +1772,7 @@ export interface paths {
         };
         /**
          * Get Me
-         * @description Say who is asking; a student whose bench is not there gets it here.
+         * @description Return the user; a student whose bench is missing gets it here.
          */
         get: operations["get_me"];
         put?: never;
@@ -1867,7 +1867,7 @@ export interface paths {
         post: operations["make_code"];
         /**
          * End Code
-         * @description Let nobody else join; students who are there stay.
+         * @description End the code, so that no further student joins; joined students stay.
          */
         delete: operations["end_code"];
         options?: never;
@@ -1904,7 +1904,7 @@ export interface paths {
         };
         /**
          * List Members
-         * @description Show every student: name, bench, state, verdict beside truth, a small trace.
+         * @description Show every student: name, bench, state, verdict and truth, a small trace.
          */
         get: operations["list_members"];
         put?: never;
@@ -2072,8 +2072,8 @@ export interface paths {
          * Start All
          * @description Start the benches of all students or of some together, from tick 0.
          *
-         *     A bench that does not stand there already is reset. When all stand, they begin between the same two slices of the
-         *     engine: those of the same time scale are at the same tick from then on.
+         *     A bench that is not paused at tick 0 is reset. When all are paused there, they begin between the same two slices of
+         *     the engine: benches of the same time scale are at the same tick from then on.
          */
         post: operations["start_all"];
         delete?: never;
@@ -2117,7 +2117,7 @@ export interface paths {
         put?: never;
         /**
          * Hide Fault
-         * @description Hide a fault on a bench, or none; until somebody answers, the bench serves nothing that tells it.
+         * @description Hide a fault on a bench, or none; until the answer, the bench serves nothing that reveals it.
          */
         post: operations["hide_fault"];
         /**
@@ -2141,7 +2141,7 @@ export interface paths {
         put?: never;
         /**
          * Answer
-         * @description Answer what the device is; the reply tells the hidden fault, and the bench serves everything again.
+         * @description Name the state of the device; the reply reveals the hidden fault, and the bench serves everything again.
          */
         post: operations["answer"];
         delete?: never;
@@ -2170,7 +2170,7 @@ export interface paths {
         post: operations["hide_for_class"];
         /**
          * Reveal Class
-         * @description Reveal their faults to all students of a class; those who have not answered get no points.
+         * @description Reveal their faults to all students of a class; students without an answer get no points.
          */
         delete: operations["reveal_class"];
         options?: never;
@@ -2227,7 +2227,7 @@ export interface paths {
         };
         /**
          * Get Game
-         * @description Show a game at a seed: own attempts, the table, and what is hidden once nothing can be handed in any more.
+         * @description Show a game at a seed: own attempts, the table, and the hidden values once the game is over.
          */
         get: operations["get_game"];
         put?: never;
@@ -2249,7 +2249,7 @@ export interface paths {
         put?: never;
         /**
          * Begin Game
-         * @description Begin the bench of a game, in place of the one before: it hides what the game hides.
+         * @description Begin the bench of a game, in place of the bench before; it hides the values of the game.
          */
         post: operations["begin_game"];
         delete?: never;
@@ -2289,7 +2289,7 @@ export interface paths {
         put?: never;
         /**
          * Reveal Game
-         * @description Show what a seed hides; the caller cannot hand in at it any more.
+         * @description Show the hidden values of a seed; the caller cannot hand in at it any more.
          */
         post: operations["reveal_game"];
         delete?: never;
@@ -2505,7 +2505,7 @@ export interface paths {
         put?: never;
         /**
          * Open Sheet
-         * @description Open a sheet of one's own; one that is not right is refused with its line and field.
+         * @description Open a user's own sheet; a faulty sheet is refused with its line and field.
          */
         post: operations["open_sheet"];
         delete?: never;
@@ -2530,7 +2530,7 @@ export interface paths {
         post?: never;
         /**
          * Delete Sheet
-         * @description Delete a sheet that somebody opened, and what was done at it.
+         * @description Delete a user's own sheet, and the work at it.
          */
         delete: operations["delete_sheet"];
         options?: never;
@@ -2549,7 +2549,7 @@ export interface paths {
         put?: never;
         /**
          * Begin Sheet
-         * @description Begin a sheet, or go on with it on a new bench; answers stay.
+         * @description Begin a sheet, or continue it on a new bench; answers stay.
          */
         post: operations["begin_sheet"];
         delete?: never;
@@ -2570,7 +2570,7 @@ export interface paths {
         post?: never;
         /**
          * Start Over
-         * @description Forget one's own answers at a sheet.
+         * @description Forget the caller's answers at a sheet.
          */
         delete: operations["start_over"];
         options?: never;
@@ -2649,7 +2649,7 @@ export interface paths {
         put?: never;
         /**
          * Close Step
-         * @description Close the step that is open with what it has earned; the right answer is told.
+         * @description Close the open step with its points; the reply has the right answer.
          */
         post: operations["close_step"];
         delete?: never;
@@ -2668,7 +2668,7 @@ export interface paths {
         get?: never;
         /**
          * Add Recording
-         * @description Hand a recording of one's own in with the sheet.
+         * @description Hand in one of the student's recordings with the sheet.
          */
         put: operations["add_recording"];
         post?: never;
@@ -2709,7 +2709,7 @@ export interface paths {
         put?: never;
         /**
          * Begin For All
-         * @description Begin a sheet with all students of a class, also those who join later, or with some; each gets its bench.
+         * @description Begin a sheet with all students of a class, also with later students, or with some; each gets its bench.
          */
         post: operations["begin_for_all"];
         delete?: never;
@@ -2767,7 +2767,7 @@ export interface paths {
         };
         /**
          * Get Class Audit
-         * @description List what people did in a class.
+         * @description List the actions of users in a class.
          */
         get: operations["get_class_audit"];
         put?: never;
@@ -2787,7 +2787,7 @@ export interface paths {
         };
         /**
          * Get Bench Audit
-         * @description List what people did to a bench, also to one that is gone.
+         * @description List the actions of users on a bench, also on a deleted bench.
          */
         get: operations["get_bench_audit"];
         put?: never;
@@ -2926,7 +2926,7 @@ export interface components {
         };
         /**
          * AliasMap
-         * @description Responses of all hypotheses, distances between them, and what mass and stiffness are worth in one another.
+         * @description Responses of all hypotheses, distances between them, and the equivalence of mass and stiffness.
          */
         AliasMap: {
             /** Tones Hz */
@@ -2940,7 +2940,7 @@ export interface components {
         };
         /**
          * AliasReport
-         * @description The hypotheses that lie apart and those that coincide, now and at other drive frequencies.
+         * @description The separate hypotheses and the coinciding hypotheses, now and at other drive frequencies.
          */
         AliasReport: {
             map: components["schemas"]["AliasMap"];
@@ -2952,7 +2952,7 @@ export interface components {
         };
         /**
          * AliasSource
-         * @description Hypotheses and a drive; those of the diagnoser and of the bench unless given.
+         * @description Hypotheses and a drive; the defaults are the hypotheses of the diagnoser and the drive of the bench.
          */
         AliasSource: {
             /** Hypotheses */
@@ -3007,7 +3007,7 @@ export interface components {
             title: string;
             /**
              * Seed
-             * @description Of somebody alone: the same one hides the same fault
+             * @description For a user outside a class: the same seed hides the same fault
              */
             seed: number | null;
             /**
@@ -3050,15 +3050,15 @@ export interface components {
             took_ms?: number | null;
             /**
              * Verdicts
-             * @description What each diagnoser said then
+             * @description Verdict of each diagnoser then
              * @default {}
              */
             verdicts?: {
                 [key: string]: string;
             };
-            /** @description What a sweep shows of the device without the fault */
+            /** @description Response of the device without the fault */
             healthy?: components["schemas"]["Resonance"] | null;
-            /** @description What it shows with the fault; null for a device of two axes */
+            /** @description Response with the fault; null for a device of two axes */
             faulty?: components["schemas"]["Resonance"] | null;
             /**
              * Began
@@ -3070,7 +3070,7 @@ export interface components {
         };
         /**
          * Applied
-         * @description What a set has changed on a bench.
+         * @description The changes of a bench by a set.
          */
         Applied: {
             /** @description Null: the bench had these values already */
@@ -3103,7 +3103,7 @@ export interface components {
         };
         /**
          * Attempt
-         * @description What somebody handed in, and what came of it.
+         * @description An answer of a player, and its result.
          */
         Attempt: {
             /** Id */
@@ -3121,7 +3121,7 @@ export interface components {
         };
         /**
          * AuditEntry
-         * @description One thing that somebody did.
+         * @description One action of a user.
          */
         AuditEntry: {
             /**
@@ -3144,7 +3144,7 @@ export interface components {
         };
         /**
          * AuditList
-         * @description What people did, newest first.
+         * @description The actions of users, newest first.
          */
         AuditList: {
             /** Entries */
@@ -3152,7 +3152,7 @@ export interface components {
         };
         /**
          * Ballot
-         * @description What somebody answered.
+         * @description The answer of a student.
          */
         Ballot: {
             /** Answer */
@@ -3223,7 +3223,7 @@ export interface components {
             overruns: number;
             /**
              * Given Up Ms
-             * @description Wall time given up catching up
+             * @description Wall time dropped while catching up
              */
             given_up_ms: number;
             /**
@@ -3274,7 +3274,7 @@ export interface components {
              * @description The first tick that can be computed again; null: none can
              */
             earliest_tick?: number | null;
-            /** @description Where it goes on from, if it was forked at a tick */
+            /** @description Its first moment, if it was forked at a tick */
             origin?: components["schemas"]["Origin"] | null;
             /** @description A moment of its past that is being computed; seeking another ends it */
             travel?: components["schemas"]["Travel"] | null;
@@ -3283,7 +3283,7 @@ export interface components {
              * @default 0
              */
             watchers?: number;
-            /** @description Who is there; null while it is one person */
+            /** @description Its users; null while it is one person */
             company?: components["schemas"]["Company"] | null;
             /**
              * Loop Lag Ms
@@ -3372,25 +3372,25 @@ export interface components {
             blind?: components["schemas"]["HiddenQuestion"] | null;
             /**
              * Name
-             * @description What people call it beside the title, as a branch: with PID
+             * @description Its name in addition to the title, such as a branch: with PID
              * @default
              */
             name?: string;
             /**
              * Keep
-             * @description It is never let go
+             * @description It stays open while unused
              * @default false
              */
             keep?: boolean;
             /**
              * Let Go In S
-             * @description Until it is let go if nobody watches it or asks for it; null: it stays
+             * @description Time until it is closed if unused; null: it stays
              */
             let_go_in_s?: number | null;
         };
         /**
          * BenchCaptures
-         * @description The captures of a bench, by trigger; the one whose scope was opened last comes last.
+         * @description The captures of a bench, by trigger; the trigger of the scope that was opened last comes last.
          */
         BenchCaptures: {
             /** Triggers */
@@ -3436,7 +3436,7 @@ export interface components {
             fitted: string[];
             /**
              * Measured
-             * @description Over what has run
+             * @description Over the run so far
              */
             measured: number | null;
             /**
@@ -3470,7 +3470,7 @@ export interface components {
         };
         /**
          * BenchName
-         * @description What a bench is called.
+         * @description Name of a bench.
          */
         BenchName: {
             /**
@@ -3585,7 +3585,7 @@ export interface components {
             hidden: number;
             /**
              * Answers
-             * @description Oldest first, those that are hidden still among them
+             * @description Oldest first, including faults that are still hidden
              */
             answers: components["schemas"]["Answer"][];
         };
@@ -3609,7 +3609,7 @@ export interface components {
         };
         /**
          * BlockCard
-         * @description All that the catalogue says of a block.
+         * @description The catalogue entry of a block.
          */
         BlockCard: {
             /** Family */
@@ -3655,7 +3655,7 @@ export interface components {
         };
         /**
          * Bode
-         * @description Displacement per volt over that of the nominal device at rest; the sign of the force is left out.
+         * @description Displacement per volt over the static gain of the nominal device; the sign of the force is left out.
          */
         Bode: {
             /** Frequency Hz */
@@ -3792,7 +3792,7 @@ export interface components {
             tick: number;
             /**
              * Trigger Tick
-             * @description Where it lies between ticks, on the line between them
+             * @description Its place between ticks, on the line between them
              */
             trigger_tick: number;
             /** Start Tick */
@@ -3802,7 +3802,7 @@ export interface components {
         };
         /**
          * CaseDigest
-         * @description A case and what the diagnoser said in it: seed, hash of the scenario, hash of the bits of the outputs.
+         * @description A case and the answer of the diagnoser: seed, hash of the scenario, hash of the bits of the outputs.
          */
         CaseDigest: {
             /** Seed */
@@ -3878,7 +3878,7 @@ export interface components {
             tick: number;
             /**
              * Ends At
-             * @description Tick at which a headless run ends; what runs beyond it does not count
+             * @description Tick at which a headless run ends; later ticks do not count
              */
             ends_at: number;
             /**
@@ -3910,7 +3910,7 @@ export interface components {
             name: string;
             /**
              * Scenario
-             * @description What the benches of new students begin with
+             * @description Start of the benches of new students
              */
             scenario: string;
             /**
@@ -3933,7 +3933,7 @@ export interface components {
             shown?: string | null;
             /**
              * Code
-             * @description As it stands on the wall; null: nobody can join, or it has to be made anew
+             * @description As shown on the wall; null: joining is closed, or the code has to be made anew
              */
             code: string | null;
             /** Code Until */
@@ -3945,7 +3945,7 @@ export interface components {
             path: string | null;
             /**
              * Addresses
-             * @description Whole addresses from elsewhere, likeliest first; none: nobody can come
+             * @description Whole addresses for other machines, likeliest first; none: no other machine can connect
              * @default []
              */
             addresses?: string[];
@@ -3984,7 +3984,7 @@ export interface components {
         };
         /**
          * Company
-         * @description Who is at a bench that several have open.
+         * @description The users of a bench that several have open.
          */
         Company: {
             /**
@@ -3992,26 +3992,26 @@ export interface components {
              * @description Two or more who may drive have it open, so only one of them does
              */
             is_leased: boolean;
-            /** @description Who drives; null: nobody, and the next person who does something drives */
+            /** @description The driver; null: none, and the next person who gives a command drives */
             driver: components["schemas"]["Somebody"] | null;
             /**
              * Drivers
-             * @description Who is there and may drive
+             * @description Present persons who may drive
              */
             drivers: components["schemas"]["Somebody"][];
             /**
              * Asking
-             * @description Who has asked for the bench
+             * @description Persons who have requested the bench
              */
             asking: components["schemas"]["Somebody"][];
             /**
              * Lent By
-             * @description Id of the person who handed it over and may take it back; empty: nobody did
+             * @description Id of the person who handed it over and may take it back; empty: none
              */
             lent_by: string;
             /**
              * Watching
-             * @description Names of students who look on
+             * @description Names of students who watch
              */
             watching: string[];
             /**
@@ -4084,7 +4084,7 @@ export interface components {
         };
         /**
          * ConditionView
-         * @description A condition of a step: the quantity, the range that the step asks for, and whether it holds.
+         * @description A condition of a step: the quantity, the required range, and whether it holds.
          *
          *     A measured value is not shown: the student reads it from the instruments, and later steps grade it.
          */
@@ -4106,7 +4106,7 @@ export interface components {
         };
         /**
          * Content
-         * @description What a link leads to: an experiment, a layout of the page, or both.
+         * @description The target of a link: an experiment, a layout of the page, or both.
          */
         Content: {
             experiment?: components["schemas"]["Experiment"] | null;
@@ -4117,7 +4117,7 @@ export interface components {
         };
         /**
          * Cost
-         * @description What a sample of a diagnoser costs, on the machine that measured it: no part of what is recomputed to the bit.
+         * @description The cost of a sample of a diagnoser, on the machine that measured it: not recomputed to the bit.
          */
         Cost: {
             /** Ns Per Sample */
@@ -4127,7 +4127,7 @@ export interface components {
         };
         /**
          * CueDetail
-         * @description A cue: the notes of the speaker, and what is shown of the bench.
+         * @description A cue: the notes of the speaker, and the panels of the bench.
          */
         CueDetail: {
             /** Title */
@@ -4156,7 +4156,7 @@ export interface components {
         };
         /**
          * Curve
-         * @description A quantity over frequency, and the band it lies in.
+         * @description A quantity over frequency, and its band.
          */
         Curve: {
             /** Low */
@@ -4264,7 +4264,7 @@ export interface components {
         };
         /**
          * DiagnosisTally
-         * @description What one diagnoser said in all runs of a point.
+         * @description The results of one diagnoser in all runs of a point.
          */
         DiagnosisTally: {
             /** Names */
@@ -4349,7 +4349,7 @@ export interface components {
         };
         /**
          * Drives
-         * @description Who is at the bench now.
+         * @description The users of the bench now.
          */
         Drives: {
             /** @description Null while it is one person */
@@ -4357,18 +4357,18 @@ export interface components {
         };
         /**
          * DrivingTurn
-         * @description What is asked for.
+         * @description The requested change of the driver.
          */
         DrivingTurn: {
             /**
              * Do
-             * @description ask the driver for the bench; hand it over to somebody, or refuse a person who has asked; take it (the teacher, or a student who handed over the own bench); leave it: the next person who does something drives
+             * @description ask the driver for the bench; hand it over to a person, or refuse a request; take it (the teacher, or a student who handed over the own bench); leave it: the next person who gives a command drives
              * @enum {string}
              */
             do: "ask" | "hand_over" | "refuse" | "take" | "leave";
             /**
              * To
-             * @description Id of whom it is handed over to, or who is refused
+             * @description Id of the person who gets it, or is refused
              * @default
              */
             to?: string;
@@ -4528,7 +4528,7 @@ export interface components {
         };
         /**
          * ExcitationSource
-         * @description An input, and the second-order plant whose parameters it should tell apart, in one unit of time.
+         * @description An input, and the second-order plant whose parameters it should separate, in one unit of time.
          */
         ExcitationSource: {
             /** Tones */
@@ -4574,7 +4574,7 @@ export interface components {
             expected_words: string;
             /**
              * Verdict
-             * @description That of the measured value; until it is run, if the expectation holds
+             * @description The word of the measured value; before a run, the word if the expectation holds
              */
             verdict: ("reproduced" | "reproduced by tuning" | "reproduced, by a PID too" | "reproduced by tuning, by a PID too" | "partly" | "not reproduced" | "ours") | null;
             /**
@@ -4621,7 +4621,7 @@ export interface components {
         };
         /**
          * Experiment
-         * @description What a bench was made from, what was done to it, and how it stood.
+         * @description The scenario of a bench, the commands to it, and its state.
          */
         Experiment: {
             /** Scenario */
@@ -4692,10 +4692,10 @@ export interface components {
         };
         /**
          * FastForward
-         * @description Run as fast as possible for a while, then go on at the time scale.
+         * @description Run as fast as possible for a while, then continue at the time scale.
          *
-         *     It ends shortly before a tick: the one given, else that of the next command that waits. If only commands wait whose
-         *     moment is not known, it ends once one of them has taken effect; if none waits, at the end of the scenario.
+         *     It ends shortly before a tick: the given tick, else the tick of the next command that waits. If only commands wait
+         *     whose moment is not known, it ends once one of them has taken effect; if none waits, at the end of the scenario.
          */
         FastForward: {
             /**
@@ -4727,7 +4727,7 @@ export interface components {
         };
         /**
          * FigureProgress
-         * @description How many figures are there.
+         * @description Number of finished figures.
          */
         FigureProgress: {
             /** Made */
@@ -4756,13 +4756,13 @@ export interface components {
             values: (number | null)[];
             /**
              * Differences
-             * @description Each value less that of the first run
+             * @description Each value less the value of the first run
              */
             differences: (number | null)[];
         };
         /**
          * FittedCurve
-         * @description The response of the device found, and that of the nominal one.
+         * @description The response of the device found, and the response of the nominal device.
          */
         FittedCurve: {
             /** Frequency Hz */
@@ -4818,7 +4818,7 @@ export interface components {
             tick?: number | null;
             /**
              * Before
-             * @description Leave out what was done at that very tick
+             * @description Leave out the commands at that very tick
              * @default false
              */
             before?: boolean;
@@ -4836,7 +4836,7 @@ export interface components {
             paused?: boolean;
             /**
              * Name
-             * @description What it is called beside its title
+             * @description Its name, in addition to its title
              * @default
              */
             name?: string;
@@ -4899,7 +4899,7 @@ export interface components {
             run: string | null;
             /**
              * State
-             * @description new until it has been asked for, then as that of a run
+             * @description new until it has been requested, then the state of a run
              */
             state: string;
             /** Progress */
@@ -4943,7 +4943,7 @@ export interface components {
             attempts: number;
             /**
              * Hand In
-             * @description What is handed in
+             * @description The values of the answer
              */
             hand_in: components["schemas"]["ParameterCard"][];
             /**
@@ -4982,7 +4982,7 @@ export interface components {
         };
         /**
          * GivenView
-         * @description An answer, what it was worth, and why; null while that is not told.
+         * @description An answer, its points, and the reason; null while they are hidden.
          */
         GivenView: {
             /** Text */
@@ -5002,14 +5002,14 @@ export interface components {
         };
         /**
          * HandIn
-         * @description What somebody hands in.
+         * @description Values of an answer.
          */
         HandIn: {
             /** Seed */
             seed: number;
             /**
              * Hand In
-             * @description What is left out has its default
+             * @description Missing fields have their defaults
              */
             hand_in: {
                 [key: string]: number | string;
@@ -5094,7 +5094,7 @@ export interface components {
         };
         /**
          * Hide
-         * @description A fault to hide on a bench of one's own.
+         * @description A fault to hide on the user's own bench.
          */
         Hide: {
             /**
@@ -5136,7 +5136,7 @@ export interface components {
         };
         /**
          * HypothesesSource
-         * @description A device, what may be wrong with it, and the tones that drive it.
+         * @description A device, its possible faults, and the tones that drive it.
          */
         HypothesesSource: {
             /**
@@ -5220,10 +5220,10 @@ export interface components {
         };
         /**
          * Identified
-         * @description What a sweep tells of a device; ``*_error`` are standard errors.
+         * @description Results of a sweep of a device; ``*_error`` are standard errors.
          *
-         *     The figures of the fit (mass to quality factor) use all tones; those read off the curve (``read_*``) only the
-         *     tones around what they describe, and are none where the sweep does not show it.
+         *     The figures of the fit (mass to quality factor) use all tones; the figures read off the curve (``read_*``) use only
+         *     the tones around their subject, and are none where the sweep does not show it.
          */
         Identified: {
             /** Mass Kg */
@@ -5324,7 +5324,7 @@ export interface components {
         };
         /**
          * Join
-         * @description What a student gives.
+         * @description Code and name of a student.
          */
         Join: {
             /** Code */
@@ -5503,7 +5503,7 @@ export interface components {
         };
         /**
          * LinkDetail
-         * @description A link with what it leads to.
+         * @description A link with its target.
          */
         LinkDetail: {
             /** Id */
@@ -5713,7 +5713,7 @@ export interface components {
             number: string;
             /**
              * Reading
-             * @description How what is drawn follows from the words, where it does not stand in them
+             * @description How the drawn number follows from the words, where it is not in them
              */
             reading: string;
             /**
@@ -5746,7 +5746,7 @@ export interface components {
         };
         /**
          * MarkList
-         * @description What is printed of the figure of a bench, to be drawn under its traces; also what no claim judges.
+         * @description The printed marks of the figure of a bench, to be drawn under its traces; also marks that no claim judges.
          */
         MarkList: {
             /** Marks */
@@ -5762,7 +5762,7 @@ export interface components {
         };
         /**
          * Me
-         * @description The person who asks.
+         * @description The user of the request.
          */
         Me: {
             /**
@@ -5918,14 +5918,14 @@ export interface components {
         };
         /**
          * NarrationList
-         * @description Sentences of the present run of a bench behind a number; those of a recording are there from its beginning.
+         * @description Sentences of the present run of a bench after a number; a recording has all its sentences at once.
          */
         NarrationList: {
             /** Sentences */
             sentences: components["schemas"]["Sentence"][];
             /**
              * After
-             * @description Number before the first of them: what the caller asked for, 0 after a jump
+             * @description Number before the first of them: the number of the request, 0 after a jump
              */
             after: number;
             /**
@@ -5935,7 +5935,7 @@ export interface components {
             last: number;
             /**
              * Jumps
-             * @description How often the bench was reset or went back; what was said before a jump is void
+             * @description How often the bench was reset or went back; sentences before a jump are void
              */
             jumps: number;
         };
@@ -5986,13 +5986,13 @@ export interface components {
             paused?: boolean;
             /**
              * Keep
-             * @description Never let it go, however long nobody watches it or asks for it
+             * @description Keep it open, however long it is unused
              * @default false
              */
             keep?: boolean;
             /**
              * Time Scale
-             * @description Device seconds per wall second; null: as fast as possible. Unless given, that of the device
+             * @description Device seconds per wall second; null: as fast as possible. Unless given, the device's own
              * @default 0.002
              */
             time_scale?: number | null;
@@ -6005,7 +6005,7 @@ export interface components {
         };
         /**
          * NewClass
-         * @description A class, and what the benches of its students begin with.
+         * @description A class, and the start of the benches of its students.
          */
         NewClass: {
             /** Name */
@@ -6052,12 +6052,12 @@ export interface components {
         };
         /**
          * NewLink
-         * @description What a link is to lead to: a bench as it is now, a scenario, or a layout of the page alone.
+         * @description The target of a link: a bench as it is now, a scenario, or a layout of the page alone.
          */
         NewLink: {
             /**
              * Bench
-             * @description Id of a live bench; what was done to it is kept
+             * @description Id of a live bench; the commands to it are kept
              */
             bench?: string | null;
             /**
@@ -6076,7 +6076,7 @@ export interface components {
             } | null;
             /**
              * Title
-             * @description That of the scenario unless given
+             * @description The scenario's title unless given
              * @default
              */
             title?: string;
@@ -6116,7 +6116,7 @@ export interface components {
             label?: string;
             /**
              * All
-             * @description Also run the controllers that never drive, and keep all signals, those of sensors that are never in use as well; no figure and no digest depends on it
+             * @description Also run the controllers that never drive, and keep all signals, also of sensors that are never in use; no figure and no digest depends on it
              * @default false
              */
             all?: boolean;
@@ -6250,7 +6250,7 @@ export interface components {
         };
         /**
          * NoiseFigure
-         * @description One of the three noises: what the record tells of it, and what the bench was given.
+         * @description One of the three noises: its estimate from the record, and its parameter on the bench.
          */
         NoiseFigure: {
             /** Name */
@@ -6271,7 +6271,7 @@ export interface components {
             error: number | null;
             /**
              * Reason
-             * @description Why there is no value, and what it takes
+             * @description Why there is no value, and how to get one
              */
             reason: string;
             /**
@@ -6282,7 +6282,7 @@ export interface components {
         };
         /**
          * Octave
-         * @description The Allan deviation over one averaging time, from so many pairs of means.
+         * @description The Allan deviation over one averaging time, from a number of pairs of means.
          */
         Octave: {
             /** Tau S */
@@ -6333,7 +6333,7 @@ export interface components {
         Opened: {
             /**
              * Link
-             * @description The link it was opened by; null: it had been let go and came back
+             * @description The link it was opened by; null: it was closed while idle and came back
              */
             link: string | null;
             /** Note */
@@ -6353,7 +6353,7 @@ export interface components {
         };
         /**
          * Origin
-         * @description The moment of another bench that a bench goes on from.
+         * @description The moment of another bench from which a bench continues.
          */
         Origin: {
             /**
@@ -6415,7 +6415,7 @@ export interface components {
         };
         /**
          * Pair
-         * @description How far two hypotheses lie apart, as rms over the tones; coincident when noise could hide it.
+         * @description Distance between two hypotheses, as rms over the tones; coincident when noise could hide it.
          */
         Pair: {
             /** First */
@@ -6503,7 +6503,7 @@ export interface components {
         };
         /**
          * Part
-         * @description A figure over what was varied, for one combination of the rest: variants, texts of the grid.
+         * @description A figure over a varied quantity, for one combination of the rest: variants, texts of the grid.
          */
         Part: {
             /** Labels */
@@ -6563,7 +6563,7 @@ export interface components {
         };
         /**
          * Play
-         * @description A game at a seed, as somebody may see it.
+         * @description A game at a seed, as the player may see it.
          */
         Play: {
             /** Game */
@@ -6597,7 +6597,7 @@ export interface components {
             table: components["schemas"]["Standing"][];
             /**
              * Hidden
-             * @description What the seed hides; null while the caller may still hand in
+             * @description The hidden values of the seed; null while the caller may still hand in
              */
             hidden: components["schemas"]["Fact"][] | null;
             /**
@@ -6781,7 +6781,7 @@ export interface components {
         };
         /**
          * Rank
-         * @description How closely a figure goes with a number that was varied.
+         * @description Correlation of a figure with a number that was varied.
          */
         Rank: {
             /** Name */
@@ -6803,7 +6803,7 @@ export interface components {
             record_s: number;
             /**
              * Octaves
-             * @description Those that have a pair, by rising averaging time
+             * @description Octaves with a pair, by rising averaging time
              */
             octaves: components["schemas"]["Octave"][];
             /** Figures */
@@ -7054,7 +7054,7 @@ export interface components {
         };
         /**
          * Result
-         * @description What was said for one answer; nobody's name is in it.
+         * @description The count of one answer; without any name.
          */
         Result: {
             /** Count */
@@ -7081,7 +7081,7 @@ export interface components {
         };
         /**
          * Row
-         * @description One diagnoser on one track; figures of probabilities are missing of one that says none.
+         * @description One diagnoser on one track; a diagnoser without probabilities has no figures of them.
          *
          *     Attributes
          *     ----------
@@ -7094,7 +7094,7 @@ export interface components {
          *     found_within : list of float
          *         Share of the cases that have a delay in which it is at most each of `WITHIN_SAMPLES`.
          *     scenario, digest : str
-         *         SHA-256 over those of the cases, in order.
+         *         SHA-256 over the digests of the cases, in order.
          */
         Row: {
             /** Unit */
@@ -7151,7 +7151,7 @@ export interface components {
             title: string;
             /**
              * Label
-             * @description Name that somebody gave it
+             * @description Name given by a user
              * @default
              */
             label?: string;
@@ -7159,7 +7159,7 @@ export interface components {
             seeds: number[];
             /**
              * All
-             * @description Whether the trace has the signals of blocks that only look on too
+             * @description Whether the trace has the signals of blocks in shadow too
              */
             all: boolean;
             /**
@@ -7246,7 +7246,7 @@ export interface components {
         };
         /**
          * Said
-         * @description What somebody takes the device for, and how sure that is.
+         * @description The presumed fault of the device, and the confidence.
          */
         Said: {
             /** Said */
@@ -7271,7 +7271,7 @@ export interface components {
             claim: string;
             /**
              * Verdict
-             * @description If all expectations hold; it follows from what the rows state
+             * @description If all expectations hold; it follows from the rows
              */
             verdict: ("reproduced" | "reproduced by tuning" | "reproduced, by a PID too" | "reproduced by tuning, by a PID too" | "partly" | "not reproduced" | "ours") | null;
             /** Samples */
@@ -7332,7 +7332,7 @@ export interface components {
         };
         /**
          * Scores
-         * @description What has been scored so far.
+         * @description The score so far.
          */
         Scores: {
             /** Names */
@@ -7408,12 +7408,12 @@ export interface components {
         };
         /**
          * Sentence
-         * @description Something that happened, in one sentence with the numbers it was made of.
+         * @description An event in one sentence, with the numbers in it.
          */
         Sentence: {
             /**
              * Tick
-             * @description When it could be told
+             * @description When the sentence was possible
              */
             tick: number;
             /**
@@ -7430,7 +7430,7 @@ export interface components {
             signals: string[];
             /**
              * Span
-             * @description First and last tick of what it speaks of
+             * @description First and last tick of its subject
              */
             span: [
                 number,
@@ -7479,7 +7479,7 @@ export interface components {
         };
         /**
          * SheetBrief
-         * @description Somebody's work at a sheet, in brief.
+         * @description A student's work at a sheet, in brief.
          */
         SheetBrief: {
             /** Sheet */
@@ -7519,7 +7519,7 @@ export interface components {
             steps: number;
             /**
              * Own
-             * @description Somebody opened it; the others are those of the library
+             * @description A user opened it; the others belong to the library
              */
             own: boolean;
             /** @description How far the caller has come */
@@ -7553,7 +7553,7 @@ export interface components {
         };
         /**
          * SheetView
-         * @description A sheet as somebody sees it.
+         * @description A sheet as a student sees it.
          */
         SheetView: {
             /** Id */
@@ -7566,12 +7566,12 @@ export interface components {
             minutes: number;
             /**
              * Points
-             * @description What it can earn
+             * @description Points that it can earn
              */
             points: number;
             /**
              * Earned
-             * @description What it has earned so far; answers that are wrong may make it less than 0
+             * @description Points so far; wrong answers may make them less than 0
              */
             earned: number;
             /** Begun */
@@ -7689,7 +7689,7 @@ export interface components {
         };
         /**
          * Somebody
-         * @description Somebody at a bench.
+         * @description A person at a bench.
          */
         Somebody: {
             /** Id */
@@ -7709,7 +7709,7 @@ export interface components {
         };
         /**
          * Spread
-         * @description A figure over runs; ``std`` is that of a sample.
+         * @description A figure over runs; ``std`` is the standard deviation of a sample.
          */
         Spread: {
             /** Count */
@@ -7771,7 +7771,7 @@ export interface components {
         };
         /**
          * StageCard
-         * @description A stage of a block as people see it: what it takes and gives by the names of ports and states.
+         * @description A visible stage of a block: its inputs and outputs by the names of ports and states.
          */
         StageCard: {
             /** Title */
@@ -7785,7 +7785,7 @@ export interface components {
         };
         /**
          * Staged
-         * @description The bench in the state of a cue; a fresh one where the one given has other signals.
+         * @description The bench in the state of a cue; a fresh bench where the given bench has other signals.
          */
         Staged: {
             bench: components["schemas"]["Bench"];
@@ -7888,7 +7888,7 @@ export interface components {
             points: number;
             /**
              * Earned
-             * @description Null while it is not told
+             * @description Null while it is hidden
              */
             earned: number | null;
             /** Lost */
@@ -8011,7 +8011,7 @@ export interface components {
             figures: string[];
             /**
              * Quantities
-             * @description What runs can be counted over: axes that are numbers, seed, figures
+             * @description Possible axes of a count of runs: numeric axes, seed, figures
              */
             quantities: string[];
             /**
@@ -8037,7 +8037,7 @@ export interface components {
             title: string;
             /**
              * Label
-             * @description Name that somebody gave it
+             * @description Name given by a user
              * @default
              */
             label?: string;
@@ -8191,7 +8191,7 @@ export interface components {
             begins: boolean;
             /**
              * Low
-             * @description It lies between this value and the next
+             * @description It is between this value and the next
              */
             low: number;
             /** High */
@@ -8247,7 +8247,7 @@ export interface components {
              * @default []
              */
             verdicts?: components["schemas"]["Verdict"][];
-            /** @description What was hidden last, and what was answered */
+            /** @description The last hidden fault, and the answer */
             blind?: components["schemas"]["Answer"] | null;
             /** @description The lab sheet begun last */
             sheet?: components["schemas"]["SheetBrief"] | null;
@@ -8296,7 +8296,7 @@ export interface components {
         };
         /**
          * TrackResults
-         * @description A track, and the diagnosers it scores, best first; those that say no probabilities are last.
+         * @description A track, and the diagnosers it scores, best first; diagnosers without probabilities are last.
          */
         TrackResults: {
             /** Id */
@@ -8324,14 +8324,14 @@ export interface components {
         };
         /**
          * Travel
-         * @description A moment of the past that is computed again now, because it was asked for.
+         * @description A requested moment of the past that is computed again now.
          */
         Travel: {
             /** Tick */
             tick: number;
             /**
              * Share
-             * @description Of the ticks that it takes, those that are done
+             * @description Finished ticks of the ticks that it takes
              */
             share: number;
         };
@@ -8449,7 +8449,7 @@ export interface components {
         };
         /**
          * UnitCheck
-         * @description A unit, or what is wrong with its text.
+         * @description A unit, or the errors in its text.
          */
         UnitCheck: {
             unit: components["schemas"]["CheckedUnit"] | null;
@@ -8506,7 +8506,7 @@ export interface components {
         };
         /**
          * UnitMistake
-         * @description What is wrong with a text, and where; line and column begin with 1.
+         * @description An error in a text, and its place; line and column begin with 1.
          */
         UnitMistake: {
             /** Message */
@@ -8579,14 +8579,14 @@ export interface components {
             };
             /**
              * Repeat
-             * @description What was done on this bench is done again, to its tick; there it stands
+             * @description The commands to this bench are repeated, to its tick; there it pauses
              * @default false
              */
             repeat?: boolean;
         };
         /**
          * Verdict
-         * @description What a diagnoser says, and what is true.
+         * @description The verdict of a diagnoser, and the truth.
          */
         Verdict: {
             /** Diagnoser */
@@ -8679,7 +8679,7 @@ export interface components {
         };
         /**
          * Watcher
-         * @description A link to watch; its address is told once.
+         * @description A link to watch; its address is shown once.
          */
         Watcher: {
             /** Id */
@@ -8705,7 +8705,7 @@ export interface components {
         };
         /**
          * Words
-         * @description What can be changed of a link.
+         * @description The editable fields of a link.
          */
         Words: {
             /** Title */
@@ -8728,14 +8728,14 @@ export interface components {
         };
         /**
          * BehindSpec
-         * @description Another bench whose signals of the same names are shown behind those of a panel.
+         * @description Another bench whose signals of the same names are shown behind the signals of a panel.
          */
         BehindSpec: {
             /** Bench */
             bench: string;
             /**
              * Shift Ticks
-             * @description Its tick minus that of this bench
+             * @description Its tick minus the tick of this bench
              * @default 0
              */
             shift_ticks?: number;
@@ -8938,7 +8938,7 @@ export interface components {
             most: number;
             /**
              * Is Short
-             * @description Memory leaves room for fewer, or the bench keeps those of too many triggers
+             * @description Memory leaves room for fewer, or the bench keeps captures of too many triggers
              */
             is_short: boolean;
         };
@@ -9016,7 +9016,7 @@ export interface components {
         };
         /**
          * Narrated
-         * @description What the narrator says: the sentences behind the first ``after`` of the present run; any others are void.
+         * @description The sentences of the narrator after the first ``after`` of the present run; any others are void.
          */
         Narrated: {
             /**
@@ -9043,7 +9043,7 @@ export interface components {
             type?: "notice";
             /**
              * Code
-             * @description ask_me: what this person sees or may do has changed; /me says how
+             * @description ask_me: the view or the rights of this person have changed; read /me
              * @enum {string}
              */
             code: "slow_client" | "events_lost" | "shutdown" | "ask_me";
@@ -9052,7 +9052,7 @@ export interface components {
         };
         /**
          * Ping
-         * @description Asks the page of the driver whether it is there; the page answers at once by a pong.
+         * @description Asks the page of the driver for a sign; the page answers at once by a pong.
          */
         Ping: {
             /**
@@ -9132,7 +9132,7 @@ export interface components {
             overruns: number;
             /**
              * Given Up Ms
-             * @description Wall time given up catching up
+             * @description Wall time dropped while catching up
              */
             given_up_ms: number;
             /**
@@ -9191,7 +9191,7 @@ export interface components {
              */
             earliest_tick?: number | null;
             /**
-             * @description Where it goes on from, if it was forked at a tick
+             * @description Its first moment, if it was forked at a tick
              * @default null
              */
             origin?: components["schemas"]["Origin"] | null;
@@ -9206,7 +9206,7 @@ export interface components {
              */
             watchers?: number;
             /**
-             * @description Who is there; null while it is one person
+             * @description Its users; null while it is one person
              * @default null
              */
             company?: components["schemas"]["Company"] | null;
@@ -9980,7 +9980,7 @@ export interface operations {
     list_events: {
         parameters: {
             query?: {
-                /** @description Number of the last one that is known */
+                /** @description Number of the last known one */
                 after?: number;
                 /** @description At most so many */
                 limit?: number | null;
@@ -10153,9 +10153,9 @@ export interface operations {
     list_narration: {
         parameters: {
             query?: {
-                /** @description Number of the last one that is known */
+                /** @description Number of the last known one */
                 after?: number;
-                /** @description Those of the answer before */
+                /** @description The numbers of the answer before */
                 jumps?: number | null;
             };
             header?: never;
@@ -11228,9 +11228,9 @@ export interface operations {
             query?: {
                 /** @description Words in the name, the title or the id of the scenario */
                 text?: string;
-                /** @description Only those in this state */
+                /** @description Only rows in this state */
                 state?: ("queued" | "running" | "done" | "failed" | "cancelled" | "aborted") | null;
-                /** @description Only those of this scenario */
+                /** @description Only rows of this scenario */
                 scenario?: string;
             };
             header?: never;
@@ -11272,7 +11272,7 @@ export interface operations {
             };
         };
         responses: {
-            /** @description The same run is there already */
+            /** @description The same run existed already */
             200: {
                 headers: {
                     [name: string]: unknown;
@@ -11680,9 +11680,9 @@ export interface operations {
             query?: {
                 /** @description Words in the name, the title or the id of the scenario */
                 text?: string;
-                /** @description Only those in this state */
+                /** @description Only rows in this state */
                 state?: ("queued" | "running" | "done" | "failed" | "cancelled" | "aborted") | null;
-                /** @description Only those of this scenario */
+                /** @description Only rows of this scenario */
                 scenario?: string;
             };
             header?: never;
@@ -11724,7 +11724,7 @@ export interface operations {
             };
         };
         responses: {
-            /** @description The same campaign is there already */
+            /** @description The same campaign existed already */
             200: {
                 headers: {
                     [name: string]: unknown;
@@ -11891,7 +11891,7 @@ export interface operations {
             query?: {
                 /** @description Points to pass over */
                 offset?: number;
-                /** @description Points at most: those that have runs. All if left out */
+                /** @description Points at most, of the points with runs. All if left out */
                 limit?: number | null;
                 /** @description An axis, a figure, runs, ok or tripped */
                 sort?: string;
@@ -11967,7 +11967,7 @@ export interface operations {
     get_sweep_picture: {
         parameters: {
             query?: {
-                /** @description A figure; none for the one that varies most */
+                /** @description A figure; none for the figure that varies most */
                 figure?: string;
                 /** @description A number that varies, for the axis across */
                 across?: string;
@@ -12118,7 +12118,7 @@ export interface operations {
             };
         };
         responses: {
-            /** @description The same search is there already */
+            /** @description The same search existed already */
             200: {
                 headers: {
                     [name: string]: unknown;

@@ -1,4 +1,4 @@
-"""Campaigns and their results; what a recording needs to be replayed and compared."""
+"""Campaigns and their results; the columns to replay and compare a recording."""
 
 from __future__ import annotations
 

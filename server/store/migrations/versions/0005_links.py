@@ -1,4 +1,4 @@
-"""Links: experiments and layouts by a short id, and benches that were let go."""
+"""Links: experiments and layouts by a short id, and closed idle benches."""
 
 from __future__ import annotations
 

@@ -85,7 +85,7 @@ def downgrade() -> None:
 
 
 def _make(name: str, *columns: sa.Column[object]) -> None:
-    """Make one of the three tables, of the columns that all have and those of its own."""
+    """Make one of the three tables, with the common columns and its own."""
     op.create_table(
         name,
         sa.Column("id", sa.String(length=32), nullable=False),

@@ -1,4 +1,4 @@
-"""Classes, the sessions of their students and of watchers, and what people did."""
+"""Classes, the sessions of their students and of watchers, and the actions of users."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The secret of a class, from which it is drawn what each student gets."""
+"""The secret of a class, from which the numbers of each student are drawn."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lab sheets that somebody wrote, and how far people have come with sheets."""
+"""Lab sheets of users, and the progress of students with sheets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What classes are shown and given, the sheet they do, and the benches that students were lent."""
+"""Presentations and layouts of classes, their sheet, and the benches that students were lent."""
 
 from __future__ import annotations
 

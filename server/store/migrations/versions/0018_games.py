@@ -1,4 +1,4 @@
-"""What was handed in at games."""
+"""Answers at games."""
 
 from __future__ import annotations
 

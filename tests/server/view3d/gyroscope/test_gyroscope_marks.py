@@ -1,4 +1,4 @@
-"""Every fault of a gyroscope is seen on its part, by its name; one that nobody has drawn too."""
+"""Every fault of a gyroscope is visible on its part, by its name; a fault without a drawing too."""
 
 from __future__ import annotations
 

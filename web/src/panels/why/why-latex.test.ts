@@ -19,7 +19,7 @@ const account: Account = {
   time_ms: 0.07,
   floor: 0.01,
   residuals: ["residual"],
-  weighed: "what was believed before",
+  weighed: "the probabilities before",
   evidence: "",
   gain_units: ["1", "1/ms"],
   // exp(-r^2/2psi): 1 and exp(-2)
