@@ -115,7 +115,7 @@ WRONG: list[tuple[list[str], str]] = [
         "mine.cue 2.vote.when: from_ms must be less",
     ),
     ([FIRST, "until_ms = 50001"], "mine.cue 2.until_ms: must be from 2 ms to 50000 ms"),
-    ([FIRST, 'until_ms = 4\nevents = [{ at_ms = 5, heal = "all" }]'], "mine.cue 2.events.0: lies at 5 ms, outside"),
+    ([FIRST, 'until_ms = 4\nevents = [{ at_ms = 5, heal = "all" }]'], "mine.cue 2.events.0: is at 5 ms, outside"),
     (
         [FIRST + '\nevents = [{ at_ms = 1, heal = "all" }]', 'events = [{ at_ms = 2, fault = "mass", severity = 1 }]'],
         "mine.cue 2.events.0.fault: unknown",
