@@ -59,7 +59,7 @@ function Rest({ tips, hasSteps }: { tips: TickedHints | undefined; hasSteps: boo
       </Popover.Target>
       <Popover.Dropdown
         className={rest.rest}
-        onClick={({ target }) => (target as Element).closest("button") && setOpened(false)}
+        onClick={({ target }) => (target as Element).closest("button:not([aria-haspopup])") && setOpened(false)}
       >
         {tips && <HintList tips={tips} />}
         {hasSteps && <Findings scored={scored} />}

@@ -60,7 +60,7 @@ export function SchematicPanel() {
       </section>
     );
   return (
-    <section className={styles.panel} aria-label="The loop">
+    <section className={styles.panel} aria-label="Diagram">
       {isFlat ? (
         <ResonatorLoop controller={controller} diagnosers={diagnosers} structure={structure} />
       ) : (
