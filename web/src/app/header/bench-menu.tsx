@@ -27,7 +27,7 @@ export function BenchMenu() {
   const teaches = useMay("teach");
   const [benches, setBenches] = useState<Bench[]>([]);
   const [name, rest] = (title ?? "No bench").split(/: (.*)/);
-  const news = stale ? staleWords(stale) : slow ? "display lagging, simulation on time" : rate ? rest : "connecting";
+  const news = stale ? staleWords(stale) : slow ? "display lagging" : rate ? rest : "connecting";
   const load = () => api.benches().then(setBenches, showError);
 
   return (
@@ -35,7 +35,7 @@ export function BenchMenu() {
       <Menu.Target>
         <UnstyledButton
           className={styles.bench}
-          title={`${title ?? "No bench"}, ${formatShort(rate ?? 0, "kHz")} board, ${watchers} watching. Change bench.`}
+          title={`${title ?? "No bench"}, ${formatShort(rate ?? 0, "kHz")} board, ${watchers} watching. ${slow ? "The display lags, the simulation is on time. " : ""}Change bench.`}
         >
           <span data-lines={news ? 1 : 2}>{name} </span>
           <small data-slow={slow}>
