@@ -116,7 +116,7 @@ function Asked({ panel, view }: { panel: PanelName; view: ViewName }) {
 /** Why a sample was judged as it was, below the lanes it was chosen in. */
 function Why() {
   return (
-    <div ref={(place) => place?.scrollIntoView({ block: "nearest" })} className={styles.why}>
+    <div ref={(place) => place?.scrollIntoView({ block: "start" })} className={styles.why}>
       <Close what="Why" onClose={() => useView.setState({ sample: undefined })} />
       <PanelBody view="why" params={{}} setParams={() => undefined} />
     </div>
