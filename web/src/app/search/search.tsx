@@ -10,6 +10,9 @@ const [store, spotlight] = createSpotlight();
 /** Open the search, from a key or a button. */
 export const openSearch = spotlight.open;
 
+/** Whether the search is open, or about to be: the keys of the page are letters for it. */
+export const isSearching = (): boolean => store.getState().opened;
+
 /** Finds panels, scenarios, equations, devices, settings and places by their words, and opens them. */
 export function Search() {
   const [asked, setAsked] = useState("");
