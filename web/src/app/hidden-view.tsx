@@ -50,7 +50,7 @@ export function HiddenView({ view, question }: { view: ViewName; question: Quest
   const shown = tools.find((tool) => tool.view === wanted);
   const Tool = shown && VIEW[shown.view].component;
   return (
-    <section className={styles.hidden} aria-label={`${VIEW[view].title}, hidden`}>
+    <section className="view" aria-label={`${VIEW[view].title}, hidden`}>
       <div className={styles.bar}>
         <p>{`${VIEW[view].title}: hidden until ${question.game ? "the game is over" : "you answer"}. Measure instead:`}</p>
         {tools.map(({ view: tool, words }) => (

@@ -92,7 +92,7 @@ export function Designer() {
     <main className={styles.page}>
       <header className={styles.top}>
         <PageHead name="Design" item={isKnown ? device.title : undefined} heading="Device designer" />
-        {item && !isKnown && <span className={styles.refusal}>The catalogue has no device {item}.</span>}
+        {item && !isKnown && <span className="wrong">The catalogue has no device {item}.</span>}
         {state.drawn && (
           <span className={styles.drawn}>
             device {state.drawn.seed} of the process
@@ -101,7 +101,7 @@ export function Designer() {
           </span>
         )}
         {refusal && (
-          <span className={styles.refusal} role="alert">
+          <span className="wrong" role="alert">
             {refusal.body.message}. {refusal.body.hint}
           </span>
         )}

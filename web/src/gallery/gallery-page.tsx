@@ -58,7 +58,7 @@ export function GalleryPage() {
           <Filters all={all ?? []} filter={filter} onChange={setFilter} />
         )}
         {all && !item && (
-          <output className={styles.count}>
+          <output className="note">
             {cards.length === all.length
               ? formatCount(all.length, "experiment")
               : `${formatNumber(cards.length, 0)} of ${formatNumber(all.length, 0)}`}
@@ -87,7 +87,7 @@ export function GalleryPage() {
           </div>
         )}
         {figures?.problem && (
-          <p className={styles.problem} role="status">
+          <p className="wrong" role="status">
             {figures.problem}
           </p>
         )}

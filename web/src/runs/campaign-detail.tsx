@@ -107,7 +107,7 @@ function Said({ points }: { points: PointTally[] }) {
   const warnings = [...new Set(points.flatMap((point) => point.warnings ?? []))].slice(0, MOST_SAID);
   if (errors.length + warnings.length === 0) return null;
   return (
-    <ul className={styles.refusal}>
+    <ul className="wrong">
       {[...errors, ...warnings.map((text) => `Warning: ${text}`)].map((text) => (
         <li key={text}>{text}</li>
       ))}

@@ -68,9 +68,9 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
           title={run.title || run.scenario_id}
           save={(label) => api.renameRun(run.id, label).then(onChanged)}
         />
-        {summary.trip && <p className={styles.refusal}>Tripped: {summary.trip.reason}</p>}
+        {summary.trip && <p className="wrong">Tripped: {summary.trip.reason}</p>}
         {summary.warnings.map((text) => (
-          <p key={text} className={styles.refusal}>
+          <p key={text} className="wrong">
             Warning: {text}
           </p>
         ))}

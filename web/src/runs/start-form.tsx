@@ -160,7 +160,7 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
         />
       )}
       {refusal && (
-        <p className={styles.refusal} role="alert">
+        <p className="wrong" role="alert">
           {refusal.field && !refusal.message.includes(refusal.field) && <b>{refusal.field}: </b>}
           {refusal.message}. {refusal.hint}
         </p>

@@ -59,7 +59,7 @@ export function AdaptationPanel() {
     shown.current &&
     stripsPicture(shown.current, unit.strips, `Adaptation of ${unit.block.replaceAll("_", " ")}`, LEGEND);
   return (
-    <section className={styles.panel} aria-label="Adaptation">
+    <section className={`view ${styles.panel}`} aria-label="Adaptation">
       <div className={styles.bar}>
         <NativeSelect
           size="xs"

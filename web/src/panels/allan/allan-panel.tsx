@@ -71,7 +71,7 @@ function Readout({ bench, name }: { bench: string; name: string }) {
   const take = (): Picture | undefined =>
     readout && { ...pictureName("Allan deviation"), height: 480, legend: allanEntries("light"), paint };
   return (
-    <section className={styles.panel} aria-label="Allan deviation">
+    <section className="view" aria-label="Allan deviation">
       <div className={styles.bar}>
         <span>
           {readout

@@ -10,7 +10,6 @@ import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { middles, type PanelFrame } from "../../stream/panel-frame";
 import { EmptyState } from "../../ui/empty-state";
-import styles from "./behaviour.module.css";
 import { BehaviourPlot, type Drawing } from "./behaviour-plot";
 import { drawRegions } from "./paint-regions";
 import { drawSets } from "./paint-sets";
@@ -88,7 +87,7 @@ export function BehaviourPanel() {
       </EmptyState>
     );
   return (
-    <section className={styles.panel} aria-label="Behaviour">
+    <section className="view" aria-label="Behaviour">
       <BehaviourPlot
         key={`${bench} ${shown.id}`}
         title={shown.kind === "sets" ? "Behaviours" : "Regions of performance"}

@@ -33,7 +33,7 @@ export function CardPanel() {
     label: `${i.title}: ${block(i.family, i.name)?.title ?? i.name.replaceAll("_", " ")}`,
   }));
   return (
-    <section className={styles.card} aria-label={`Block: ${found?.title ?? instance.name}`}>
+    <section className="view-page" aria-label={`Block: ${found?.title ?? instance.name}`}>
       <NativeSelect
         size="xs"
         aria-label="Block"

@@ -34,7 +34,7 @@ export function ParameterList({ instance, parameters, document }: ParameterListP
     else void apply({ [path]: value });
   };
 
-  if (shown.length === 0) return <p className={styles.none}>This block has no parameters.</p>;
+  if (shown.length === 0) return <p className="note">This block has no parameters.</p>;
   const count = Object.keys(staged).length;
   return (
     <>

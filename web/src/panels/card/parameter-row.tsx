@@ -31,7 +31,7 @@ export function ParameterRow({ parameter, value, staged, onChange }: ParameterRo
             </Tooltip>
           )}
         </span>
-        <span className={styles.meaning}>
+        <span className="remark">
           {meaning}
           {range && ` (${range})`}
         </span>

@@ -28,7 +28,7 @@ export function ClaimsPanel() {
       </EmptyState>
     );
   return (
-    <section className={styles.panel} aria-label="Claims" data-over={value.is_over}>
+    <section className={`view ${styles.panel}`} aria-label="Claims" data-over={value.is_over}>
       <header className={styles.top}>
         <p className={styles.claim}>{value.claim || value.title}</p>
         <div className={styles.line}>

@@ -25,7 +25,7 @@ export function EventsPanel() {
   const [who, setWho] = useState(false);
   if (!bench || !teaches || !(shared || classes || who)) return <Events />;
   return (
-    <div className={styles.panel}>
+    <div className={`view ${styles.panel}`}>
       <SegmentedControl
         size="xs"
         aria-label="What is listed"

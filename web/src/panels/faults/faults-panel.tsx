@@ -34,7 +34,7 @@ export function FaultsPanel() {
     );
   const acting = active?.filter((f) => f.severity !== 0) ?? [];
   return (
-    <section className={styles.panel} aria-label="Faults">
+    <section className="view" aria-label="Faults">
       <div className={styles.top}>
         <span>{acting.length === 0 ? "The device is healthy" : formatCount(acting.length, "active fault")}</span>
         <Button size="compact-sm" variant="default" disabled={acting.length === 0} onClick={actions.healAll}>

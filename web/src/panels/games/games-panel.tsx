@@ -45,7 +45,7 @@ export function GamesPanel() {
   const card = cards.value?.find(({ id }) => id === game);
   const on = playing !== undefined && playing.game === game && playing.seed === seed;
   return (
-    <section className={exercise.panel} aria-label="Games">
+    <section className={`view ${exercise.panel}`} aria-label="Games">
       <Stale error={error ?? cards.error} since={since} onRetry={again} />
       <div className={exercise.bar}>
         <NativeSelect

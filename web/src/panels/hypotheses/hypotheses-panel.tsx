@@ -54,7 +54,7 @@ export function HypothesesPanel() {
     (b) => b.family === "diagnose" && fits(b, []) && b.parameters.some((p) => p.name === "hypotheses"),
   );
   return (
-    <section className={styles.panel} aria-label="Hypotheses">
+    <section className="view-page" aria-label="Hypotheses">
       <div className={styles.bar}>
         <NativeSelect
           size="xs"

@@ -42,7 +42,7 @@ export function IdentifyPanel() {
     </Button>
   );
   return (
-    <section className={styles.panel} aria-label="Frequency response">
+    <section className={`view ${styles.panel}`} aria-label="Frequency response">
       <div className={styles.bar}>
         {button}
         {FIELDS.map(({ name, ...field }) => (

@@ -38,7 +38,7 @@ export function LabsPanel() {
     if (now && now.id === bench) await send({ kind: "reset", values: kept(labsOf(now, id, block)) }, "Counting afresh");
   };
   return (
-    <section className={styles.panel} aria-label="Labs">
+    <section className="view-page" aria-label="Labs">
       <div className={styles.bar}>
         <NativeSelect
           size="xs"

@@ -45,7 +45,7 @@ export function LanesPanel() {
   // a bank whose truth is hidden has lanes too, but for that
   const one = all.length === 1 && (all[0].truth || blind) ? all[0] : all.find((c) => c.id === wanted && c.truth);
   return (
-    <div className={styles.panel}>
+    <div className="view">
       {all.length > 1 && (
         <div className={styles.choice}>
           <NativeSelect

@@ -28,7 +28,7 @@ export function LocusPanel() {
   const masses = useMemo(() => (axes?.includes("partner_x") ? [MASS, PARTNER] : [MASS]), [axes]);
   if (!axes) return <EmptyState title="No bench yet">The path of the mass appears with the bench.</EmptyState>;
   return (
-    <section className={styles.panel} aria-label="Motion">
+    <section className={`view ${styles.panel}`} aria-label="Motion">
       <div className={styles.bar}>
         <NativeSelect
           size="xs"

@@ -38,7 +38,7 @@ export function PhasePanel() {
   const fits = mapFits(x, y);
   const flat = plant !== "planar" && plant !== "slaved_lateral";
   return (
-    <section className={styles.panel} aria-label="Phase plane">
+    <section className={`view ${styles.panel}`} aria-label="Phase plane">
       <div className={styles.bar}>
         <NativeSelect
           size="xs"

@@ -54,13 +54,13 @@ export function SchematicPanel() {
   );
   if (instance && card)
     return (
-      <section className={styles.panel} aria-label={`Inside: ${card.title}`}>
+      <section className={`view ${styles.panel}`} aria-label={`Inside: ${card.title}`}>
         <InsideDrawing key={`${instance.id} ${instance.name}`} instance={instance} block={card} />
         <footer className={styles.foot}>{choice}</footer>
       </section>
     );
   return (
-    <section className={styles.panel} aria-label="The loop">
+    <section className={`view ${styles.panel}`} aria-label="The loop">
       {isFlat ? (
         <ResonatorLoop controller={controller} diagnosers={diagnosers} structure={structure} />
       ) : (

@@ -137,7 +137,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
   if (dtMs === undefined)
     return <EmptyState title="No bench yet">The scope fills as soon as a bench is connected.</EmptyState>;
   return (
-    <section className={styles.scope} aria-label={`Scope: ${traces.map((t) => t.name).join(", ") || "empty"}`}>
+    <section className="view" aria-label={`Scope: ${traces.map((t) => t.name).join(", ") || "empty"}`}>
       <RearmContext value={rearm}>
         <ScopeToolbar
           config={config}

@@ -31,7 +31,7 @@ export function SheetList({ cards, onChanged }: { cards: SheetCard[]; onChanged(
     await sheets.remove(id).then(onChanged, showError);
   };
   return (
-    <section className={styles.sheet} aria-label="Lab sheets">
+    <section className={`view ${styles.sheet}`} aria-label="Lab sheets">
       {!teaches && <p className={styles.quiet}>A sheet begins with a bench of its own, in place of yours.</p>}
       <ul className={styles.cards}>
         {cards.map((card) => (

@@ -44,7 +44,7 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
     again();
   };
   return (
-    <section className={styles.sheet} aria-label="Lab sheet">
+    <section className={`view ${styles.sheet}`} aria-label="Lab sheet">
       <header className={styles.head}>
         <h2>{value.title}</h2>
         <p>

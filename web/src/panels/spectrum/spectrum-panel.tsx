@@ -21,7 +21,7 @@ export function SpectrumPanel() {
   const usual = signals.find((s) => s.name === "sensor.displacement" || s.name === "sensor.x.displacement");
   const signal = wanted ?? usual?.name ?? signals[0].name;
   return (
-    <section className={styles.panel} aria-label="Spectrum">
+    <section className={`view ${styles.panel}`} aria-label="Spectrum">
       <div className={styles.bar}>
         <NativeSelect
           size="xs"

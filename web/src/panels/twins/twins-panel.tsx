@@ -59,7 +59,7 @@ export function TwinsPanel() {
     );
   const take = () => shown.current && stripsPicture(shown.current, strips, "Twins", boards);
   return (
-    <section className={styles.panel} aria-label="Twins">
+    <section className={`view ${styles.panel}`} aria-label="Twins">
       <div className={styles.bar}>
         {form}
         <LaneTools time={time} onWindow={setWindowMs} take={take} />

@@ -46,12 +46,12 @@ function Teachers() {
   );
   if (!vote)
     return (
-      <div className={styles.panel}>
+      <div className={`view ${styles.panel}`}>
         <Ask group={group} who={who} run={run} />
       </div>
     );
   return (
-    <div className={styles.panel}>
+    <div className={`view ${styles.panel}`}>
       <Running key={vote.id} vote={vote} students={groups.find(({ id }) => id === group)?.students} run={run} />
       {who}
     </div>
@@ -111,7 +111,7 @@ function Ask({ group, who, run }: { group: string; who: ReactNode; run(what: Pro
         />
       )}
       {body.when && (
-        <p className={styles.note}>
+        <p className="note">
           Each answer has a moment, too: {formatShort(body.when.from_ms, "ms")} to{" "}
           {formatShort(body.when.until_ms, "ms")} of device time.
         </p>
@@ -188,7 +188,7 @@ function Running({ vote, students, run }: RunningProps) {
         ))}
       </ul>
       {results && question.diagnoser && (
-        <p className={styles.note}>The bars lie over the lanes, with a mark at each moment that was guessed.</p>
+        <p className="note">The bars lie over the lanes, with a mark at each moment that was guessed.</p>
       )}
     </>
   );
