@@ -33,8 +33,13 @@ export function LinkBox({ path, what, remark, onCopy }: LinkBoxProps) {
   return (
     <div className={styles.link}>
       <div className={styles.name}>
-        <TextInput label={what} value={address} readOnly onFocus={(e) => e.currentTarget.select()} />
-        <Button leftSection={copied === address ? <IconCheck size={16} /> : <IconCopy size={16} />} onClick={copy}>
+        <TextInput size="sm" label={what} value={address} readOnly onFocus={(e) => e.currentTarget.select()} />
+        <Button
+          variant="filled"
+          size="sm"
+          leftSection={copied === address ? <IconCheck size={16} /> : <IconCopy size={16} />}
+          onClick={copy}
+        >
           {copied === address ? "Copied" : "Copy"}
         </Button>
       </div>

@@ -93,7 +93,6 @@ function Row({ link, isOwn = false, onChanged }: { link: Link; isOwn?: boolean; 
             }}
           >
             <TextInput
-              size="xs"
               aria-label={`New title of ${link.title}`}
               value={title}
               maxLength={200}
@@ -115,11 +114,10 @@ function Row({ link, isOwn = false, onChanged }: { link: Link; isOwn?: boolean; 
         </Button>
         {isOwn && (
           <>
-            <ActionIcon variant="subtle" aria-label={`Rename ${link.title}`} onClick={() => setTitle(link.title)}>
+            <ActionIcon aria-label={`Rename ${link.title}`} onClick={() => setTitle(link.title)}>
               <IconPencil size={16} />
             </ActionIcon>
             <ActionIcon
-              variant="subtle"
               aria-label={`Delete ${link.title}`}
               onClick={() =>
                 window.confirm(`Delete ${link.title} for good? Its link will no longer open.`) &&

@@ -70,7 +70,6 @@ function Gallery() {
       <Button
         fullWidth
         size="xs"
-        variant="default"
         mb="sm"
         leftSection={<IconRulerMeasure size={16} />}
         onClick={() => {
@@ -83,7 +82,6 @@ function Gallery() {
       <Button
         fullWidth
         size="xs"
-        variant="default"
         mb="sm"
         leftSection={<IconFolderOpen size={16} />}
         onClick={() => useView.setState({ dialog: "mine" })}
@@ -93,7 +91,6 @@ function Gallery() {
       <Button
         fullWidth
         size="xs"
-        variant="default"
         mb="sm"
         leftSection={<IconClipboardList size={16} />}
         onClick={() => {
@@ -105,21 +102,14 @@ function Gallery() {
         Begin a lab sheet
       </Button>
       <div className={styles.filters}>
-        <TextInput
-          size="xs"
-          label="Search"
-          value={query}
-          onChange={(e) => setQuery(e.currentTarget.value)}
-          data-autofocus
-        />
+        <TextInput label="Search" value={query} onChange={(e) => setQuery(e.currentTarget.value)} data-autofocus />
         <NativeSelect
-          size="xs"
           label="Device"
           value={device}
           data={[{ value: "", label: "the scenario's own" }, ...devices.map((d) => ({ value: d.id, label: d.title }))]}
           onChange={(e) => setDevice(e.currentTarget.value)}
         />
-        <Switch size="xs" label="Start paused" checked={paused} onChange={(e) => setPaused(e.currentTarget.checked)} />
+        <Switch label="Start paused" checked={paused} onChange={(e) => setPaused(e.currentTarget.checked)} />
       </div>
       {!found && <Text c="dimmed">Loading the library…</Text>}
       {unsuited > 0 && (

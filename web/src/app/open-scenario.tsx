@@ -70,7 +70,7 @@ export function OpenScenario({ onKept }: { onKept?(): void }) {
         </FileButton>
         <span>a TOML file from disk, or drop one here</span>
         {teaches ? (
-          <Checkbox size="xs" label="Keep it here" checked={keep} onChange={(e) => setKeep(e.currentTarget.checked)} />
+          <Checkbox label="Keep it here" checked={keep} onChange={(e) => setKeep(e.currentTarget.checked)} />
         ) : (
           <span>It takes the place of your bench.</span>
         )}

@@ -28,7 +28,7 @@ export function PanelMenu({
   const [query, setQuery] = useState("");
   const entries = useEntries(query);
   return (
-    <Menu position="bottom-end" shadow="md" width={360} returnFocus>
+    <Menu position="bottom-end" width={360} returnFocus>
       <Menu.Target>
         <button
           type="button"

@@ -125,7 +125,7 @@ function Why() {
 
 function Close({ what, onClose }: { what: string; onClose(): void }) {
   return (
-    <ActionIcon className={styles.close} variant="subtle" color="gray" aria-label={`Close ${what}`} onClick={onClose}>
+    <ActionIcon className={styles.close} color="gray" aria-label={`Close ${what}`} onClick={onClose}>
       <IconX size={18} />
     </ActionIcon>
   );

@@ -85,7 +85,6 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
         {ms(Math.min(bench.tick, end))} of {ms(first)} … {ms(end)}
       </span>
       <NativeSelect
-        size="xs"
         aria-label="Speed of the replay"
         value={String(nearest ?? 1)}
         data={speedItems()}
@@ -97,7 +96,6 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
         }
       />
       <Button
-        size="compact-sm"
         variant={looping ? "light" : "default"}
         aria-pressed={looping}
         leftSection={<IconRepeat size={15} />}
@@ -106,8 +104,6 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
         Loop
       </Button>
       <Button
-        size="compact-sm"
-        variant="default"
         title="The loop begins here"
         onClick={() => {
           const next: [number, number] = [bench.tick, to > bench.tick ? to : end];
@@ -118,8 +114,6 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
         from here
       </Button>
       <Button
-        size="compact-sm"
-        variant="default"
         title="The loop ends here"
         disabled={bench.tick <= from + 2}
         onClick={() => {
@@ -130,12 +124,8 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
       >
         to here
       </Button>
-      {about.layout && (
-        <Button size="compact-sm" variant="default" onClick={() => about.layout && restoreLayout(about.layout)}>
-          Its layout
-        </Button>
-      )}
-      <Button size="compact-sm" leftSection={<IconArrowLeft size={15} />} onClick={leave}>
+      {about.layout && <Button onClick={() => about.layout && restoreLayout(about.layout)}>Its layout</Button>}
+      <Button variant="filled" leftSection={<IconArrowLeft size={15} />} onClick={leave}>
         Leave
       </Button>
     </section>

@@ -38,7 +38,7 @@ export function StepBar() {
       )}
       {drives && (
         <Button
-          size="compact-sm"
+          variant="filled"
           leftSection={<IconPlayerTrackNext size={16} />}
           title="Run as fast as possible to just before the next step"
           disabled={bench.fast_forward !== null || hasEnded(bench, steps) || (next < 0 && !bench.samples)}

@@ -68,7 +68,7 @@ function Rest({ tips, hasSteps }: { tips: TickedHints | undefined; hasSteps: boo
             <NarratorPanel />
           </div>
         )}
-        <Button size="compact-sm" variant="subtle" onClick={toggleNarrator}>
+        <Button variant="subtle" onClick={toggleNarrator}>
           {narrates ? "Narrator off (Q)" : "Narrator on (Q)"}
         </Button>
       </Popover.Dropdown>

@@ -90,7 +90,7 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
 
 function BackToNow() {
   return (
-    <Button size="compact-sm" leftSection={<IconPlayerTrackNextFilled size={14} />} onClick={() => void backToNow()}>
+    <Button variant="filled" leftSection={<IconPlayerTrackNextFilled size={14} />} onClick={() => void backToNow()}>
       Back to now
     </Button>
   );

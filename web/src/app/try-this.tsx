@@ -47,11 +47,7 @@ export function HintList({ tips }: { tips: TickedHints }) {
       </ul>
       <div className={rest.actions}>
         {teaches && !tourSeen() && <OfferTour />}
-        {tips.canHide && (
-          <Button size="compact-sm" variant="default" onClick={() => showPanel("blind", "faults")}>
-            Find a hidden fault
-          </Button>
-        )}
+        {tips.canHide && <Button onClick={() => showPanel("blind", "faults")}>Find a hidden fault</Button>}
       </div>
     </section>
   );
@@ -67,7 +63,7 @@ function Guided({ scenario, label }: Hints["guided"]) {
       .finally(() => setBusy(false));
   };
   return (
-    <Button size="compact-sm" loading={busy} leftSection={<IconPlayerPlayFilled size={14} />} onClick={start}>
+    <Button variant="filled" loading={busy} leftSection={<IconPlayerPlayFilled size={14} />} onClick={start}>
       {label}
     </Button>
   );

@@ -49,6 +49,7 @@ export function WatchLinks({ bench, link, onLet }: WatchLinksProps) {
       </p>
       <div className={styles.name}>
         <NumberInput
+          size="sm"
           label="Lasts, hours"
           min={0.1}
           max={LONGEST_H}
@@ -56,13 +57,7 @@ export function WatchLinks({ bench, link, onLet }: WatchLinksProps) {
           onChange={setHours}
           error={isRight ? undefined : `More than 0, at most ${LONGEST_H}`}
         />
-        <Button
-          variant="default"
-          leftSection={<IconEye size={16} />}
-          loading={busy}
-          disabled={!isRight}
-          onClick={letWatch}
-        >
+        <Button size="sm" leftSection={<IconEye size={16} />} loading={busy} disabled={!isRight} onClick={letWatch}>
           Let people watch
         </Button>
       </div>
@@ -71,9 +66,7 @@ export function WatchLinks({ bench, link, onLet }: WatchLinksProps) {
           {watchers.map(({ id, until }) => (
             <li key={id}>
               <span>Lasts until {new Date(until).toLocaleString([], { dateStyle: "short", timeStyle: "short" })}</span>
-              <Button size="compact-sm" variant="default" onClick={() => void end(id)}>
-                End
-              </Button>
+              <Button onClick={() => void end(id)}>End</Button>
             </li>
           ))}
         </ul>

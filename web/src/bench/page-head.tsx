@@ -31,7 +31,7 @@ export function PageHead({ name, item, heading = name }: PageHeadProps) {
     <div className={styles.head}>
       <h1>{heading}</h1>
       <Tooltip label={label}>
-        <ActionIcon variant="subtle" size="md" aria-label={label} onClick={() => void copy()}>
+        <ActionIcon size="md" aria-label={label} onClick={() => void copy()}>
           {copied === address ? <IconCheck size={16} /> : <IconLink size={16} />}
         </ActionIcon>
       </Tooltip>

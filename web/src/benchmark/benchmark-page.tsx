@@ -28,7 +28,6 @@ export function BenchmarkPage() {
         <PageHead name="Scores" heading="Benchmark" />
         {value && (
           <NativeSelect
-            size="xs"
             aria-label="Track"
             value={track}
             data={value.results.map(({ id, title }) => ({ value: id, label: title }))}

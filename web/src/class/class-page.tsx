@@ -32,14 +32,13 @@ export function ClassPage() {
         <ClassView key={group.id} group={group} onChanged={again}>
           {all.length > 1 && (
             <NativeSelect
-              size="xs"
               aria-label="Class"
               value={group.id}
               data={all.map(({ id, name }) => ({ value: id, label: name }))}
               onChange={(e) => setWanted(e.currentTarget.value)}
             />
           )}
-          <Button size="xs" variant="default" onClick={() => setAnother(true)}>
+          <Button size="xs" onClick={() => setAnother(true)}>
             Another class
           </Button>
         </ClassView>

@@ -103,17 +103,16 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
           {here && shown !== here.id && (
             <Button
               size="xs"
-              variant="default"
               title={`The bench on your page: ${here.title}`}
               onClick={() => void classes.show(id, here.id).then(onChanged, showError)}
             >
               Show my bench to all
             </Button>
           )}
-          <Button size="xs" variant="default" onClick={() => setLog(true)}>
+          <Button size="xs" onClick={() => setLog(true)}>
             What was done
           </Button>
-          <Button size="xs" variant="default" onClick={end}>
+          <Button size="xs" onClick={end}>
             End the class…
           </Button>
         </div>
@@ -121,7 +120,7 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
       {shown && (
         <p className={styles.shown}>
           <b>All see one bench{shown === here?.id ? `: ${here.title}` : ""}.</b> Their own benches keep running.
-          <Button size="xs" onClick={() => void classes.endShowing(id).then(onChanged, showError)}>
+          <Button variant="filled" size="xs" onClick={() => void classes.endShowing(id).then(onChanged, showError)}>
             End showing
           </Button>
         </p>
@@ -146,7 +145,6 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
         <section className={styles.students} aria-label="Students">
           <div className={styles.row}>
             <TextInput
-              size="xs"
               type="search"
               aria-label="Search students"
               placeholder="Name"
@@ -154,7 +152,6 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
               onChange={(e) => setWords(e.currentTarget.value)}
             />
             <NativeSelect
-              size="xs"
               aria-label="Order"
               value={order}
               data={Object.entries(ORDERS).map(([value, label]) => ({ value, label }))}

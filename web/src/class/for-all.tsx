@@ -62,7 +62,6 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
         )}
         <Button
           size="xs"
-          variant="default"
           leftSection={<IconPlayerPauseFilled size={15} />}
           loading={busy === "Freeze"}
           disabled={count === 0}
@@ -72,7 +71,6 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
         </Button>
         <Button
           size="xs"
-          variant="default"
           leftSection={<IconPlayerPlayFilled size={15} />}
           loading={busy === "Release"}
           disabled={count === 0}
@@ -82,7 +80,6 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
         </Button>
         <Button
           size="xs"
-          variant="default"
           loading={busy === "Start all together"}
           disabled={count === 0}
           title="Every bench returns to tick 0, then all start at once. A bench at tick 0 keeps its settings."
@@ -97,6 +94,7 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
         </Button>
         {stopped.length > 0 && (
           <Button
+            variant="filled"
             size="xs"
             color="alarm"
             loading={busy === "Reset trips"}
@@ -120,7 +118,6 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
           />
           <Button
             size="xs"
-            variant="default"
             disabled={count === 0 || chosen.length > 0}
             title={chosen.length > 0 ? "A scenario begins on all benches; choose none first" : undefined}
             onClick={begin}

@@ -56,13 +56,18 @@ export function Joining({ group, isBrief, onChanged }: JoiningProps) {
       )}
       <div className={styles.buttons}>
         {address && (
-          <Button leftSection={<IconArrowsMaximize size={16} />} onClick={() => setOnWall(true)}>
+          <Button
+            variant="filled"
+            size="sm"
+            leftSection={<IconArrowsMaximize size={16} />}
+            onClick={() => setOnWall(true)}
+          >
             Show on the wall
           </Button>
         )}
-        <Menu shadow="md">
+        <Menu>
           <Menu.Target>
-            <Button variant="default">New code</Button>
+            <Button size="sm">New code</Button>
           </Menu.Target>
           <Menu.Dropdown>
             <Menu.Label>An earlier code ends at once</Menu.Label>
@@ -74,7 +79,7 @@ export function Joining({ group, isBrief, onChanged }: JoiningProps) {
           </Menu.Dropdown>
         </Menu>
         {address && (
-          <Button variant="default" onClick={() => change(classes.closeJoining(group.id))}>
+          <Button size="sm" onClick={() => change(classes.closeJoining(group.id))}>
             Close joining
           </Button>
         )}

@@ -48,6 +48,7 @@ export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
       </p>
       <form onSubmit={open}>
         <TextInput
+          size="sm"
           label="Name of the class"
           placeholder="Control laboratory, Tuesday"
           required
@@ -57,6 +58,7 @@ export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
         />
         <ScenarioSelect label="Benches begin with" value={scenario} onChange={setScenario} />
         <NumberInput
+          size="sm"
           label="Duration"
           description="Everything is deleted when it ends."
           inputWrapperOrder={BELOW}
@@ -67,6 +69,7 @@ export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
           onChange={setHours}
         />
         <NumberInput
+          size="sm"
           label="The code lets students in for"
           description="You can make a new one at any time."
           inputWrapperOrder={BELOW}
@@ -77,11 +80,17 @@ export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
           onChange={setMinutes}
         />
         <div className={styles.buttons}>
-          <Button type="submit" loading={busy} disabled={!name.trim() || Boolean(wrong.hours || wrong.minutes)}>
+          <Button
+            variant="filled"
+            size="sm"
+            type="submit"
+            loading={busy}
+            disabled={!name.trim() || Boolean(wrong.hours || wrong.minutes)}
+          >
             Open the class
           </Button>
           {onCancel && (
-            <Button variant="default" onClick={onCancel}>
+            <Button size="sm" onClick={onCancel}>
               Back
             </Button>
           )}

@@ -42,7 +42,6 @@ export const TileView = memo(function TileView({ tile, isChosen, actions }: Tile
     <li className={styles.tile} data-hand={hand} data-state={state ?? "none"} aria-label={name}>
       <div className={styles.head}>
         <Checkbox
-          size="xs"
           aria-label={`Choose ${name}`}
           checked={isChosen}
           onChange={(e) => actions.choose(id, e.currentTarget.checked)}
@@ -65,9 +64,9 @@ export const TileView = memo(function TileView({ tile, isChosen, actions }: Tile
             <IconHandStop size={17} />
           </button>
         )}
-        <Menu position="bottom-end" shadow="md">
+        <Menu position="bottom-end">
           <Menu.Target>
-            <ActionIcon size={26} variant="subtle" color="gray" aria-label={`What can be done with ${name}`}>
+            <ActionIcon size={26} color="gray" aria-label={`What can be done with ${name}`}>
               <IconDots size={16} />
             </ActionIcon>
           </Menu.Target>

@@ -107,13 +107,12 @@ export function Designer() {
         )}
         <div className={styles.actions}>
           {state.drawn && (
-            <Button size="xs" variant="default" onClick={() => setState({ ...state, drawn: undefined })}>
+            <Button size="xs" onClick={() => setState({ ...state, drawn: undefined })}>
               Back to the drawing
             </Button>
           )}
           <Button
             size="xs"
-            variant="default"
             leftSection={<IconDice5 size={16} />}
             disabled={isGyroscope(device) || catalogued(device, "geometry.beam_length_um") === undefined}
             title="A device as the process might make it; the same number gives the same device"
@@ -123,6 +122,7 @@ export function Designer() {
           </Button>
           {drives && (
             <Button
+              variant="filled"
               size="xs"
               leftSection={<IconPlayerPlay size={16} />}
               title={teaches ? undefined : "It takes the place of your bench"}

@@ -101,7 +101,6 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
               component="a"
               href={`./api/v1/runs/${card.run}/report`}
               target="_blank"
-              size="compact-sm"
               variant="subtle"
               leftSection={<IconFileText size={15} />}
               aria-label={`Report of ${title}`}
@@ -111,8 +110,6 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
           )}
           {teaches && card.state !== "done" && (
             <Button
-              size="compact-sm"
-              variant="default"
               leftSection={<IconPlayerTrackNext size={15} />}
               disabled={underWay}
               title="Headless, with report, trace and script; at lower priority than the live benches"
@@ -124,7 +121,6 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
           )}
           {drives && card.study === null && (
             <Button
-              size="compact-sm"
               variant="light"
               leftSection={<IconPlayerPlay size={15} />}
               title={teaches ? undefined : "It takes the place of your bench"}

@@ -51,7 +51,7 @@ export function GalleryPage() {
       <header className={styles.top}>
         <PageHead name="Gallery" item={one?.title} />
         {item ? (
-          <Button size="xs" variant="default" onClick={() => setPage("gallery")}>
+          <Button size="xs" onClick={() => setPage("gallery")}>
             All experiments
           </Button>
         ) : (
@@ -68,7 +68,6 @@ export function GalleryPage() {
         {drives && !item && (
           <Button
             size="xs"
-            variant="default"
             leftSection={<IconFolderOpen size={16} />}
             onClick={() => useView.setState({ dialog: "mine" })}
           >
@@ -110,7 +109,7 @@ export function GalleryPage() {
         <EmptyState
           title={item ? `The library has no experiment ${item}` : "No experiment matches"}
           action={
-            <Button size="xs" variant="default" onClick={showAll}>
+            <Button size="xs" onClick={showAll}>
               Show all
             </Button>
           }

@@ -29,7 +29,6 @@ export function DiagnosisCharts({ points, words }: { points: PointTally[]; words
         <h3>Diagnosis</h3>
         {diagnosers.length > 1 && (
           <NativeSelect
-            size="xs"
             aria-label="Diagnoser"
             value={id}
             data={diagnosers.map((name) => ({ value: name, label: words[name] ?? name }))}
@@ -71,7 +70,6 @@ export function DiagnosisCharts({ points, words }: { points: PointTally[]; words
       </div>
       {found.length > 1 && (
         <NativeSelect
-          size="xs"
           label="Confusion at"
           w="fit-content"
           value={String(at)}

@@ -58,15 +58,8 @@ export function DistributionChart({ sweep, quantities, figures, first, every }: 
     <section className={styles.diagnosis} aria-label="Distribution of runs">
       <h3>Distribution of runs</h3>
       <div className={styles.links}>
+        <NativeSelect label="Across" value={x} data={names} onChange={(e) => setAcross(e.currentTarget.value)} />
         <NativeSelect
-          size="xs"
-          label="Across"
-          value={x}
-          data={names}
-          onChange={(e) => setAcross(e.currentTarget.value)}
-        />
-        <NativeSelect
-          size="xs"
           label="Up"
           value={y}
           data={[{ value: "", label: "number of runs" }, ...names]}

@@ -32,7 +32,6 @@ export function RunComparison({ ids }: { ids: string }) {
       <h2>{formatCount(value.runs.length, "run")} side by side</h2>
       <Traces ids={ids} comparison={value} names={names} />
       <Checkbox
-        size="xs"
         label={`Only the ${formatCount(different.length, "figure")} that differ`}
         checked={onlyDifferent}
         onChange={(e) => setOnlyDifferent(e.currentTarget.checked)}
@@ -94,7 +93,6 @@ function Traces({ ids, comparison, names }: { ids: string; comparison: Compariso
   return (
     <>
       <Select
-        size="xs"
         label="Signal"
         searchable
         allowDeselect={false}

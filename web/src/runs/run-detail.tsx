@@ -83,7 +83,6 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
           {hasTrace && (
             <Button
               size="xs"
-              variant="default"
               leftSection={<IconPlayerPlay size={15} />}
               title="The scenario as the library has it, on a live bench"
               onClick={live}

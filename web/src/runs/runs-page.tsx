@@ -77,7 +77,7 @@ export function RunsPage() {
           <EmptyState
             title="No run matches"
             action={
-              <Button size="xs" variant="default" onClick={() => setFilter(ALL)}>
+              <Button size="xs" onClick={() => setFilter(ALL)}>
                 Show all
               </Button>
             }

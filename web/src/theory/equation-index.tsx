@@ -36,7 +36,6 @@ export function EquationIndex() {
           </p>
         </div>
         <TextInput
-          size="xs"
           aria-label="Search equations"
           placeholder="Name, section or word: 5.2.4, gain, MRAC"
           leftSection={<IconSearch size={15} />}

@@ -37,7 +37,7 @@ export function Excitation() {
       <Formula latex="\alpha_2 I\ge\int_t^{t+\delta}\varphi\varphi^T\,d\tau\ge\alpha_1 I>0,\quad\varphi=\tfrac1{(s+\lambda)^2}[u,-\dot y,-y]^T" />
       <div className={styles.examples}>
         {PRESETS.map(({ name, tones: preset }) => (
-          <Button key={name} size="compact-xs" variant="default" onClick={() => setTones(preset)}>
+          <Button key={name} size="compact-xs" onClick={() => setTones(preset)}>
             {name}
           </Button>
         ))}
@@ -76,7 +76,6 @@ export function Excitation() {
               </td>
               <td>
                 <ActionIcon
-                  variant="subtle"
                   size={26}
                   disabled={tones.length < 2}
                   aria-label={`Remove tone ${i + 1}`}

@@ -60,7 +60,6 @@ export function Instability() {
       </p>
       <div className={styles.examples}>
         <NativeSelect
-          size="xs"
           aria-label="Rule"
           value={rule}
           data={RULES.map(({ value, label }) => ({ value, label }))}

@@ -48,7 +48,7 @@ export function PositiveReal() {
       />
       <div className={styles.examples}>
         {EXAMPLES.map((example) => (
-          <Button key={example} size="compact-xs" variant="default" onClick={() => setText(example)}>
+          <Button key={example} size="compact-xs" onClick={() => setText(example)}>
             {example}
           </Button>
         ))}

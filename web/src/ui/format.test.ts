@@ -19,7 +19,7 @@ import {
   labelsOn,
   tickLabels,
 } from "./format";
-import cases from "./format-cases.json";
+import cases from "../testing/cases/format.json";
 import { plainScale, UNITS, unitScale, unitText } from "./unit-scale";
 
 const FORMATS = { si: formatSi, short: formatShort, in: formatIn };

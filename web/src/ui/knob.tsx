@@ -55,7 +55,6 @@ export function Knob(props: KnobProps) {
           <Tooltip label={`Back to ${formatShort(original, unit)}`}>
             <ActionIcon
               size={20}
-              variant="subtle"
               aria-label={`${label}: back to ${formatShort(original, unit)}`}
               onClick={() => onChange(original)}
             >

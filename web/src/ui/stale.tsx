@@ -15,7 +15,7 @@ export function Stale({ error, since, onRetry }: StaleProps) {
   return (
     <p className={styles.stale} role="alert">
       {error.body.message} {since && `What you see is of ${since.toLocaleTimeString()}.`} {error.body.hint}
-      <Button size="compact-xs" variant="default" onClick={onRetry}>
+      <Button size="compact-xs" onClick={onRetry}>
         Ask again
       </Button>
     </p>

@@ -30,7 +30,7 @@ export function CompanyMenu() {
       </Popover>
     );
   return (
-    <Menu width={280} position="bottom-end" shadow="md">
+    <Menu width={280} position="bottom-end">
       <Menu.Target>{button}</Menu.Target>
       <Menu.Dropdown>
         <Here company={company} />

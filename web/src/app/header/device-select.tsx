@@ -62,10 +62,10 @@ export function DeviceSelect() {
             {!teaches && " The bench you have now is gone."}
           </Text>
           <Group justify="flex-end" mt="md">
-            <Button variant="default" onClick={() => setAsked(undefined)}>
+            <Button size="sm" onClick={() => setAsked(undefined)}>
               Cancel
             </Button>
-            <Button loading={busy} data-autofocus onClick={() => begin(asked)}>
+            <Button variant="filled" size="sm" loading={busy} data-autofocus onClick={() => begin(asked)}>
               Begin again
             </Button>
           </Group>

@@ -36,7 +36,6 @@ export function HeaderSelect({ label, value, choices, locked, onChoose }: Header
     <Select
       ref={input}
       className={styles.choice}
-      size="xs"
       flex={`0 1 ${(shown?.title.length ?? 8) + 6}ch`}
       label={label}
       title={locked ?? shown?.title}

@@ -22,7 +22,6 @@ export function Visitor() {
         <small>{me.class_name}</small>
       </p>
       <Button
-        size="compact-sm"
         variant={me.hand ? "filled" : "default"}
         aria-pressed={me.hand}
         leftSection={<IconHandStop size={16} />}

@@ -71,6 +71,7 @@ export function LectureStrip() {
           <IconChevronLeft size={19} />
         </ActionIcon>
         <Button
+          variant="filled"
           size="compact-md"
           rightSection={<IconChevronRight size={17} />}
           disabled={at === lecture.script.length - 1}
@@ -79,9 +80,9 @@ export function LectureStrip() {
         >
           Next
         </Button>
-        <Menu width={380} position="top-start" shadow="md">
+        <Menu width={380} position="top-start">
           <Menu.Target>
-            <ActionIcon size={34} variant="subtle" aria-label="All cues" title="All cues">
+            <ActionIcon size={34} aria-label="All cues" title="All cues">
               <IconList size={19} />
             </ActionIcon>
           </Menu.Target>
@@ -122,7 +123,6 @@ export function LectureStrip() {
           </Button>
           <ActionIcon
             size={34}
-            variant="subtle"
             aria-label={notes ? "Hide the notes" : "Show the notes here, on the projector too"}
             title={notes ? "Hide the notes" : "Show the notes here, on the projector too"}
             aria-expanded={notes}
@@ -136,7 +136,7 @@ export function LectureStrip() {
         </span>
       </div>
       {page !== "bench" && (
-        <Button size="compact-sm" variant="light" onClick={() => setPage("bench")}>
+        <Button variant="light" onClick={() => setPage("bench")}>
           Back to the bench
         </Button>
       )}

@@ -102,10 +102,12 @@ export function Presenter() {
       <ClockFace used={used} planned={now.planned} whole={now.whole} />
       <Notes cue={now.cue} next={now.next} />
       <p className={styles.bar}>
-        <Button variant="default" onClick={() => channel.postMessage({ key: "PageUp" })}>
+        <Button size="sm" onClick={() => channel.postMessage({ key: "PageUp" })}>
           Back
         </Button>
-        <Button onClick={() => channel.postMessage({ key: "PageDown" })}>Next</Button>
+        <Button variant="filled" size="sm" onClick={() => channel.postMessage({ key: "PageDown" })}>
+          Next
+        </Button>
       </p>
       <p className={styles.keys}>
         {LECTURE_KEYS.map(({ shown, does }) => (

@@ -62,7 +62,6 @@ export function AdaptationPanel() {
     <section className={`view ${styles.panel}`} aria-label="Adaptation">
       <div className={styles.bar}>
         <NativeSelect
-          size="xs"
           aria-label="What adapts"
           value={unit.block}
           data={units.map((u) => ({

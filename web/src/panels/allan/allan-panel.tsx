@@ -37,6 +37,7 @@ export function AllanPanel() {
         action={
           teaches && (
             <Button
+              variant="filled"
               size="xs"
               onClick={() =>
                 openVariant({ "readouts.allan.kind": "allan" }, "Bench with an Allan read-out").catch(showError)

@@ -64,6 +64,7 @@ export function BehaviourPanel() {
           !replay && (
             <>
               <Button
+                variant="filled"
                 size="xs"
                 loading={busy}
                 onClick={() => begin("consistency", "The bench restarts with a test of consistency.")}
@@ -72,7 +73,6 @@ export function BehaviourPanel() {
               </Button>
               <Button
                 size="xs"
-                variant="default"
                 loading={busy}
                 onClick={() => begin("regions", "The bench restarts with regions of performance.")}
               >
@@ -99,7 +99,6 @@ export function BehaviourPanel() {
       >
         {all.length > 1 && (
           <NativeSelect
-            size="xs"
             aria-label="Diagnoser drawn"
             value={shown.id}
             data={all.map(({ id }) => ({ value: id, label: id.replaceAll("_", " ") }))}

@@ -64,6 +64,7 @@ export function Answer({ question, rule, onEnded }: AnswerProps) {
           onChange={setConfidence}
         />
         <Button
+          variant="filled"
           size="xs"
           loading={busy}
           disabled={said === undefined}

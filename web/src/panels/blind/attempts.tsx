@@ -41,15 +41,9 @@ export function Outcome({ answer }: { answer: HiddenAnswer }) {
       </p>
       <Telling answer={answer} />
       {came_tick !== null && came_tick <= head && (
-        <Button size="compact-sm" variant="default" onClick={() => jump.to({ tick: came_tick })}>
-          Show the moment it came
-        </Button>
+        <Button onClick={() => jump.to({ tick: came_tick })}>Show the moment it came</Button>
       )}
-      {answer.healthy && (
-        <Button size="compact-sm" variant="default" onClick={() => showPanel("identify")}>
-          Sweep the device
-        </Button>
-      )}
+      {answer.healthy && <Button onClick={() => showPanel("identify")}>Sweep the device</Button>}
     </div>
   );
 }

@@ -54,7 +54,7 @@ export function BlindPanel() {
     <section className={`view ${exercise.panel}`} aria-label="Blind diagnosis">
       <Stale error={error} since={since} onRetry={again} />
       <div className={exercise.bar}>
-        <Button size="sm" onClick={hide}>
+        <Button variant="filled" size="sm" onClick={hide}>
           {last ? "Hide another fault" : "Hide a fault"}
         </Button>
         <span className={exercise.field}>

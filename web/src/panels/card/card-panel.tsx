@@ -35,7 +35,6 @@ export function CardPanel() {
   return (
     <section className="view-page" aria-label={`Block: ${found?.title ?? instance.name}`}>
       <NativeSelect
-        size="xs"
         aria-label="Block"
         value={instance.id}
         data={options}
@@ -71,7 +70,7 @@ export function CardPanel() {
           }
           action={
             failed && (
-              <Button size="xs" onClick={retry}>
+              <Button variant="filled" size="xs" onClick={retry}>
                 Ask again
               </Button>
             )

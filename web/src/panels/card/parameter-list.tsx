@@ -55,19 +55,16 @@ export function ParameterList({ instance, parameters, document }: ParameterListP
       </div>
       <Group gap="sm" className={styles.actions}>
         <Checkbox
-          size="xs"
           label="Collect changes, apply them in one tick"
           checked={collect}
           onChange={(e) => setCollect(e.currentTarget.checked)}
         />
         {count > 0 && (
-          <Button size="compact-sm" onClick={() => apply(staged)}>
+          <Button variant="filled" onClick={() => apply(staged)}>
             Apply {count} in one tick
           </Button>
         )}
-        <Button size="compact-sm" variant="default" onClick={() => showPanel("sets")}>
-          Sets…
-        </Button>
+        <Button onClick={() => showPanel("sets")}>Sets…</Button>
       </Group>
     </>
   );

@@ -43,7 +43,6 @@ export function ParameterRow({ parameter, value, staged, onChange }: ParameterRo
           >
             <ActionIcon
               size={22}
-              variant="subtle"
               aria-label={`${label}: back to the default`}
               onClick={() => onChange(parameter.default)}
             >
@@ -53,7 +52,6 @@ export function ParameterRow({ parameter, value, staged, onChange }: ParameterRo
         )}
         {type === "boolean" ? (
           <Switch
-            size="xs"
             aria-label={label}
             checked={value === true}
             disabled={!live}
@@ -61,7 +59,6 @@ export function ParameterRow({ parameter, value, staged, onChange }: ParameterRo
           />
         ) : type === "choice" ? (
           <NativeSelect
-            size="xs"
             w={132}
             aria-label={label}
             disabled={!live}

@@ -85,14 +85,12 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
         )}
         <div className={styles.buttons}>
           {teaches && claim.knobs.length > 0 && (
-            <Button size="compact-sm" variant="light" aria-expanded={isOpen} onClick={() => onOpen(!isOpen)}>
+            <Button variant="light" aria-expanded={isOpen} onClick={() => onOpen(!isOpen)}>
               Where does it hold?
             </Button>
           )}
           {drawn.length > 0 && (
             <Button
-              size="compact-sm"
-              variant="default"
               title={`Open a scope on ${drawn.join(", ")}`}
               onClick={() => addScope("Printed", [...drawn, ...partnersOf(drawn)], "time")}
             >

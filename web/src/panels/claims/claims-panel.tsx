@@ -37,7 +37,6 @@ export function ClaimsPanel() {
             <Progress list={value} />
           </span>
           <Checkbox
-            size="xs"
             label="Printed marks on the scopes"
             checked={isShown}
             onChange={(event) => showPrinted(event.currentTarget.checked)}

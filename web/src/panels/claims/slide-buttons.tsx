@@ -29,8 +29,6 @@ export function SlideButtons({ claim, list }: { claim: Claim; list: ClaimList })
       {(["png", "svg"] as const).map((kind) => (
         <Button
           key={kind}
-          size="compact-sm"
-          variant="default"
           disabled={isMaking}
           title="One slide, 16:9: the words as printed, the traces over the marks, and what came of it"
           onClick={() => void keep(kind)}

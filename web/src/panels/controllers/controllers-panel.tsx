@@ -69,7 +69,7 @@ export function ControllersPanel() {
             >
               {controllersOf(slot, controllers, blocks).map((law) => (
                 <div key={law.name} className={styles.row} data-active={law.name === active}>
-                  <Radio size="sm" value={law.name} label={law.title} description={<Prose text={law.summary} />} />
+                  <Radio value={law.name} label={law.title} description={<Prose text={law.summary} />} />
                   <div className={styles.told}>
                     <output ref={live(law.name)} />
                     {`${law.name}.${TRUSTED}` in told && (

@@ -52,12 +52,10 @@ export function Difference({ version, source, onBack, onClose }: DifferenceProps
           From the version of {timeOf(version)} to the text of now
           {version.source === source && ": they are the same"}
         </span>
-        <Button size="compact-sm" onClick={onBack} disabled={version.source === source}>
+        <Button variant="filled" onClick={onBack} disabled={version.source === source}>
           Back to that version
         </Button>
-        <Button size="compact-sm" variant="default" onClick={onClose}>
-          Close
-        </Button>
+        <Button onClick={onClose}>Close</Button>
       </header>
       <div ref={place} className={styles.code} />
     </section>

@@ -51,7 +51,6 @@ function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
       <div className={styles.bar}>
         <StartFrom list={list} unit={checked.now?.unit ?? undefined} />
         <TextInput
-          size="xs"
           aria-label="Name of the unit"
           placeholder="name"
           className={styles.name}
@@ -65,12 +64,12 @@ function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
       <div className={styles.bar}>
         <State name={name} source={source} checked={checked} run={run} />
         <Switch
-          size="xs"
           label="Run as I type"
           checked={asYouType}
           onChange={(e) => useDraft.setState({ asYouType: e.currentTarget.checked })}
         />
         <Button
+          variant="filled"
           size="xs"
           loading={run.busy}
           disabled={!checked.now?.unit || !isUnitName(name) || run.isOn}
@@ -109,7 +108,7 @@ function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
             <EmptyState
               title="No unit yet"
               action={
-                <Button size="xs" onClick={() => void editCopy("blank")}>
+                <Button variant="filled" size="xs" onClick={() => void editCopy("blank")}>
                   Start with three lines
                 </Button>
               }

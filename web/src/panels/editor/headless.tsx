@@ -40,13 +40,7 @@ export function Headless({ card, source, ready }: { card: BlockCard; source: str
       <p className={styles.summary}>
         {scenario} from its start to its end{card.family === "control" && `, ${card.title} drives`}.
       </p>
-      <Button
-        size="compact-sm"
-        variant="default"
-        loading={busy || (run && !isOver(run))}
-        disabled={!ready}
-        onClick={() => void start()}
-      >
+      <Button loading={busy || (run && !isOver(run))} disabled={!ready} onClick={() => void start()}>
         Use in a run
       </Button>
       {run && started?.source !== source && <p className={styles.summary}>These figures are of an earlier text.</p>}
@@ -91,7 +85,7 @@ function Outcome({ run, card }: { run: Run; card: BlockCard }) {
           <dd className={styles.digest}>{digest ?? run.state}</dd>
         </div>
       </dl>
-      <Button size="compact-sm" variant="subtle" onClick={() => openPlace("runs", run.id)}>
+      <Button variant="subtle" onClick={() => openPlace("runs", run.id)}>
         Open under Runs
       </Button>
     </>

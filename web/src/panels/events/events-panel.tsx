@@ -27,7 +27,6 @@ export function EventsPanel() {
   return (
     <div className={`view ${styles.panel}`}>
       <SegmentedControl
-        size="xs"
         aria-label="What is listed"
         data={[
           { value: "what", label: "What happened" },
@@ -80,7 +79,6 @@ function Events() {
             {canBranch(event) && (
               <ActionIcon
                 size="sm"
-                variant="subtle"
                 aria-label={`Branch without this: ${event.text}`}
                 title="Go on from just before, without this, on a bench of its own"
                 onClick={() => void goOnWithout(event.tick, event.text)}

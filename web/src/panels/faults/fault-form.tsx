@@ -60,7 +60,6 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
           />
           <NumberInput
             w={96}
-            size="xs"
             aria-label={`Severity of ${fault.title}, exact`}
             suffix={` ${unit}`}
             step={scale.step}
@@ -83,24 +82,20 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
           </div>
         )}
         <SegmentedControl
-          size="xs"
           fullWidth
           aria-label="How it comes"
           value={draft.profile}
           data={["step", "ramp", "intermittent"]}
           onChange={(profile) => set({ profile: profile as FaultDraft["profile"] })}
         />
-        {draft.profile === "ramp" && (
-          <NumberInput size="xs" label="Over" suffix=" ms" min={0.01} {...number("durationMs")} />
-        )}
+        {draft.profile === "ramp" && <NumberInput label="Over" suffix=" ms" min={0.01} {...number("durationMs")} />}
         {draft.profile === "intermittent" && (
           <Group grow gap="sm">
-            <NumberInput size="xs" label="Every" suffix=" ms" min={0.01} {...number("periodMs")} />
-            <NumberInput size="xs" label="On for" suffix=" %" min={1} max={100} {...number("duty", 100)} />
+            <NumberInput label="Every" suffix=" ms" min={0.01} {...number("periodMs")} />
+            <NumberInput label="On for" suffix=" %" min={1} max={100} {...number("duty", 100)} />
           </Group>
         )}
         <SegmentedControl
-          size="xs"
           fullWidth
           aria-label="When it comes"
           value={draft.moment}
@@ -111,9 +106,7 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
           ]}
           onChange={(moment) => set({ moment: moment as FaultDraft["moment"] })}
         />
-        {draft.moment === "at" && (
-          <NumberInput size="xs" label="At device time" suffix=" ms" min={0} {...number("atMs")} />
-        )}
+        {draft.moment === "at" && <NumberInput label="At device time" suffix=" ms" min={0} {...number("atMs")} />}
         {draft.moment === "when" && (
           <div className={styles.when}>
             <ConditionFields
@@ -124,7 +117,7 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
             />
           </div>
         )}
-        <Button size="xs" onClick={onInject}>
+        <Button variant="filled" size="xs" onClick={onInject}>
           {draft.moment === "now" ? "Inject" : "Let it wait for its moment"}{" "}
           {draftSeverity(draft, scale, parameter?.unit ?? "")}
         </Button>

@@ -52,17 +52,10 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
               {severityText(active.severity, scale, unit)}
               {active.since_tick !== undefined && <small> since {formatMoment(active.since_tick * dtMs)}</small>}
             </b>
-            <Button
-              size="compact-sm"
-              variant="default"
-              onClick={() => send({ heal: [fault.name] }, `${fault.title} healed`)}
-            >
-              Heal
-            </Button>
+            <Button onClick={() => send({ heal: [fault.name] }, `${fault.title} healed`)}>Heal</Button>
           </span>
         ) : (
           <Button
-            size="compact-sm"
             variant="light"
             onClick={inject}
             aria-label={`Inject ${draftSeverity(draft, scale, unit)}: ${fault.title}`}

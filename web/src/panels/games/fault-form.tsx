@@ -24,7 +24,6 @@ export function FaultForm({ kinds, on }: { kinds: readonly GameKind[]; on: boole
     <div className={styles.form}>
       <div className={exercise.bar}>
         <NativeSelect
-          size="xs"
           aria-label="Fault"
           value={kind.name}
           data={kinds.map(({ name, title }) => ({ value: name, label: title }))}
@@ -47,14 +46,10 @@ export function FaultForm({ kinds, on }: { kinds: readonly GameKind[]; on: boole
       </div>
       {on && (
         <div className={exercise.bar}>
-          <Button
-            size="xs"
-            variant="default"
-            onClick={() => void send({ fault: kind.name, severity }, `Injected ${kind.title}`)}
-          >
+          <Button size="xs" onClick={() => void send({ fault: kind.name, severity }, `Injected ${kind.title}`)}>
             Try it on the bench
           </Button>
-          <Button size="xs" variant="default" disabled={!acts} onClick={() => void send({ heal: "all" }, "Healed")}>
+          <Button size="xs" disabled={!acts} onClick={() => void send({ heal: "all" }, "Healed")}>
             Heal
           </Button>
         </div>

@@ -31,7 +31,6 @@ export function GameTable({ card, play }: { card: GameCard; play: GamePlay }) {
       {all.length > 0 && (
         <div className={exercise.bar}>
           <NativeSelect
-            size="xs"
             aria-label="Table of"
             value={chosen}
             data={[
@@ -42,7 +41,6 @@ export function GameTable({ card, play }: { card: GameCard; play: GamePlay }) {
           />
           {group && (
             <Checkbox
-              size="xs"
               label="With what was handed in"
               checked={tells}
               onChange={(e) => setTells(e.currentTarget.checked)}

@@ -49,7 +49,6 @@ export function GamesPanel() {
       <Stale error={error ?? cards.error} since={since} onRetry={again} />
       <div className={exercise.bar}>
         <NativeSelect
-          size="xs"
           aria-label="Game"
           value={game}
           data={(cards.value ?? []).map(({ id, title }) => ({ value: id, label: title }))}
@@ -119,6 +118,7 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
       {isBank ? <BankForm card={card} on={on} /> : <FaultForm kinds={play.kinds ?? []} on={on} />}
       <div className={exercise.bar}>
         <Button
+          variant="filled"
           size="sm"
           loading={busy === "judge"}
           disabled={busy === "begin" || over}
@@ -130,12 +130,12 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
           {over ? "No attempt left at this seed." : `${formatCount(play.left, "attempt")} left`}
         </small>
         {over && (
-          <Button size="sm" onClick={() => chooseGame(card.id, seed + 1)}>
+          <Button variant="filled" size="sm" onClick={() => chooseGame(card.id, seed + 1)}>
             Next seed
           </Button>
         )}
         {!over && play.attempts.length > 0 && (
-          <Button size="compact-sm" variant="subtle" disabled={busy !== undefined} onClick={reveal}>
+          <Button variant="subtle" disabled={busy !== undefined} onClick={reveal}>
             Show what is hidden
           </Button>
         )}

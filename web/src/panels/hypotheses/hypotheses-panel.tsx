@@ -57,14 +57,12 @@ export function HypothesesPanel() {
     <section className="view-page" aria-label="Hypotheses">
       <div className={styles.bar}>
         <NativeSelect
-          size="xs"
           aria-label="Bank"
           value={id}
           data={banks.map(([name]) => ({ value: name, label: name.replaceAll("_", " ") }))}
           onChange={(e) => setWanted(e.currentTarget.value)}
         />
         <Button
-          size="compact-sm"
           variant="light"
           leftSection={<IconPlus size={14} />}
           disabled={list.length >= MOST}
@@ -74,8 +72,6 @@ export function HypothesesPanel() {
         </Button>
         {changed && (
           <Button
-            size="compact-sm"
-            variant="default"
             onClick={() => {
               const { [key]: _, ...rest } = drafts;
               setDrafts(rest);
@@ -86,7 +82,7 @@ export function HypothesesPanel() {
         )}
         {teaches && (
           <Button
-            size="compact-sm"
+            variant="filled"
             loading={busy}
             disabled={!changed || wrong !== undefined}
             onClick={() => begin({ [`diagnosers.${id}.hypotheses`]: list }, "The bench restarts with the new list.")}
@@ -96,7 +92,6 @@ export function HypothesesPanel() {
         )}
         {teaches && (
           <NativeSelect
-            size="xs"
             aria-label="Let another method race on the same list"
             value=""
             disabled={busy || wrong !== undefined}

@@ -56,7 +56,6 @@ export function HypothesisTable({ list, onChange }: { list: Hypothesis[]; onChan
               <td>
                 <ActionIcon
                   size={26}
-                  variant="subtle"
                   disabled={list.length <= LEAST}
                   aria-label={`Leave out ${hypothesis.name}`}
                   onClick={() => onChange(list.filter((_, j) => j !== i))}

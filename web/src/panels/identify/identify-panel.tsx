@@ -37,7 +37,7 @@ export function IdentifyPanel() {
     }
   };
   const button = (
-    <Button size="xs" loading={busy} onClick={sweep}>
+    <Button variant="filled" size="xs" loading={busy} onClick={sweep}>
       {result ? "Sweep again" : "Sweep the device"}
     </Button>
   );

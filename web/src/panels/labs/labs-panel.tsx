@@ -41,18 +41,12 @@ export function LabsPanel() {
     <section className="view-page" aria-label="Labs">
       <div className={styles.bar}>
         <NativeSelect
-          size="xs"
           aria-label="Diagnoser"
           value={id}
           data={ids.map((name) => ({ value: name, label: name.replaceAll("_", " ") }))}
           onChange={(e) => setWanted(e.currentTarget.value)}
         />
-        <Button
-          size="compact-sm"
-          variant="default"
-          title="Restart at tick 0; the settings here are kept"
-          onClick={() => void countAfresh()}
-        >
+        <Button title="Restart at tick 0; the settings here are kept" onClick={() => void countAfresh()}>
           Count afresh
         </Button>
       </div>

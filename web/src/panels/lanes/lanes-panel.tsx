@@ -49,7 +49,6 @@ export function LanesPanel() {
       {all.length > 1 && (
         <div className={styles.choice}>
           <NativeSelect
-            size="xs"
             aria-label="Diagnosers shown"
             value={one?.id ?? ALL}
             data={[

@@ -31,13 +31,12 @@ export function OfferDiagnoser() {
   return (
     <>
       <NativeSelect
-        size="xs"
         aria-label="Diagnoser to add"
         value={bank.name}
         data={banks.map((b) => ({ value: b.name, label: b.title }))}
         onChange={(e) => setWanted(e.currentTarget.value)}
       />
-      <Button size="xs" loading={busy} onClick={begin}>
+      <Button variant="filled" size="xs" loading={busy} onClick={begin}>
         Restart with it
       </Button>
     </>

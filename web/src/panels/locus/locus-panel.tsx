@@ -31,7 +31,6 @@ export function LocusPanel() {
     <section className={`view ${styles.panel}`} aria-label="Motion">
       <div className={styles.bar}>
         <NativeSelect
-          size="xs"
           w={84}
           aria-label="Length of the path"
           value={String(windowMs)}
@@ -39,7 +38,6 @@ export function LocusPanel() {
           onChange={(e) => setWindowMs(Number(e.currentTarget.value))}
         />
         <SegmentedControl
-          size="xs"
           aria-label="Scale of y"
           value={stretched ? "own" : "same"}
           data={[

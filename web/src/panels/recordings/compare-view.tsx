@@ -33,7 +33,6 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
       <div className={shared.form}>
         <b>{first.name} with</b>
         <NativeSelect
-          size="xs"
           label="Other recording"
           value={second}
           data={candidates.map((one) => ({
@@ -43,7 +42,6 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
           onChange={(e) => setSecond(e.currentTarget.value)}
         />
         <NumberInput
-          size="xs"
           label="Tolerance"
           title="Share of the largest value of each signal"
           suffix=" %"
@@ -53,7 +51,6 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
           onChange={(n) => setPercent(Number(n) || 0)}
         />
         <SegmentedControl
-          size="xs"
           aria-label="Align by"
           value={align}
           data={[
@@ -62,7 +59,7 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
           ]}
           onChange={(value) => setAlign(value as "tick" | "start")}
         />
-        <Button size="xs" disabled={!second} onClick={compare}>
+        <Button variant="filled" size="xs" disabled={!second} onClick={compare}>
           Compare
         </Button>
         <CloseButton size="sm" aria-label="Close the comparison" onClick={onClose} />

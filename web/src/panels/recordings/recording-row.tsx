@@ -81,12 +81,12 @@ export function RecordingRow({ recording, isHere, onCompare, onChanged }: Record
             </Button>
           )}
           {teaches && (
-            <Button size="compact-xs" variant="default" onClick={onCompare} aria-label={`Compare ${name} with another`}>
+            <Button size="compact-xs" onClick={onCompare} aria-label={`Compare ${name} with another`}>
               Compare
             </Button>
           )}
           {teaches && (
-            <ActionIcon size={22} variant="subtle" aria-label={`Delete ${name}`} onClick={remove}>
+            <ActionIcon size={22} aria-label={`Delete ${name}`} onClick={remove}>
               <IconTrash size={14} />
             </ActionIcon>
           )}

@@ -38,7 +38,6 @@ export function SchematicPanel() {
   const isFlat = axes.length === 0;
   const choice = (
     <NativeSelect
-      size="xs"
       className={styles.choice}
       aria-label="Drawing"
       value={instance ? wanted : LOOP}

@@ -58,17 +58,11 @@ export function BeforeAfter({ change, isHidden, figures, traces, plot }: BeforeA
       </p>
       {isHidden ? <p className={styles.figures}>{HIDDEN}</p> : <ComparedList compared={compared} />}
       {canSlide && (
-        <Button size="compact-xs" variant="default" title="This picture as one slide, 16:9 (S)" onClick={slide}>
+        <Button size="compact-xs" title="This picture as one slide, 16:9 (S)" onClick={slide}>
           Slide
         </Button>
       )}
-      <ActionIcon
-        size={22}
-        variant="subtle"
-        aria-label="Dismiss"
-        title="Dismiss the comparison"
-        onClick={dismissChange}
-      >
+      <ActionIcon size={22} aria-label="Dismiss" title="Dismiss the comparison" onClick={dismissChange}>
         <IconX size={14} />
       </ActionIcon>
     </section>

@@ -42,7 +42,6 @@ export function ScopeToolbar({ config, onChange, past, onLive, trigger, exporter
           <span>Trigger</span>
         </button>
         <NativeSelect
-          size="xs"
           aria-label="Time window"
           w={86}
           value={String(config.windowMs)}

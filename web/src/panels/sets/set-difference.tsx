@@ -35,7 +35,6 @@ export function SetDifference({ first, others, onClose }: SetDifferenceProps) {
     <div className={styles.difference}>
       <div className={styles.head}>
         <NativeSelect
-          size="xs"
           label={`Compare ${first.name} with`}
           value={other}
           data={[{ value: BENCH, label: "the bench now" }, ...options]}

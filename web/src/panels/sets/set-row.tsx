@@ -54,7 +54,6 @@ export function SetRow({ set, bench, onCompare, onChanged }: SetRowProps) {
       ) : (
         <TextInput
           className={rows.what}
-          size="xs"
           aria-label={`New name of ${set.name}`}
           autoFocus
           maxLength={100}
@@ -65,18 +64,18 @@ export function SetRow({ set, bench, onCompare, onChanged }: SetRowProps) {
         />
       )}
       <div className={rows.do}>
-        <Button size="compact-xs" onClick={apply} aria-label={`Put ${set.name} on the bench`}>
+        <Button variant="filled" size="compact-xs" onClick={apply} aria-label={`Put ${set.name} on the bench`}>
           Put on the bench
         </Button>
-        <Button size="compact-xs" variant="default" onClick={onCompare} aria-label={`Compare ${set.name}`}>
+        <Button size="compact-xs" onClick={onCompare} aria-label={`Compare ${set.name}`}>
           Compare
         </Button>
         {teaches && (
           <>
-            <ActionIcon size={24} variant="subtle" aria-label={`Rename ${set.name}`} onClick={() => setName(set.name)}>
+            <ActionIcon size={24} aria-label={`Rename ${set.name}`} onClick={() => setName(set.name)}>
               <IconPencil size={14} />
             </ActionIcon>
-            <ActionIcon size={24} variant="subtle" aria-label={`Delete ${set.name}`} onClick={remove}>
+            <ActionIcon size={24} aria-label={`Delete ${set.name}`} onClick={remove}>
               <IconTrash size={14} />
             </ActionIcon>
           </>

@@ -49,14 +49,13 @@ function Sets() {
           }}
         >
           <TextInput
-            size="xs"
             label="Keep the values of now as"
             placeholder="soft PID, lecture 3"
             maxLength={100}
             value={name}
             onChange={(e) => setName(e.currentTarget.value)}
           />
-          <Button type="submit" size="xs" disabled={!name.trim()}>
+          <Button variant="filled" type="submit" size="xs" disabled={!name.trim()}>
             Keep
           </Button>
         </form>

@@ -86,7 +86,7 @@ function OpenOwn({ onOpened }: { onOpened(): void }) {
     <div className={styles.own}>
       <FileButton accept=".md,text/markdown" onChange={open} inputProps={{ "aria-label": "Sheet file" }}>
         {(props) => (
-          <Button {...props} size="xs" variant="default">
+          <Button {...props} size="xs">
             Open a sheet of your own…
           </Button>
         )}

@@ -54,10 +54,8 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
           · {value.minutes} minutes
         </p>
         <div className={styles.buttons}>
-          <Button size="compact-sm" variant="default" onClick={onLeave}>
-            All sheets
-          </Button>
-          <Button component="a" size="compact-sm" variant="default" href={sheets.report(id)} target="_blank">
+          <Button onClick={onLeave}>All sheets</Button>
+          <Button component="a" href={sheets.report(id)} target="_blank">
             Hand in
           </Button>
           {value.begun && (
@@ -67,7 +65,7 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
             />
           )}
           {teaches && (
-            <Button size="compact-sm" variant="subtle" onClick={() => void startOver().catch(showError)}>
+            <Button variant="subtle" onClick={() => void startOver().catch(showError)}>
               Start over…
             </Button>
           )}
@@ -77,7 +75,7 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
       {!value.bench && !value.done && (
         <div className={styles.gone} role="status">
           The bench of this sheet was closed. Your answers are kept.{" "}
-          <Button size="compact-sm" onClick={() => void beginSheet(id).then(again, showError)}>
+          <Button variant="filled" onClick={() => void beginSheet(id).then(again, showError)}>
             Make it again
           </Button>
         </div>

@@ -62,17 +62,17 @@ export function StepView({ step, isOpen, actions }: StepProps) {
       {isOpen && (
         <div className={styles.buttons}>
           {step.kind === "blind" && !isHiding && (
-            <Button size="compact-sm" onClick={() => actions.hide(id)}>
+            <Button variant="filled" onClick={() => actions.hide(id)}>
               Hide a fault
             </Button>
           )}
           {hintCosts != null && (
-            <Button size="compact-sm" variant="default" onClick={() => actions.hint(id)}>
+            <Button onClick={() => actions.hint(id)}>
               {hintCosts > 0 ? `Hint, costs ${formatShort(hintCosts, "")}` : "Hint, free"}
             </Button>
           )}
           {step.can_go_on && (
-            <Button size="compact-sm" variant="subtle" onClick={() => actions.close(id)}>
+            <Button variant="subtle" onClick={() => actions.close(id)}>
               Skip this question
             </Button>
           )}
@@ -159,7 +159,7 @@ function AnswerForm({ step, actions }: { step: SheetStep; actions: StepActions }
           onChange={(e) => setText(e.currentTarget.value)}
         />
       )}
-      <Button size="sm" type="submit" loading={busy} disabled={text.trim() === ""}>
+      <Button variant="filled" size="sm" type="submit" loading={busy} disabled={text.trim() === ""}>
         {says}
       </Button>
     </form>

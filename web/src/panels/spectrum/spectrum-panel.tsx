@@ -24,21 +24,18 @@ export function SpectrumPanel() {
     <section className={`view ${styles.panel}`} aria-label="Spectrum">
       <div className={styles.bar}>
         <NativeSelect
-          size="xs"
           aria-label="Signal"
           value={signal}
           data={signals.map((s) => ({ value: s.name, label: s.name.replaceAll("_", " ").replace(".", " · ") }))}
           onChange={(e) => setSignal(e.currentTarget.value)}
         />
         <NativeSelect
-          size="xs"
           aria-label="Length of the record"
           value={String(ticks)}
           data={tickItems()}
           onChange={(e) => setTicks(Number(e.currentTarget.value))}
         />
         <NativeSelect
-          size="xs"
           aria-label="Band"
           value={String(share)}
           data={bandItems(dtMs)}

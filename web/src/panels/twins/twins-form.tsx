@@ -49,7 +49,6 @@ export function TwinsForm({ chosen }: { chosen: string[] }) {
         // biome-ignore lint/suspicious/noArrayIndexKey: a twin is known by its place until it has its name
         <span key={i} className={styles.choice}>
           <NativeSelect
-            size="xs"
             aria-label={`Controller of twin ${i + 1}`}
             value={kind}
             data={options}
@@ -59,7 +58,6 @@ export function TwinsForm({ chosen }: { chosen: string[] }) {
             }}
           />
           <Button
-            size="compact-sm"
             variant="subtle"
             aria-label={`Leave out twin ${i + 1}`}
             onClick={() => setKinds(kinds.filter((_, j) => j !== i))}
@@ -70,7 +68,6 @@ export function TwinsForm({ chosen }: { chosen: string[] }) {
       ))}
       {kinds.length < MOST && (
         <Button
-          size="compact-sm"
           variant="light"
           leftSection={<IconPlus size={14} />}
           disabled={controllers.length === 0}
@@ -82,7 +79,7 @@ export function TwinsForm({ chosen }: { chosen: string[] }) {
         </Button>
       )}
       <Button
-        size="compact-sm"
+        variant="filled"
         loading={busy}
         disabled={kinds.length === 0 && chosen.length === 0}
         onClick={() => begin(kinds)}

@@ -34,7 +34,6 @@ function Teachers() {
   if (!groups || !all) return null;
   const who = groups.length > 0 && (
     <NativeSelect
-      size="xs"
       label="Who votes"
       value={group}
       data={[
@@ -90,7 +89,6 @@ function Ask({ group, who, run }: { group: string; who: ReactNode; run(what: Pro
       <div className={styles.pair}>
         {who}
         <NativeSelect
-          size="xs"
           label="Answers"
           value={of}
           data={[
@@ -102,7 +100,6 @@ function Ask({ group, who, run }: { group: string; who: ReactNode; run(what: Pro
       </div>
       {of === "" && (
         <Textarea
-          size="xs"
           autosize
           minRows={2}
           label="One answer in each line"
@@ -116,7 +113,12 @@ function Ask({ group, who, run }: { group: string; who: ReactNode; run(what: Pro
           {formatShort(body.when.until_ms, "ms")} of device time.
         </p>
       )}
-      <Button disabled={!text.trim() || answers.length < 2} onClick={() => run(votes.open(body))}>
+      <Button
+        variant="filled"
+        size="sm"
+        disabled={!text.trim() || answers.length < 2}
+        onClick={() => run(votes.open(body))}
+      >
         Open the vote
       </Button>
     </>
@@ -148,13 +150,17 @@ function Running({ vote, students, run }: RunningProps) {
           : `${voted} of ${students ?? "?"} have voted${state === "open" ? "" : "; closed"}`}
       </p>
       <div className={styles.actions}>
-        {!results && <Button onClick={() => run(votes.reveal(id))}>Reveal</Button>}
+        {!results && (
+          <Button variant="filled" size="sm" onClick={() => run(votes.reveal(id))}>
+            Reveal
+          </Button>
+        )}
         {state === "open" && vote.class_id !== null && (
-          <Button variant="default" onClick={() => run(votes.close(id))}>
+          <Button size="sm" onClick={() => run(votes.close(id))}>
             Close
           </Button>
         )}
-        <Button variant="subtle" onClick={() => run(votes.remove(id))}>
+        <Button size="sm" variant="subtle" onClick={() => run(votes.remove(id))}>
           {results ? "Another question" : "Take it back"}
         </Button>
       </div>
@@ -163,7 +169,6 @@ function Running({ vote, students, run }: RunningProps) {
           <li key={name} data-right={results !== null && right === question.answers[i]}>
             {inRoom ? (
               <NumberInput
-                size="xs"
                 label={name}
                 min={0}
                 max={10_000}

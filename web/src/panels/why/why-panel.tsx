@@ -43,7 +43,7 @@ export function WhyPanel() {
   );
   const ids = Object.entries(diagnosers ?? {}).flatMap(([id, { names }]) => (names.length ? [id] : []));
   const latest = (
-    <Button size="xs" disabled={ids.length === 0} onClick={askLatest}>
+    <Button variant="filled" size="xs" disabled={ids.length === 0} onClick={askLatest}>
       Explain the latest sample
     </Button>
   );
@@ -61,7 +61,6 @@ export function WhyPanel() {
       {account && !refusal && <WhyVerdict diagnoser={sample.diagnoser} account={account} turn={turn} />}
       <div className={styles.bar}>
         <NativeSelect
-          size="xs"
           aria-label="Diagnoser"
           value={sample.diagnoser}
           data={ids.map((id) => ({ value: id, label: id.replaceAll("_", " ") }))}
@@ -95,9 +94,7 @@ export function WhyPanel() {
           </ActionIcon>
         </span>
         {account && !refusal && <span className={styles.time}>{formatClock(account.time_ms)} s</span>}
-        <Button size="compact-sm" variant="default" onClick={askLatest}>
-          Latest
-        </Button>
+        <Button onClick={askLatest}>Latest</Button>
       </div>
       {refusal && (
         <EmptyState title={inWords(refusal.body, sample.tick)} action={latest}>

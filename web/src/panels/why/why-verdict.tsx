@@ -25,7 +25,6 @@ export function WhyVerdict({ diagnoser, account, turn }: WhyVerdictProps) {
         <span>σ is the miss that its own filter expects. {turn && turnWords(turn, account.tick)}</span>
         <Button
           className={styles.wrapping}
-          size="compact-sm"
           variant="light"
           disabled={at === null || at === account.tick}
           onClick={() => at !== null && goThere(at)}
