@@ -106,10 +106,10 @@ function Line({
 }) {
   return (
     // Announced by the page's live regions, not here a second time.
-    <section className={styles.banner} data-tone={tone} aria-label="Notice">
+    <section className={`row ${styles.banner}`} data-tone={tone} aria-label="Notice">
       <strong>{title}</strong>
       <span>{text}</span>
-      <div className={styles.actions}>{children}</div>
+      <div className={`line ${styles.actions}`}>{children}</div>
     </section>
   );
 }

@@ -126,10 +126,10 @@ function Line({
   children?: ReactNode;
 }) {
   return (
-    <section className={styles.banner} data-tone={tone} aria-label="Class">
+    <section className={`row ${styles.banner}`} data-tone={tone} aria-label="Class">
       <strong>{title}</strong>
       {text && <span>{text}</span>}
-      <div className={styles.actions}>{children}</div>
+      <div className={`line ${styles.actions}`}>{children}</div>
     </section>
   );
 }

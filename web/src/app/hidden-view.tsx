@@ -51,7 +51,7 @@ export function HiddenView({ view, question }: { view: ViewName; question: Quest
   const Tool = shown && VIEW[shown.view].component;
   return (
     <section className="view" aria-label={`${VIEW[view].title}, hidden`}>
-      <div className={styles.bar}>
+      <div className={`row ${styles.bar}`}>
         <p>{`${VIEW[view].title}: hidden until ${question.game ? "the game is over" : "you answer"}. Measure instead:`}</p>
         {tools.map(({ view: tool, words }) => (
           <Button

@@ -6,7 +6,7 @@ import { classes } from "../api/classes";
 import { useMay } from "../api/me";
 import { useClasses } from "../api/use-classes";
 import { announce } from "../bench/announce";
-import { showError } from "../bench/send";
+import { showError, showing } from "../bench/send";
 import { useView } from "../bench/view-store";
 import styles from "./dialogs.module.css";
 import { deleteLayout, ownLayouts, refusal, renameLayout, saveLayout, setLayout, sharedLayout } from "./layouts";
@@ -38,14 +38,10 @@ function Layouts() {
       .then(() => announce(`All have the ${layout} layout now.`))
       .then(() => useView.setState({ dialog: "none" }), showError);
 
-  const share = async () => {
-    try {
-      const made = await api.makeLink({ layout: { ...sharedLayout() }, title: layout, note: "" });
-      setLink({ id: made.id, name: layout });
-    } catch (error) {
-      showError(error);
-    }
-  };
+  const share = showing(async () => {
+    const made = await api.makeLink({ layout: { ...sharedLayout() }, title: layout, note: "" });
+    setLink({ id: made.id, name: layout });
+  });
 
   return (
     <>
@@ -68,7 +64,7 @@ function Layouts() {
               ) : (
                 <>
                   <h3>{name}</h3>
-                  <div className={styles.buttons}>
+                  <div className={`line ${styles.buttons}`}>
                     <Button size="xs" variant="light" disabled={layout === name} onClick={() => setLayout(name)}>
                       {layout === name ? "Shown" : "Show"}
                     </Button>

@@ -6,6 +6,7 @@ import { useMay } from "../api/me";
 import type { Link } from "../api/types";
 import { ownLinks } from "../bench/open-bench";
 import { showError } from "../bench/send";
+import { useBusy } from "../bench/use-busy";
 import { setPage, useView } from "../bench/view-store";
 import { EmptyState } from "../ui/empty-state";
 import { formatTick } from "../ui/format";
@@ -63,18 +64,13 @@ function Kept() {
 /** What was kept, and what can be done with it; only the person who made it renames and deletes it here. */
 function Row({ link, isOwn = false, onChanged }: { link: Link; isOwn?: boolean; onChanged(): void }) {
   const [title, setTitle] = useState<string | undefined>(undefined);
-  const [busy, setBusy] = useState(false);
-  const open = async () => {
-    setBusy(true);
-    try {
+  const [busy, during] = useBusy();
+  const open = () =>
+    during(async () => {
       await openLink(link.id);
       setPage("bench");
       useView.setState({ dialog: "none" });
-    } catch (error) {
-      showError(error);
-      setBusy(false);
-    }
-  };
+    });
   const rename = async () => {
     const next = title?.trim();
     setTitle(undefined);
@@ -108,7 +104,7 @@ function Row({ link, isOwn = false, onChanged }: { link: Link; isOwn?: boolean; 
           {new Date(link.created).toLocaleString([], { dateStyle: "short", timeStyle: "short" })}
         </small>
       </div>
-      <div className={styles.buttons}>
+      <div className={`line ${styles.buttons}`}>
         <Button size="xs" variant="light" loading={busy} onClick={open} aria-label={`Open ${link.title}`}>
           Open
         </Button>

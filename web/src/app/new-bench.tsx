@@ -6,6 +6,7 @@ import { useMay } from "../api/me";
 import type { Device, ScenarioSummary } from "../api/types";
 import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
+import { useBusy } from "../bench/use-busy";
 import { setPage, useView } from "../bench/view-store";
 import { byChapter } from "../gallery/chapters";
 import { showSheet } from "../panels/sheet/begin";
@@ -31,7 +32,7 @@ function Gallery() {
   const [device, setDevice] = useState("");
   const [query, setQuery] = useState("");
   const [paused, setPaused] = useState(false);
-  const [busy, setBusy] = useState<string | undefined>(undefined);
+  const [busy, during] = useBusy<string>();
   const teaches = useMay("teach");
 
   useEffect(() => {
@@ -39,9 +40,8 @@ function Gallery() {
     api.devices().then(setDevices, showError);
   }, []);
 
-  const start = async (scenario: string) => {
-    setBusy(scenario);
-    try {
+  const start = (scenario: string) =>
+    during(async () => {
       const bench = await api.createBench({
         scenario,
         paused,
@@ -50,12 +50,7 @@ function Gallery() {
       });
       openOwn(bench.id);
       useView.setState({ dialog: "none" });
-    } catch (error) {
-      showError(error);
-    } finally {
-      setBusy(undefined);
-    }
-  };
+    }, scenario);
 
   const benches = scenarios?.filter((s) => s.plant !== null).sort(byChapter);
   const chosen = devices.find((d) => d.id === device);

@@ -51,7 +51,7 @@ export function OpenScenario({ onKept }: { onKept?(): void }) {
     <Input.Wrapper error={error && <span role="alert">{error}</span>} errorProps={{ fz: "sm", mt: 4 }}>
       {/* biome-ignore lint/a11y/noStaticElementInteractions: dropping is beside the button, not instead of it */}
       <div
-        className={styles.drop}
+        className={`row ${styles.drop}`}
         data-over={over}
         data-testid="drop"
         onDragOver={drag(true)}

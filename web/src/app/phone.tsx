@@ -36,7 +36,7 @@ export function Phone() {
   const page = usePageVisible();
   return (
     <PanelVisible value={page}>
-      <div className={styles.phone}>
+      <div className={`column ${styles.phone}`}>
         <header className={styles.status}>
           <div>
             <h1>{title ?? "CombBench"}</h1>
@@ -92,7 +92,7 @@ function Asked({ panel, view }: { panel: PanelName; view: ViewName }) {
   const [params, setParams] = useState<PanelParams>({});
   const views = viewsOn(panel, axes && { axes }).filter((name) => name !== "time");
   return (
-    <section className={styles.asked} aria-label={PANELS[panel].title}>
+    <section className={`column ${styles.asked}`} aria-label={PANELS[panel].title}>
       <div className={styles.views}>
         {views.map((name) => (
           <button

@@ -6,7 +6,7 @@ import { useAnswer } from "../api/queries";
 import type { Bench } from "../api/types";
 import { restoreLayout } from "../bench/dock";
 import { benchBefore, openBench } from "../bench/open-bench";
-import { send, showError } from "../bench/send";
+import { send, showing } from "../bench/send";
 import { REPLAY_SPEEDS, speedItems } from "../bench/time-scale";
 import { useBench } from "../stream/bench-store";
 import { formatMoment } from "../ui/format";
@@ -42,19 +42,15 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
     );
     if (took && next && bench.state !== "running") await send({ kind: "start" });
   };
-  const leave = async () => {
-    try {
-      const id = benchBefore();
-      if (id && (await api.benches()).some((b) => b.id === id)) openBench(id);
-      else await openOwnBench();
-      await api.removeBench(bench.id);
-    } catch (error) {
-      showError(error);
-    }
-  };
+  const leave = showing(async () => {
+    const id = benchBefore();
+    if (id && (await api.benches()).some((b) => b.id === id)) openBench(id);
+    else await openOwnBench();
+    await api.removeBench(bench.id);
+  });
 
   return (
-    <section className={styles.bar} aria-label="Replay">
+    <section className={`row ${styles.bar}`} aria-label="Replay">
       <strong>Replay</strong>
       <span className={styles.name}>{about.name}</span>
       <div className={styles.track}>

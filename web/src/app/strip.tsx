@@ -34,7 +34,7 @@ export function Strip() {
   if (present && !narrates) return null;
   return (
     <footer className={styles.strip}>
-      <div className={styles.row}>
+      <div className={`line ${styles.row}`}>
         {!present && hasSteps && <StepBar />}
         {!present && tips && <TryThis tips={tips} />}
         <Caption intro={tips?.intro} />
@@ -58,7 +58,7 @@ function Rest({ tips, hasSteps }: { tips: TickedHints | undefined; hasSteps: boo
         <StripButton icon={<IconChevronUp size={16} />} label={label} onClick={() => setOpened(!opened)} />
       </Popover.Target>
       <Popover.Dropdown
-        className={rest.rest}
+        className={`column ${rest.rest}`}
         onClick={({ target }) => (target as Element).closest("button") && setOpened(false)}
       >
         {tips && <HintList tips={tips} />}

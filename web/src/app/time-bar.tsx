@@ -50,7 +50,7 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
     else if (tick < end) lookBack(tick);
   };
   return (
-    <section className={styles.timeline} data-of-bench="" data-past={isPast} aria-label="Timeline">
+    <section className={`line ${styles.timeline}`} data-of-bench="" data-past={isPast} aria-label="Timeline">
       <p>
         {stale ? (
           <strong>{staleWords(stale)}</strong>

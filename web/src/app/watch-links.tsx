@@ -4,6 +4,7 @@ import { useState } from "react";
 import { classes } from "../api/classes";
 import { useAnswer } from "../api/queries";
 import { showError } from "../bench/send";
+import { useBusy } from "../bench/use-busy";
 import styles from "./dialogs.module.css";
 
 const USUAL_H = 4;
@@ -21,22 +22,16 @@ interface WatchLinksProps {
 export function WatchLinks({ bench, link, onLet }: WatchLinksProps) {
   const { value: watchers, again } = useAnswer(["watchers", bench], () => classes.watchers(bench));
   const [hours, setHours] = useState<number | string>(USUAL_H);
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const [own, setOwn] = useState("");
   const isRight = Number(hours) > 0 && Number(hours) <= LONGEST_H;
-  const letWatch = async () => {
-    setBusy(true);
-    try {
+  const letWatch = () =>
+    during(async () => {
       const { id, path } = await classes.letWatch(bench, link, Number(hours));
       setOwn(id);
       onLet(path ?? "");
       again();
-    } catch (error) {
-      showError(error);
-    } finally {
-      setBusy(false);
-    }
-  };
+    });
   const end = async (id: string) => {
     if (id === own) onLet("");
     await classes.endWatching(bench, id).then(again, showError);

@@ -28,7 +28,7 @@ export function PageHead({ name, item, heading = name }: PageHeadProps) {
   };
   const label = copied === address ? "Link copied" : "Copy link";
   return (
-    <div className={styles.head}>
+    <div className={`line ${styles.head}`}>
       <h1>{heading}</h1>
       <Tooltip label={label}>
         <ActionIcon size="md" aria-label={label} onClick={() => void copy()}>

@@ -22,7 +22,7 @@ export function ClassPage() {
     again();
   };
   return (
-    <main className={styles.page}>
+    <main className={`column ${styles.page}`}>
       <Stale error={error} since={since} onRetry={again} />
       {!all ? (
         !error && <EmptyState title="Asking the server">A class and its students appear here.</EmptyState>

@@ -90,7 +90,7 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
   const tripped = members.filter((tile) => tile.state === "tripped").map((tile) => tile.id);
   return (
     <>
-      <header className={styles.top}>
+      <header className={`row ${styles.top}`}>
         <PageHead name="Class" item={name} heading={name} />
         <p>
           {formatCount(members.length, "student")}
@@ -98,7 +98,7 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
           {tripped.length > 0 && <b className={styles.trips}> · {formatNumber(tripped.length, 0)} tripped</b>} · ends{" "}
           {clock(until)}
         </p>
-        <div className={styles.buttons}>
+        <div className={`row ${styles.buttons}`}>
           {children}
           {here && shown !== here.id && (
             <Button
@@ -118,7 +118,7 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
         </div>
       </header>
       {shown && (
-        <p className={styles.shown}>
+        <p className={`row ${styles.shown}`}>
           <b>All see one bench{shown === here?.id ? `: ${here.title}` : ""}.</b> Their own benches keep running.
           <Button variant="filled" size="xs" onClick={() => void classes.endShowing(id).then(onChanged, showError)}>
             End showing
@@ -142,8 +142,8 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
           </EmptyState>
         </section>
       ) : (
-        <section className={styles.students} aria-label="Students">
-          <div className={styles.row}>
+        <section className={`column ${styles.students}`} aria-label="Students">
+          <div className={`row ${styles.row}`}>
             <TextInput
               type="search"
               aria-label="Search students"

@@ -11,7 +11,7 @@ const USUAL = 0.05;
 interface FaultForAllProps {
   count: number;
   /** What is being carried out. */
-  busy: string;
+  busy: string | undefined;
   command(what: string, order: Command): void;
 }
 
@@ -33,7 +33,7 @@ export function FaultForAll({ count, busy, command }: FaultForAllProps) {
   const unit = scale.percent ? "%" : unitText(parameter?.unit ?? "");
 
   return (
-    <fieldset className={styles.group} aria-label="A fault for all">
+    <fieldset className={`row ${styles.group}`} aria-label="A fault for all">
       <span className={styles.what}>Fault</span>
       <NativeSelect
         className={styles.choice}

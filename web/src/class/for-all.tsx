@@ -3,7 +3,7 @@ import { IconPlayerPauseFilled, IconPlayerPlayFilled } from "@tabler/icons-react
 import { useState } from "react";
 import { classes } from "../api/classes";
 import type { Command, Outcomes } from "../api/types";
-import { showError } from "../bench/send";
+import { useBusy } from "../bench/use-busy";
 import { formatCount } from "../ui/format";
 import styles from "./class.module.css";
 import { FaultForAll } from "./fault-for-all";
@@ -28,20 +28,14 @@ interface ForAllProps {
 export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: ForAllProps) {
   const library = useLibrary();
   const [scenario, setScenario] = useState("first-look");
-  const [busy, setBusy] = useState("");
+  const [busy, during] = useBusy<string>();
   const [said, setSaid] = useState("");
 
-  const carryOut = async (what: string, asked: () => Promise<Outcomes>) => {
-    setBusy(what);
-    try {
+  const carryOut = (what: string, asked: () => Promise<Outcomes>) =>
+    during(async () => {
       setSaid(outcomeLine(what, await asked()));
       onDone();
-    } catch (error) {
-      showError(error);
-    } finally {
-      setBusy("");
-    }
-  };
+    }, what);
   const command = (what: string, order: Command) =>
     carryOut(what, () => classes.command(group, order, chosen.length > 0 ? [...chosen] : null));
   const stopped = chosen.length > 0 ? tripped.filter((id) => chosen.includes(id)) : [...tripped];
@@ -53,7 +47,7 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
 
   return (
     <section className={styles.all} aria-label="For all benches">
-      <div className={styles.row}>
+      <div className={`row ${styles.row}`}>
         <b className={styles.whom}>{chosen.length > 0 ? `For the ${chosen.length} chosen` : "For all benches"}</b>
         {chosen.length > 0 && (
           <Button size="xs" variant="subtle" onClick={onChooseNone}>
@@ -107,7 +101,7 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
       </div>
       <div className={styles.groups}>
         <FaultForAll count={count} busy={busy} command={command} />
-        <fieldset className={styles.group} aria-label="A scenario for all">
+        <fieldset className={`row ${styles.group}`} aria-label="A scenario for all">
           <span className={styles.what}>Scenario</span>
           <ScenarioSelect
             className={styles.choice}
@@ -135,7 +129,7 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
           group={group}
           count={count}
           chosen={chosen}
-          busy={busy !== ""}
+          busy={busy !== undefined}
           onBegin={(title, asked) => void carryOut(title, asked)}
         />
       </div>

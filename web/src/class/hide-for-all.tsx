@@ -28,7 +28,7 @@ export function HideForAll({ group, count, chosen, carryOut }: HideForAllProps) 
       );
   };
   return (
-    <fieldset className={styles.group} aria-label="Hidden faults for all">
+    <fieldset className={`row ${styles.group}`} aria-label="Hidden faults for all">
       <span className={styles.what}>Hidden fault</span>
       <NativeSelect
         className={styles.choice}

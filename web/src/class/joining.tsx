@@ -31,7 +31,7 @@ export function Joining({ group, isBrief, onChanged }: JoiningProps) {
   const change = (done: Promise<Class>) => done.then(onChanged, showError);
   const isAlone = address ? isLocal(address) : false;
   return (
-    <section className={styles.joining} data-brief={isBrief} aria-label="How to join">
+    <section className={`row ${styles.joining}`} data-brief={isBrief} aria-label="How to join">
       {group.code && address ? (
         <>
           {!isBrief && <QrCode address={address} />}
@@ -54,7 +54,7 @@ export function Joining({ group, isBrief, onChanged }: JoiningProps) {
       ) : (
         <p className={styles.note}>Joining is closed. Students who have joined stay.</p>
       )}
-      <div className={styles.buttons}>
+      <div className={`row ${styles.buttons}`}>
         {address && (
           <Button
             variant="filled"

@@ -3,7 +3,7 @@ import { type FormEvent, useState } from "react";
 import { classes } from "../api/classes";
 import type { Class } from "../api/types";
 import { PageHead } from "../bench/page-head";
-import { showError } from "../bench/send";
+import { useBusy } from "../bench/use-busy";
 import styles from "./class.module.css";
 import { ScenarioSelect } from "./scenario-select";
 
@@ -22,22 +22,16 @@ export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
   const [scenario, setScenario] = useState("first-look");
   const [hours, setHours] = useState<number | string>(8);
   const [minutes, setMinutes] = useState<number | string>(120);
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const wrong = {
     hours: Number(hours) > 0 && Number(hours) <= LONGEST_H ? undefined : `More than 0, at most ${LONGEST_H}`,
     minutes: Number(minutes) > 0 && Number(minutes) <= 60 * LONGEST_H ? undefined : "More than 0",
   };
-  const open = async (event: FormEvent) => {
+  const open = (event: FormEvent) => {
     event.preventDefault();
-    setBusy(true);
-    try {
-      const bench = { scenario, paused: false, quiet_lead: true };
-      onOpened(await classes.open({ name: name.trim(), bench, hours: Number(hours), minutes: Number(minutes) }));
-    } catch (error) {
-      showError(error);
-    } finally {
-      setBusy(false);
-    }
+    const bench = { scenario, paused: false, quiet_lead: true };
+    const wanted = { name: name.trim(), bench, hours: Number(hours), minutes: Number(minutes) };
+    void during(() => classes.open(wanted).then(onOpened));
   };
   return (
     <section className={styles.form} aria-label="Open a class">
@@ -79,7 +73,7 @@ export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
           error={wrong.minutes}
           onChange={setMinutes}
         />
-        <div className={styles.buttons}>
+        <div className={`row ${styles.buttons}`}>
           <Button
             variant="filled"
             size="sm"

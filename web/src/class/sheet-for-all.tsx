@@ -29,7 +29,7 @@ export function SheetForAll({ group, count, chosen, busy, onBegin }: SheetForAll
     onBegin(card.title, () => sheets.forAll(group, card.id, chosen.length > 0 ? [...chosen] : null));
   };
   return (
-    <fieldset className={styles.group} aria-label="A lab sheet for all">
+    <fieldset className={`row ${styles.group}`} aria-label="A lab sheet for all">
       <span className={styles.what}>Lab sheet</span>
       <NativeSelect
         className={styles.choice}

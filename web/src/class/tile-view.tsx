@@ -39,8 +39,8 @@ interface TileViewProps {
 export const TileView = memo(function TileView({ tile, isChosen, actions }: TileViewProps) {
   const { id, name, hand, bench, watchers, scenario, state, controller = "", verdicts = [] } = tile;
   return (
-    <li className={styles.tile} data-hand={hand} data-state={state ?? "none"} aria-label={name}>
-      <div className={styles.head}>
+    <li className={`column ${styles.tile}`} data-hand={hand} data-state={state ?? "none"} aria-label={name}>
+      <div className={`line ${styles.head}`}>
         <Checkbox
           aria-label={`Choose ${name}`}
           checked={isChosen}

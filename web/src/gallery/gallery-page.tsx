@@ -47,8 +47,8 @@ export function GalleryPage() {
   };
 
   return (
-    <main className={styles.page}>
-      <header className={styles.top}>
+    <main className={`column ${styles.page}`}>
+      <header className={`row ${styles.top}`}>
         <PageHead name="Gallery" item={one?.title} />
         {item ? (
           <Button size="xs" onClick={() => setPage("gallery")}>
@@ -75,7 +75,7 @@ export function GalleryPage() {
           </Button>
         )}
         {figures?.is_making && (
-          <div className={styles.making}>
+          <div className={`line ${styles.making}`}>
             Figures: {formatNumber(figures.made, 0)} of {formatNumber(figures.total, 0)}
             <Progress
               value={(100 * figures.made) / figures.total}

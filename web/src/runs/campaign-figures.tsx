@@ -24,8 +24,8 @@ export function CampaignFigures({ picture, onChoose }: CampaignFiguresProps) {
     parts.flatMap(({ mean }) => mean),
   );
   return (
-    <section className={styles.diagnosis} aria-label="Figures">
-      <div className={styles.links}>
+    <section className={`column ${styles.diagnosis}`} aria-label="Figures">
+      <div className={`row ${styles.links}`}>
         <Select
           label="Figure"
           searchable

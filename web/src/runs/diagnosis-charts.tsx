@@ -24,8 +24,8 @@ export function DiagnosisCharts({ points, words }: { points: PointTally[]; words
   const drawn = found.slice(0, MOST_LINES);
   const one = found[Math.min(at, found.length - 1)];
   return (
-    <section className={styles.diagnosis} aria-label="Diagnosis">
-      <div className={styles.links}>
+    <section className={`column ${styles.diagnosis}`} aria-label="Diagnosis">
+      <div className={`row ${styles.links}`}>
         <h3>Diagnosis</h3>
         {diagnosers.length > 1 && (
           <NativeSelect

@@ -28,7 +28,7 @@ export function RunComparison({ ids }: { ids: string }) {
   const different = value.figures.filter((row) => row.differences.some((one) => one !== 0));
   const rows = onlyDifferent ? different : value.figures;
   return (
-    <article className={styles.result} aria-label="Comparison">
+    <article className={`column ${styles.result}`} aria-label="Comparison">
       <h2>{formatCount(value.runs.length, "run")} side by side</h2>
       <Traces ids={ids} comparison={value} names={names} />
       <Checkbox

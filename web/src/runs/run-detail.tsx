@@ -54,7 +54,7 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
     }, showError);
   const hasTrace = summary.ticks > 0;
   return (
-    <article className={styles.result}>
+    <article className={`column ${styles.result}`}>
       <header>
         <h2>{runName(run)}</h2>
         <small>
@@ -75,9 +75,9 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
           </p>
         ))}
       </header>
-      <div className={styles.overview}>
+      <div className={`row ${styles.overview}`}>
         <img src={`${files}/thumbnail`} alt={`Figure of ${runName(run)}`} />
-        <div className={styles.links}>
+        <div className={`row ${styles.links}`}>
           <ReportButton files={files} />
           <ScriptButton files={files} title="A script that repeats this run over REST and checks its bits" />
           {hasTrace && (

@@ -92,7 +92,12 @@ export function RunsPage() {
           )
         )}
       </section>
-      <section ref={detail} className={styles.detail} data-chosen={chosen !== undefined} aria-label="Result">
+      <section
+        ref={detail}
+        className={`column ${styles.detail}`}
+        data-chosen={chosen !== undefined}
+        aria-label="Result"
+      >
         {chosen?.kind === "comparison" ? (
           <RunComparison key={chosen.id} ids={chosen.id} />
         ) : job?.kind === "run" ? (

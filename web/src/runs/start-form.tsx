@@ -50,7 +50,7 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
 
   return (
     <form
-      className={styles.form}
+      className={`column ${styles.form}`}
       aria-label="Start"
       onSubmit={(event) => {
         event.preventDefault();

@@ -51,7 +51,7 @@ export function PathRows<T extends { path: string }>(props: PathRowsProps<T>) {
   const { label, more, rows, paths, empty, onChange, entry } = props;
   const change = (at: number, row: T) => onChange(rows.map((old, i) => (i === at ? row : old)));
   return (
-    <fieldset className={styles.rows}>
+    <fieldset className={`column ${styles.rows}`}>
       <legend>{label}</legend>
       {rows.map((row, at) => {
         const name = row.path || `${label} ${at + 1}`;

@@ -26,7 +26,7 @@ export function EquationIndex() {
   }, [isFilled]);
   return (
     <section ref={section} className={styles.index} aria-label="Equations">
-      <header className={styles.head}>
+      <header className={`row ${styles.head}`}>
         <div>
           <h2>Equations</h2>
           <p role="status">

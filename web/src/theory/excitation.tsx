@@ -35,7 +35,7 @@ export function Excitation() {
     <section className={styles.card} aria-label="Persistent excitation">
       <h2>Does the input excite enough?</h2>
       <Formula latex="\alpha_2 I\ge\int_t^{t+\delta}\varphi\varphi^T\,d\tau\ge\alpha_1 I>0,\quad\varphi=\tfrac1{(s+\lambda)^2}[u,-\dot y,-y]^T" />
-      <div className={styles.examples}>
+      <div className={`row ${styles.examples}`}>
         {PRESETS.map(({ name, tones: preset }) => (
           <Button key={name} size="compact-xs" onClick={() => setTones(preset)}>
             {name}
@@ -88,7 +88,7 @@ export function Excitation() {
           ))}
         </tbody>
       </table>
-      <div className={styles.examples}>
+      <div className={`row ${styles.examples}`}>
         <Button
           size="compact-xs"
           variant="light"

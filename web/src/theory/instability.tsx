@@ -58,7 +58,7 @@ export function Instability() {
         One gain adapted on k/(s² + b₁s + 1) under a sine. In orange the error grows, in blue it decays. Each point
         shows how fast the worst solution grows, by Floquet's theorem.
       </p>
-      <div className={styles.examples}>
+      <div className={`row ${styles.examples}`}>
         <NativeSelect
           aria-label="Rule"
           value={rule}

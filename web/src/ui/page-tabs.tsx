@@ -29,7 +29,7 @@ export function PageTabs({
         keepMounted={false}
         classNames={{ root: styles.tabs, list: styles.list, panel: styles.panel }}
       >
-        <header className={styles.top}>
+        <header className={`row ${styles.top}`}>
           <Tabs.List aria-label={title}>
             {Object.entries(tabs).map(([id, tab]) => (
               <Tabs.Tab key={id} value={id}>

@@ -13,7 +13,7 @@ interface StaleProps {
 export function Stale({ error, since, onRetry }: StaleProps) {
   if (!error) return null;
   return (
-    <p className={styles.stale} role="alert">
+    <p className={`row ${styles.stale}`} role="alert">
       {error.body.message} {since && `What you see is of ${since.toLocaleTimeString()}.`} {error.body.hint}
       <Button size="compact-xs" onClick={onRetry}>
         Ask again

@@ -15,7 +15,7 @@ export function RunControls() {
   const stuck = state === "tripped" || unknown;
   const period = useBench((s) => s.bench?.drive_period_ticks ?? null);
   return (
-    <div className={styles.run}>
+    <div className="line">
       <Button
         variant="filled"
         size="compact-md"

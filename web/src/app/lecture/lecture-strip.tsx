@@ -58,8 +58,8 @@ export function LectureStrip() {
       </section>
     );
   return (
-    <section ref={place} className={styles.strip} aria-label="Lecture" aria-busy={busy} tabIndex={-1}>
-      <div className={styles.bar}>
+    <section ref={place} className={`column ${styles.strip}`} aria-label="Lecture" aria-busy={busy} tabIndex={-1}>
+      <div className={`row ${styles.bar}`}>
         <ActionIcon
           size={34}
           variant="default"
@@ -111,7 +111,7 @@ export function LectureStrip() {
           </Button>
         )}
         <LectureClock />
-        <span className={styles.tools}>
+        <span className="line">
           <Button
             size="compact-md"
             variant="light"

@@ -89,19 +89,19 @@ export function Presenter() {
   }, [channel]);
   if (!now?.cue)
     return (
-      <main className={styles.presenter}>
+      <main className={`column ${styles.presenter}`}>
         <h1>No lecture runs</h1>
         <p>Begin one in the window of the bench; the notes appear here.</p>
       </main>
     );
   return (
-    <main className={styles.presenter}>
+    <main className={`column ${styles.presenter}`}>
       <h1>
         <span>{now.place}</span> {now.cue.title}
       </h1>
       <ClockFace used={used} planned={now.planned} whole={now.whole} />
       <Notes cue={now.cue} next={now.next} />
-      <p className={styles.bar}>
+      <p className={`row ${styles.bar}`}>
         <Button size="sm" onClick={() => channel.postMessage({ key: "PageUp" })}>
           Back
         </Button>

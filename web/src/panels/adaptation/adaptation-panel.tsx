@@ -60,7 +60,7 @@ export function AdaptationPanel() {
     stripsPicture(shown.current, unit.strips, `Adaptation of ${unit.block.replaceAll("_", " ")}`, LEGEND);
   return (
     <section className={`view ${styles.panel}`} aria-label="Adaptation">
-      <div className={styles.bar}>
+      <div className={`row ${styles.bar}`}>
         <NativeSelect
           aria-label="What adapts"
           value={unit.block}
@@ -70,7 +70,7 @@ export function AdaptationPanel() {
           }))}
           onChange={(e) => setWanted(e.currentTarget.value)}
         />
-        <span className={styles.legend}>
+        <span className={`line ${styles.legend}`}>
           <i data-kind="now" /> now <i data-kind="ideal" /> ideal
         </span>
         <LaneTools time={time} onWindow={setWindowMs} take={take} />

@@ -5,7 +5,7 @@ import type { BlockCard, Document } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { hypothesisWords } from "../../bench/hypothesis-words";
 import { openVariant } from "../../bench/open-bench";
-import { showError } from "../../bench/send";
+import { useBusy } from "../../bench/use-busy";
 import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { middles, type PanelFrame } from "../../stream/panel-frame";
@@ -36,7 +36,7 @@ export function BehaviourPanel() {
   const signals = useBench((s) => s.bench?.signals);
   const { block } = useCatalog();
   const [wanted, setWanted] = useState<string | undefined>(undefined);
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const teaches = useMay("teach");
   const picture = useRef<TakePicture>(null);
   const regions = block("diagnose", "regions");
@@ -49,10 +49,7 @@ export function BehaviourPanel() {
   }, [diagnosers, parameters, signals, regions]);
   const shown = all.find(({ id }) => id === wanted) ?? all[0];
   const begin = (kind: string, said: string) => {
-    setBusy(true);
-    openVariant({ [`diagnosers.${kind}`]: { kind } }, said)
-      .catch(showError)
-      .finally(() => setBusy(false));
+    void during(() => openVariant({ [`diagnosers.${kind}`]: { kind } }, said));
   };
   if (!shown)
     return (

@@ -81,7 +81,7 @@ export function BehaviourPlot({ title, signals, windowMs, columns, draw, picture
 
   return (
     <>
-      <div className={styles.bar}>
+      <div className={`row ${styles.bar}`}>
         {children}
         <p ref={words} className={styles.words} data-testid="behaviour-words" />
       </div>

@@ -53,7 +53,7 @@ export function BlindPanel() {
   return (
     <section className={`view ${exercise.panel}`} aria-label="Blind diagnosis">
       <Stale error={error} since={since} onRetry={again} />
-      <div className={exercise.bar}>
+      <div className={`row ${exercise.bar}`}>
         <Button variant="filled" size="sm" onClick={hide}>
           {last ? "Hide another fault" : "Hide a fault"}
         </Button>

@@ -22,8 +22,8 @@ export function ParameterRow({ parameter, value, staged, onChange }: ParameterRo
   const range = limits(parameter);
   return (
     <div className={styles.parameter} data-staged={staged}>
-      <div className={styles.words}>
-        <span className={styles.label}>
+      <div className={`column ${styles.words}`}>
+        <span className={`line ${styles.label}`}>
           {label}
           {!live && (
             <Tooltip label="Fixed while the bench exists: it changes the wiring. Start a new bench to choose it.">
@@ -36,7 +36,7 @@ export function ParameterRow({ parameter, value, staged, onChange }: ParameterRo
           {range && ` (${range})`}
         </span>
       </div>
-      <div className={styles.entry}>
+      <div className={`line ${styles.entry}`}>
         {!isDefault && live && parameter.default !== null && type !== "list" && (
           <Tooltip
             label={`Back to the default ${typeof parameter.default === "number" ? formatShort(parameter.default, parameter.unit, 6) : String(parameter.default).replaceAll("_", " ")}`}

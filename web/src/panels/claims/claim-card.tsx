@@ -83,7 +83,7 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
         {claim.fitted.length > 0 && (
           <p className={styles.reading}>Chosen so that it agrees: {claim.fitted.join(", ")}.</p>
         )}
-        <div className={styles.buttons}>
+        <div className={`row ${styles.buttons}`}>
           {teaches && claim.knobs.length > 0 && (
             <Button variant="light" aria-expanded={isOpen} onClick={() => onOpen(!isOpen)}>
               Where does it hold?

@@ -31,7 +31,7 @@ export function ClaimsPanel() {
     <section className={`view ${styles.panel}`} aria-label="Claims" data-over={value.is_over}>
       <header className={styles.top}>
         <p className={styles.claim}>{value.claim || value.title}</p>
-        <div className={styles.line}>
+        <div className={`row ${styles.line}`}>
           {value.is_over && <Verdict verdict={value.verdict} borneOut />}
           <span className={styles.progress}>
             <Progress list={value} />
@@ -43,7 +43,7 @@ export function ClaimsPanel() {
           />
         </div>
       </header>
-      <ul className={styles.list}>
+      <ul className="column">
         {value.claims.map((claim) => (
           <ClaimCard
             key={claim.metric}

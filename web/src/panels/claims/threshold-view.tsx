@@ -23,7 +23,7 @@ export function ThresholdView({ claim }: { claim: Claim }) {
   const [path, setPath] = useState(claim.knobs[0].path);
   const knob = claim.knobs.find((one) => one.path === path) ?? claim.knobs[0];
   return (
-    <div className={styles.threshold}>
+    <div className={`column ${styles.threshold}`}>
       <NativeSelect
         label="Turn"
         value={knob.path}

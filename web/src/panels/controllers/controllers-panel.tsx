@@ -68,9 +68,9 @@ export function ControllersPanel() {
               onChange={(name) => name !== active && actions.controller(name)}
             >
               {controllersOf(slot, controllers, blocks).map((law) => (
-                <div key={law.name} className={styles.row} data-active={law.name === active}>
+                <div key={law.name} className={`line ${styles.row}`} data-active={law.name === active}>
                   <Radio value={law.name} label={law.title} description={<Prose text={law.summary} />} />
-                  <div className={styles.told}>
+                  <div className={`column ${styles.told}`}>
                     <output ref={live(law.name)} />
                     {`${law.name}.${TRUSTED}` in told && (
                       <output className={styles.doubt} ref={live(`${law.name}.${TRUSTED}`)} />

@@ -46,7 +46,7 @@ export function Difference({ version, source, onBack, onClose }: DifferenceProps
     return () => view.destroy();
   }, [version, source]);
   return (
-    <section className={styles.difference} aria-label="Difference">
+    <section className={`column ${styles.difference}`} aria-label="Difference">
       <header>
         <span>
           From the version of {timeOf(version)} to the text of now

@@ -47,8 +47,8 @@ function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
   }, [checked.now, name, source]);
 
   return (
-    <section className={styles.panel} aria-label="Editor">
-      <div className={styles.bar}>
+    <section className={`column ${styles.panel}`} aria-label="Editor">
+      <div className={`row ${styles.bar}`}>
         <StartFrom list={list} unit={checked.now?.unit ?? undefined} />
         <TextInput
           aria-label="Name of the unit"
@@ -61,7 +61,7 @@ function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
         />
         <Versions chosen={chosen} onChoose={choose} />
       </div>
-      <div className={styles.bar}>
+      <div className={`row ${styles.bar}`}>
         <State name={name} source={source} checked={checked} run={run} />
         <Switch
           label="Run as I type"

@@ -3,8 +3,8 @@ import { useState } from "react";
 import { api } from "../../api/api";
 import { useAnswer } from "../../api/queries";
 import type { BlockCard, NewRun, Run } from "../../api/types";
-import { showError } from "../../bench/send";
 import { valuesOf } from "../../bench/unit-values";
+import { useBusy } from "../../bench/use-busy";
 import { openPlace } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { metricScale } from "../../ui/metric-name";
@@ -17,23 +17,17 @@ export function Headless({ card, source, ready }: { card: BlockCard; source: str
   const scenario = useBench((s) => s.bench?.scenario_id);
   const [started, setStarted] = useState<{ id: string; source: string } | undefined>(undefined);
   const id = started?.id;
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const { value: run } = useAnswer(
     id === undefined ? undefined : ["run", id],
     () => api.run(id ?? ""),
     (found) => (isOver(found) ? undefined : BUSY_MS),
   );
-  const start = async () => {
-    setBusy(true);
-    try {
+  const start = () =>
+    during(async () => {
       const { id } = await api.startRun(await wanted(card, source));
       setStarted({ id, source });
-    } catch (error) {
-      showError(error);
-    } finally {
-      setBusy(false);
-    }
-  };
+    });
   return (
     <section aria-label="Headless run">
       <h3>Headless run</h3>

@@ -19,7 +19,7 @@ export function OnBench({ card }: { card: BlockCard }) {
     [signals, card.name],
   );
   return (
-    <div className={styles.row}>
+    <div className={`row ${styles.row}`}>
       {card.family === "control" &&
         (drives ? (
           <span>It drives.</span>

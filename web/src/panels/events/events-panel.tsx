@@ -62,7 +62,7 @@ function Events() {
         .slice(-SHOWN)
         .reverse()
         .map((event) => (
-          <li key={event.seq} className={styles.row}>
+          <li key={event.seq} className={`line ${styles.row}`}>
             <button
               type="button"
               className={styles.event}

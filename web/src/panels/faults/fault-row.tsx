@@ -41,13 +41,13 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
 
   return (
     <li className={styles.fault} data-active={active !== undefined}>
-      <div className={styles.row}>
-        <button type="button" className={styles.name} aria-expanded={open} onClick={onToggle}>
+      <div className={`row ${styles.row}`}>
+        <button type="button" className={`line ${styles.name}`} aria-expanded={open} onClick={onToggle}>
           <IconChevronRight size={14} className={styles.chevron} aria-hidden="true" />
           <span>{fault.title}</span>
         </button>
         {active ? (
-          <span className={styles.now}>
+          <span className={`line ${styles.now}`}>
             <b className={styles.acting}>
               {severityText(active.severity, scale, unit)}
               {active.since_tick !== undefined && <small> since {formatMoment(active.since_tick * dtMs)}</small>}

@@ -21,8 +21,8 @@ export function FaultForm({ kinds, on }: { kinds: readonly GameKind[]; on: boole
   const severity = typeof values.severity === "number" ? values.severity : FIRST;
   const limit = (end: number) => formatShort(end * factor, unit);
   return (
-    <div className={styles.form}>
-      <div className={exercise.bar}>
+    <div className={`column ${styles.form}`}>
+      <div className={`row ${exercise.bar}`}>
         <NativeSelect
           aria-label="Fault"
           value={kind.name}
@@ -45,7 +45,7 @@ export function FaultForm({ kinds, on }: { kinds: readonly GameKind[]; on: boole
         </small>
       </div>
       {on && (
-        <div className={exercise.bar}>
+        <div className={`row ${exercise.bar}`}>
           <Button size="xs" onClick={() => void send({ fault: kind.name, severity }, `Injected ${kind.title}`)}>
             Try it on the bench
           </Button>

@@ -29,7 +29,7 @@ export function GameTable({ card, play }: { card: GameCard; play: GamePlay }) {
   return (
     <>
       {all.length > 0 && (
-        <div className={exercise.bar}>
+        <div className={`row ${exercise.bar}`}>
           <NativeSelect
             aria-label="Table of"
             value={chosen}

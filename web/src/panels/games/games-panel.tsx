@@ -47,7 +47,7 @@ export function GamesPanel() {
   return (
     <section className={`view ${exercise.panel}`} aria-label="Games">
       <Stale error={error ?? cards.error} since={since} onRetry={again} />
-      <div className={exercise.bar}>
+      <div className={`row ${exercise.bar}`}>
         <NativeSelect
           aria-label="Game"
           value={game}
@@ -99,7 +99,7 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
   return (
     <>
       <p className={exercise.text}>{card.task}</p>
-      <div className={exercise.bar}>
+      <div className={`row ${exercise.bar}`}>
         <Button
           size="sm"
           variant={on || over ? "default" : "filled"}
@@ -116,7 +116,7 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
         )}
       </div>
       {isBank ? <BankForm card={card} on={on} /> : <FaultForm kinds={play.kinds ?? []} on={on} />}
-      <div className={exercise.bar}>
+      <div className={`row ${exercise.bar}`}>
         <Button
           variant="filled"
           size="sm"

@@ -7,7 +7,7 @@ import { useMay } from "../../api/me";
 import { useAsked } from "../../api/queries";
 import { useCatalog } from "../../api/use-catalog";
 import { openVariant } from "../../bench/open-bench";
-import { showError } from "../../bench/send";
+import { useBusy } from "../../bench/use-busy";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { AliasPlot } from "./alias-plot";
@@ -26,7 +26,7 @@ export function HypothesesPanel() {
   const banks = Object.entries((parameters?.diagnosers ?? {}) as Banks).filter(([, { hypotheses }]) => hypotheses);
   const [wanted, setWanted] = useState<string | undefined>(undefined);
   const [drafts, setDrafts] = useState<Record<string, Hypothesis[]>>({});
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const teaches = useMay("teach");
   const [id, bank] = banks.find(([name]) => name === wanted) ?? banks[0] ?? [];
   const key = `${bench} ${id}`;
@@ -45,17 +45,14 @@ export function HypothesesPanel() {
 
   const changed = JSON.stringify(list) !== JSON.stringify(bank.hypotheses);
   const begin = (set: Record<string, unknown>, said: string) => {
-    setBusy(true);
-    openVariant(set, said)
-      .catch(showError)
-      .finally(() => setBusy(false));
+    void during(() => openVariant(set, said));
   };
   const kinds = blocks.filter(
     (b) => b.family === "diagnose" && fits(b, []) && b.parameters.some((p) => p.name === "hypotheses"),
   );
   return (
     <section className="view-page" aria-label="Hypotheses">
-      <div className={styles.bar}>
+      <div className={`row ${styles.bar}`}>
         <NativeSelect
           aria-label="Bank"
           value={id}

@@ -30,7 +30,7 @@ export function HypothesisTable({ list, onChange }: { list: Hypothesis[]; onChan
             // biome-ignore lint/suspicious/noArrayIndexKey: a hypothesis is known by its place, its name can change
             <tr key={i}>
               <th scope="row">
-                <span className={styles.name}>
+                <span className={`line ${styles.name}`}>
                   <i style={{ background: traceColour(hypothesisStyle(i), scheme) }} />
                   <input
                     aria-label={`Name of hypothesis ${i + 1}`}

@@ -2,7 +2,7 @@ import { Button } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../../api/api";
 import type { Identification } from "../../api/types";
-import { showError } from "../../bench/send";
+import { useBusy } from "../../bench/use-busy";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { NumberField } from "../../ui/number-field";
@@ -23,19 +23,13 @@ export function IdentifyPanel() {
   const id = useBench((s) => s.bench?.id);
   const [how, setHow] = useState(START);
   const [result, setResult] = useState<Identification | undefined>(undefined);
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   if (!id) return <EmptyState title="No bench yet">A sweep measures the device of a bench.</EmptyState>;
 
-  const sweep = async () => {
-    setBusy(true);
-    try {
+  const sweep = () =>
+    during(async () => {
       setResult(await api.identify(id, { ...how, start_hz: null, stop_hz: null }));
-    } catch (error) {
-      showError(error);
-    } finally {
-      setBusy(false);
-    }
-  };
+    });
   const button = (
     <Button variant="filled" size="xs" loading={busy} onClick={sweep}>
       {result ? "Sweep again" : "Sweep the device"}
@@ -43,7 +37,7 @@ export function IdentifyPanel() {
   );
   return (
     <section className={`view ${styles.panel}`} aria-label="Frequency response">
-      <div className={styles.bar}>
+      <div className={`row ${styles.bar}`}>
         {button}
         {FIELDS.map(({ name, ...field }) => (
           <span key={name} className={styles.field}>

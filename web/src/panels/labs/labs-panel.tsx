@@ -39,7 +39,7 @@ export function LabsPanel() {
   };
   return (
     <section className="view-page" aria-label="Labs">
-      <div className={styles.bar}>
+      <div className={`row ${styles.bar}`}>
         <NativeSelect
           aria-label="Diagnoser"
           value={id}

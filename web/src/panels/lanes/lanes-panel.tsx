@@ -47,7 +47,7 @@ export function LanesPanel() {
   return (
     <div className="view">
       {all.length > 1 && (
-        <div className={styles.choice}>
+        <div className={`row ${styles.choice}`}>
           <NativeSelect
             aria-label="Diagnosers shown"
             value={one?.id ?? ALL}

@@ -29,7 +29,7 @@ export function LocusPanel() {
   if (!axes) return <EmptyState title="No bench yet">The path of the mass appears with the bench.</EmptyState>;
   return (
     <section className={`view ${styles.panel}`} aria-label="Motion">
-      <div className={styles.bar}>
+      <div className={`row ${styles.bar}`}>
         <NativeSelect
           w={84}
           aria-label="Length of the path"

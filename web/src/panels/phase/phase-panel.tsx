@@ -39,7 +39,7 @@ export function PhasePanel() {
   const flat = plant !== "planar" && plant !== "slaved_lateral";
   return (
     <section className={`view ${styles.panel}`} aria-label="Phase plane">
-      <div className={styles.bar}>
+      <div className={`row ${styles.bar}`}>
         <NativeSelect aria-label="Across" value={x} data={names} onChange={(e) => setX(e.currentTarget.value)} />
         <NativeSelect aria-label="Up" value={y} data={names} onChange={(e) => setY(e.currentTarget.value)} />
         <NativeSelect

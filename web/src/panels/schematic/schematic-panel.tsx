@@ -55,7 +55,7 @@ export function SchematicPanel() {
     return (
       <section className={`view ${styles.panel}`} aria-label={`Inside: ${card.title}`}>
         <InsideDrawing key={`${instance.id} ${instance.name}`} instance={instance} block={card} />
-        <footer className={styles.foot}>{choice}</footer>
+        <footer className={`row ${styles.foot}`}>{choice}</footer>
       </section>
     );
   return (
@@ -65,7 +65,7 @@ export function SchematicPanel() {
       ) : (
         <AxesLoop axes={axes} slots={slots} />
       )}
-      <footer className={styles.foot}>
+      <footer className={`row ${styles.foot}`}>
         <p className={styles.device}>
           {device ?? "device"} · {rate === undefined ? "" : formatShort(rate, "kHz")}
           {isFlat && structure.figure && ` · drawn as figure ${structure.figure}`}

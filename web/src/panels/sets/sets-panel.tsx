@@ -4,7 +4,7 @@ import { api } from "../../api/api";
 import { useMay, useWatches } from "../../api/me";
 import { usePanelVisible } from "../../api/panel-visible";
 import { useAnswer } from "../../api/queries";
-import { showError } from "../../bench/send";
+import { showing } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import rows from "../../ui/row-list.module.css";
@@ -29,15 +29,11 @@ function Sets() {
   const teaches = useMay("teach");
   const [chosen, setChosen] = useState<string | undefined>(undefined);
   const comparing = sets?.find((one) => one.id === chosen);
-  const keep = async () => {
-    try {
-      await api.saveParameterSet(bench, name.trim());
-      setName("");
-      again();
-    } catch (refusal) {
-      showError(refusal);
-    }
-  };
+  const keep = showing(async () => {
+    await api.saveParameterSet(bench, name.trim());
+    setName("");
+    again();
+  });
   return (
     <section className={rows.panel} aria-label="Parameter sets">
       {teaches && (

@@ -81,7 +81,7 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
         </div>
       )}
       <SheetText text={value.intro} />
-      <ol className={styles.sections}>
+      <ol className={`column ${styles.sections}`}>
         {value.sections.map((section, i) => (
           // biome-ignore lint/suspicious/noArrayIndexKey: the sections of a sheet stay in their order
           <Section key={i} section={section} actions={actions} />

@@ -86,7 +86,7 @@ export function StepView({ step, isOpen, actions }: StepProps) {
 function Conditions({ step, isOpen }: { step: SheetStep; isOpen: boolean }) {
   return (
     <>
-      <ul className={styles.conditions} aria-label="What is checked">
+      <ul className={`column ${styles.conditions}`} aria-label="What is checked">
         {(step.conditions ?? []).map(({ label, now, wanted, holds }) => (
           <li key={label} data-holds={holds}>
             <span aria-hidden="true">{holds ? "✓" : "○"}</span>
@@ -104,7 +104,7 @@ function Conditions({ step, isOpen }: { step: SheetStep; isOpen: boolean }) {
         ))}
       </ul>
       {isOpen && (
-        <div className={styles.held}>
+        <div className={`line ${styles.held}`}>
           <progress aria-label="Held" max={1} value={step.held_share} />
           <span>{step.held}</span>
         </div>
@@ -133,7 +133,7 @@ function AnswerForm({ step, actions }: { step: SheetStep; actions: StepActions }
   const says = step.kind === "prediction" ? "Commit the prediction" : "Answer";
   const unit = unitText(step.unit ?? "");
   return (
-    <form className={styles.form} onSubmit={(event) => void take(event)}>
+    <form className={`column ${styles.form}`} onSubmit={(event) => void take(event)}>
       {options.length > 0 ? (
         <Radio.Group
           label={step.question}
@@ -142,7 +142,7 @@ function AnswerForm({ step, actions }: { step: SheetStep; actions: StepActions }
           onChange={setText}
           error={wrong || undefined}
         >
-          <div className={styles.options}>
+          <div className={`column ${styles.options}`}>
             {options.map(([id, words]) => (
               <Radio key={id} value={id} label={words} />
             ))}

@@ -22,7 +22,7 @@ export function SpectrumPanel() {
   const signal = wanted ?? usual?.name ?? signals[0].name;
   return (
     <section className={`view ${styles.panel}`} aria-label="Spectrum">
-      <div className={styles.bar}>
+      <div className={`row ${styles.bar}`}>
         <NativeSelect
           aria-label="Signal"
           value={signal}

@@ -60,7 +60,7 @@ export function TwinsPanel() {
   const take = () => shown.current && stripsPicture(shown.current, strips, "Twins", boards);
   return (
     <section className={`view ${styles.panel}`} aria-label="Twins">
-      <div className={styles.bar}>
+      <div className={`row ${styles.bar}`}>
         {form}
         <LaneTools time={time} onWindow={setWindowMs} take={take} />
       </div>

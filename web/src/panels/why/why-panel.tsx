@@ -59,14 +59,14 @@ export function WhyPanel() {
   return (
     <section className="view-page" aria-label="Why this sample">
       {account && !refusal && <WhyVerdict diagnoser={sample.diagnoser} account={account} turn={turn} />}
-      <div className={styles.bar}>
+      <div className={`row ${styles.bar}`}>
         <NativeSelect
           aria-label="Diagnoser"
           value={sample.diagnoser}
           data={ids.map((id) => ({ value: id, label: id.replaceAll("_", " ") }))}
           onChange={(e) => pickSample(e.currentTarget.value, sample.tick)}
         />
-        <span className={styles.step}>
+        <span className={`line ${styles.step}`}>
           <ActionIcon
             variant="default"
             size={28}

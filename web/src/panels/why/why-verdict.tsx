@@ -21,7 +21,7 @@ export function WhyVerdict({ diagnoser, account, turn }: WhyVerdictProps) {
   return (
     <>
       <p className={styles.sentence}>{whySentence(account, turn, account.tick)}</p>
-      <p className={styles.turn}>
+      <p className={`row ${styles.turn}`}>
         <span>σ is the miss that its own filter expects. {turn && turnWords(turn, account.tick)}</span>
         <Button
           className={styles.wrapping}
