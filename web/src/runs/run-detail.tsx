@@ -10,6 +10,7 @@ import { Downloads, TRACE_FORMATS } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
 import { formatBeside, formatCount, formatFigure, formatPercent, formatShort, formatSi } from "../ui/format";
 import { metricScale } from "../ui/metric-name";
+import { TableHead } from "../ui/table-head";
 import { ReportButton, ScriptButton } from "./file-buttons";
 import { runName } from "./jobs";
 import { NameField } from "./name-field";
@@ -107,13 +108,7 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
       )}
       <h3>Figures</h3>
       <table className={styles.table}>
-        <thead>
-          <tr>
-            <th scope="col">figure</th>
-            <th scope="col">{summary.metrics_std ? "mean" : "value"}</th>
-            {summary.metrics_std && <th scope="col">std</th>}
-          </tr>
-        </thead>
+        <TableHead names={["figure", summary.metrics_std ? "mean" : "value", Boolean(summary.metrics_std) && "std"]} />
         <tbody>
           {Object.entries(summary.metrics).map(([name, value]) => {
             const { title, shown } = metricScale(name, [value]);

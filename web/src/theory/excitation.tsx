@@ -6,6 +6,7 @@ import { useAsked } from "../api/queries";
 import { formatSi } from "../ui/format";
 import { Formula } from "../ui/formula";
 import { NumberField } from "../ui/number-field";
+import { TableHead } from "../ui/table-head";
 import { roundTo } from "../ui/unit-scale";
 import styles from "./theory.module.css";
 
@@ -43,13 +44,7 @@ export function Excitation() {
         ))}
       </div>
       <table className={styles.tones}>
-        <thead>
-          <tr>
-            <th scope="col">Frequency over ω₀</th>
-            <th scope="col">Amplitude</th>
-            <th />
-          </tr>
-        </thead>
+        <TableHead names={["Frequency over ω₀", "Amplitude", ""]} />
         <tbody>
           {tones.map((tone, i) => (
             // biome-ignore lint/suspicious/noArrayIndexKey: a tone is known by its place

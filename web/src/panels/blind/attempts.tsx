@@ -7,6 +7,7 @@ import { useBench } from "../../stream/bench-store";
 import exercise from "../../ui/exercise.module.css";
 import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { jump } from "../../ui/hover";
+import { TableHead } from "../../ui/table-head";
 import styles from "./blind.module.css";
 import { Telling } from "./telling";
 
@@ -56,14 +57,7 @@ export function Attempts({ answers }: { answers: readonly HiddenAnswer[] }) {
       <caption>
         {formatCount(answers.length, "answer")}, {points(mean)} on average
       </caption>
-      <thead>
-        <tr>
-          <th scope="col">Said</th>
-          <th scope="col">Truth</th>
-          <th scope="col">Sure</th>
-          <th scope="col">Points</th>
-        </tr>
-      </thead>
+      <TableHead names={["Said", "Truth", "Sure", "Points"]} />
       <tbody>
         {answers.map((one) => {
           const known = answersOf(one);

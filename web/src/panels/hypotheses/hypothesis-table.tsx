@@ -1,6 +1,7 @@
 import { ActionIcon } from "@mantine/core";
 import { IconX } from "@tabler/icons-react";
 import { NumberField } from "../../ui/number-field";
+import { TableHead } from "../../ui/table-head";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 import { roundTo } from "../../ui/unit-scale";
 import { useScheme } from "../../ui/use-canvas";
@@ -14,17 +15,7 @@ export function HypothesisTable({ list, onChange }: { list: Hypothesis[]; onChan
   return (
     <div className={styles.scroll}>
       <table className={styles.table}>
-        <thead>
-          <tr>
-            <th scope="col">Hypothesis</th>
-            {FACTORS.map((factor) => (
-              <th key={factor} scope="col">
-                {factor}
-              </th>
-            ))}
-            <th />
-          </tr>
-        </thead>
+        <TableHead names={["Hypothesis", ...FACTORS, ""]} />
         <tbody>
           {list.map((hypothesis, i) => (
             // biome-ignore lint/suspicious/noArrayIndexKey: a hypothesis is known by its place, its name can change

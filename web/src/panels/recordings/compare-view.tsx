@@ -5,6 +5,7 @@ import type { Comparison, Recording } from "../../api/types";
 import { showError } from "../../bench/send";
 import { formatCount, formatNumber, formatShort, formatSi } from "../../ui/format";
 import shared from "../../ui/row-list.module.css";
+import { TableHead } from "../../ui/table-head";
 import styles from "./recordings.module.css";
 
 const SHOWN = 60;
@@ -74,16 +75,7 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
               `; ${found.only_in_first.length + found.only_in_second.length} are in one recording alone`}
           </p>
           <table className={styles.table}>
-            <thead>
-              <tr>
-                <th scope="col">signal</th>
-                <th scope="col">largest difference</th>
-                <th scope="col">at tick</th>
-                <th scope="col">rms</th>
-                <th scope="col">tolerance</th>
-                <th scope="col">verdict</th>
-              </tr>
-            </thead>
+            <TableHead names={["signal", "largest difference", "at tick", "rms", "tolerance", "verdict"]} />
             <tbody>
               {rows.slice(0, SHOWN).map((row) => (
                 <tr key={row.signal} data-ok={row.ok}>
