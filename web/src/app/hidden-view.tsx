@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { useMemo, useState } from "react";
 import { useShallow } from "zustand/react/shallow";
 import { useMay } from "../api/me";
@@ -66,9 +66,9 @@ export function HiddenView({ view, question }: { view: ViewName; question: Quest
         ))}
       </div>
       {Tool && (
-        <div className={styles.tool}>
+        <Box flex={1} mih={0}>
           <Tool params={{ scope: measured, ...params }} setParams={setParams} />
-        </div>
+        </Box>
       )}
     </section>
   );

@@ -1,4 +1,4 @@
-import { Button, TextInput } from "@mantine/core";
+import { Box, Button, TextInput } from "@mantine/core";
 import { IconCheck, IconCopy } from "@tabler/icons-react";
 import { useState } from "react";
 import { isLocal } from "../api/classes";
@@ -31,7 +31,7 @@ export function LinkBox({ path, what, remark, onCopy }: LinkBoxProps) {
   };
 
   return (
-    <div className={styles.link}>
+    <Box mt={12}>
       <div className={styles.name}>
         <TextInput size="sm" label={what} value={address} readOnly onFocus={(e) => e.currentTarget.select()} />
         <Button
@@ -48,10 +48,10 @@ export function LinkBox({ path, what, remark, onCopy }: LinkBoxProps) {
           Other computers cannot reach this address. Open the page at the address that others use, then share.
         </p>
       )}
-      <div className={styles.qr}>
+      <Box w={240} m="16px auto 8px">
         <QrCode address={address} />
-      </div>
+      </Box>
       <p className={styles.remark}>{remark || NEEDS_TOKEN}</p>
-    </div>
+    </Box>
   );
 }

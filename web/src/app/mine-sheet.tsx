@@ -1,4 +1,4 @@
-import { ActionIcon, Button, TextInput } from "@mantine/core";
+import { ActionIcon, Box, Button, TextInput } from "@mantine/core";
 import { IconPencil, IconTrash } from "@tabler/icons-react";
 import { useCallback, useEffect, useState } from "react";
 import { api } from "../api/api";
@@ -78,7 +78,7 @@ function Row({ link, isOwn = false, onChanged }: { link: Link; isOwn?: boolean; 
   };
   return (
     <li>
-      <div className={styles.grow}>
+      <Box flex={1} miw={0}>
         {title === undefined ? (
           <h3>{link.title}</h3>
         ) : (
@@ -103,7 +103,7 @@ function Row({ link, isOwn = false, onChanged }: { link: Link; isOwn?: boolean; 
           {link.tick ? `done up to ${formatTick(link.tick)}` : "from its beginning"} ·{" "}
           {new Date(link.created).toLocaleString([], { dateStyle: "short", timeStyle: "short" })}
         </small>
-      </div>
+      </Box>
       <div className={`line ${styles.buttons}`}>
         <Button size="xs" variant="light" loading={busy} onClick={open} aria-label={`Open ${link.title}`}>
           Open

@@ -1,4 +1,4 @@
-import { Button, NativeSelect } from "@mantine/core";
+import { Box, Button, NativeSelect } from "@mantine/core";
 import { IconArrowLeft, IconRepeat } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../api/api";
@@ -53,7 +53,7 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
     <section className={`row ${styles.bar}`} aria-label="Replay">
       <strong>Replay</strong>
       <span className={styles.name}>{about.name}</span>
-      <div className={styles.track}>
+      <Box pos="relative" flex="1 1 200px" p="0 8px">
         <Slider
           size="sm"
           min={first}
@@ -76,7 +76,7 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
             }}
           />
         )}
-      </div>
+      </Box>
       <span className={styles.time}>
         {ms(Math.min(bench.tick, end))} of {ms(first)} … {ms(end)}
       </span>

@@ -1,4 +1,4 @@
-import { Button, NativeSelect, TextInput } from "@mantine/core";
+import { Box, Button, NativeSelect, TextInput } from "@mantine/core";
 import { type ReactNode, useCallback, useMemo, useState } from "react";
 import { classes } from "../api/classes";
 import { useAnswer } from "../api/queries";
@@ -94,9 +94,19 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
         <PageHead name="Class" item={name} heading={name} />
         <p>
           {formatCount(members.length, "student")}
-          {hands > 0 && <b className={styles.hands}> · {formatCount(hands, "hand")} up</b>}
-          {tripped.length > 0 && <b className={styles.trips}> · {formatNumber(tripped.length, 0)} tripped</b>} · ends{" "}
-          {clock(until)}
+          {hands > 0 && (
+            <Box component="b" c="var(--accent)">
+              {" "}
+              · {formatCount(hands, "hand")} up
+            </Box>
+          )}
+          {tripped.length > 0 && (
+            <Box component="b" c="var(--alarm)">
+              {" "}
+              · {formatNumber(tripped.length, 0)} tripped
+            </Box>
+          )}{" "}
+          · ends {clock(until)}
         </p>
         <div className={`row ${styles.buttons}`}>
           {children}

@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { IconPlayerPauseFilled, IconPlayerPlayFilled } from "@tabler/icons-react";
 import { useState } from "react";
 import { classes } from "../api/classes";
@@ -48,7 +48,9 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
   return (
     <section className={styles.all} aria-label="For all benches">
       <div className={`row ${styles.row}`}>
-        <b className={styles.whom}>{chosen.length > 0 ? `For the ${chosen.length} chosen` : "For all benches"}</b>
+        <Box component="b" miw="12ch" fw={600}>
+          {chosen.length > 0 ? `For the ${chosen.length} chosen` : "For all benches"}
+        </Box>
         {chosen.length > 0 && (
           <Button size="xs" variant="subtle" onClick={onChooseNone}>
             Choose none

@@ -1,4 +1,4 @@
-import { ActionIcon, Checkbox, Menu } from "@mantine/core";
+import { ActionIcon, Box, Checkbox, Menu } from "@mantine/core";
 import { IconCheck, IconDots, IconHandStop, IconX } from "@tabler/icons-react";
 import { memo } from "react";
 import { answersOf } from "../api/blind";
@@ -152,9 +152,9 @@ function Faults({ faults }: { faults: NonNullable<Tile["faults"]> }) {
   const acting = faults.filter(({ severity }) => severity !== 0);
   if (acting.length === 0) return <span>no fault</span>;
   return (
-    <b className={styles.acting}>
+    <Box component="b" c="var(--alarm)" fw={560}>
       {acting.map(({ name, severity }) => `${titleOf(name)} ${strength(cardOf("faults", name), severity)}`).join(", ")}
-    </b>
+    </Box>
   );
 }
 

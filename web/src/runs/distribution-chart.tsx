@@ -96,7 +96,7 @@ function Scale({ most }: { most: number }) {
   const scheme = useScheme();
   const colours = [0, 0.25, 0.5, 0.75, 1].map((share) => rampColour(share, scheme));
   return (
-    <p className={`line ${styles.scale}`}>
+    <p className="line remark">
       <span>runs in a cell: 1</span>
       <span className={styles.ramp} style={{ background: `linear-gradient(to right, ${colours.join(", ")})` }} />
       <span>{most} (logarithmic)</span>

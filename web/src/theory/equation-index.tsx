@@ -1,4 +1,4 @@
-import { Switch, TextInput } from "@mantine/core";
+import { Box, Switch, TextInput } from "@mantine/core";
 import { IconSearch } from "@tabler/icons-react";
 import { memo, useDeferredValue, useEffect, useMemo, useRef, useState } from "react";
 import { useCatalog } from "../api/use-catalog";
@@ -59,7 +59,11 @@ export function EquationIndex() {
           </ul>
         </section>
       ))}
-      {blocks.length > 0 && listed.length === 0 && <p className={styles.none}>No equation has all these words.</p>}
+      {blocks.length > 0 && listed.length === 0 && (
+        <Box component="p" c="dimmed">
+          No equation has all these words.
+        </Box>
+      )}
     </section>
   );
 }
@@ -67,11 +71,11 @@ export function EquationIndex() {
 const Row = memo(function Row({ entry: { blocks, equation } }: { entry: Entry }) {
   return (
     <li className={styles.row}>
-      <div className={styles.name}>
+      <Box display="grid" fz="sm">
         <b>{blocks.join(", ")}</b>
         <span>{equation.label.replaceAll("_", " ")}</span>
         {equation.source && <small>{equation.source}</small>}
-      </div>
+      </Box>
       {equation.printed ? (
         <div className={styles.erratum}>
           <EquationDetail equation={equation} />

@@ -1,3 +1,4 @@
+import { Box } from "@mantine/core";
 import { useEffect, useRef, useState } from "react";
 import { formatEntry, formatShort } from "./format";
 import styles from "./number-field.module.css";
@@ -78,7 +79,11 @@ export function NumberField({
           }
         }}
       />
-      {unit && <span className={styles.unit}>{unit}</span>}
+      {unit && (
+        <Box component="span" className="remark" ml={5}>
+          {unit}
+        </Box>
+      )}
       {wrong && (
         <span role="alert" className={styles.wrong}>
           {wrong}

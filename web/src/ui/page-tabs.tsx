@@ -1,4 +1,4 @@
-import { Tabs } from "@mantine/core";
+import { Box, Tabs } from "@mantine/core";
 import type { ReactNode } from "react";
 import styles from "./page-tabs.module.css";
 
@@ -22,7 +22,7 @@ export function PageTabs({
   const [first] = Object.keys(tabs);
   const value = shown && shown in tabs ? shown : first;
   return (
-    <main className={styles.page}>
+    <Box component="main" display="flex" mih={0}>
       <Tabs
         value={value}
         onChange={(next) => next && onShow(next)}
@@ -40,6 +40,6 @@ export function PageTabs({
         </header>
         <Tabs.Panel value={value}>{tabs[value].body}</Tabs.Panel>
       </Tabs>
-    </main>
+    </Box>
   );
 }

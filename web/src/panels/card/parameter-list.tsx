@@ -53,7 +53,7 @@ export function ParameterList({ instance, parameters, document }: ParameterListP
           );
         })}
       </div>
-      <Group gap="sm" className={styles.actions}>
+      <Group gap="sm" mt={12}>
         <Checkbox
           label="Collect changes, apply them in one tick"
           checked={collect}

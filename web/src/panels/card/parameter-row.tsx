@@ -1,4 +1,4 @@
-import { ActionIcon, NativeSelect, Switch, Tooltip } from "@mantine/core";
+import { ActionIcon, Box, NativeSelect, Switch, Tooltip } from "@mantine/core";
 import { IconArrowBackUp, IconLock } from "@tabler/icons-react";
 import type { Parameter } from "../../api/types";
 import { formatShort } from "../../ui/format";
@@ -22,21 +22,21 @@ export function ParameterRow({ parameter, value, staged, onChange }: ParameterRo
   const range = limits(parameter);
   return (
     <div className={styles.parameter} data-staged={staged}>
-      <div className={`column ${styles.words}`}>
-        <span className={`line ${styles.label}`}>
+      <Box className="column" flex="1 1 110px" miw={0}>
+        <Box component="span" className="line" fz="sm" fw={560}>
           {label}
           {!live && (
             <Tooltip label="Fixed while the bench exists: it changes the wiring. Start a new bench to choose it.">
               <IconLock size={12} role="img" aria-label="fixed while running" />
             </Tooltip>
           )}
-        </span>
+        </Box>
         <span className="remark">
           {meaning}
           {range && ` (${range})`}
         </span>
-      </div>
-      <div className={`line ${styles.entry}`}>
+      </Box>
+      <Box className="line" flex="none">
         {!isDefault && live && parameter.default !== null && type !== "list" && (
           <Tooltip
             label={`Back to the default ${typeof parameter.default === "number" ? formatShort(parameter.default, parameter.unit, 6) : String(parameter.default).replaceAll("_", " ")}`}
@@ -80,7 +80,7 @@ export function ParameterRow({ parameter, value, staged, onChange }: ParameterRo
         ) : (
           <code>{String(value)}</code>
         )}
-      </div>
+      </Box>
     </div>
   );
 }

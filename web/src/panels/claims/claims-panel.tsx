@@ -1,4 +1,4 @@
-import { Checkbox } from "@mantine/core";
+import { Box, Checkbox } from "@mantine/core";
 import { useState } from "react";
 import type { ClaimList } from "../../api/types";
 import { showPrinted, usePrinted } from "../../bench/printed";
@@ -29,20 +29,22 @@ export function ClaimsPanel() {
     );
   return (
     <section className={`view ${styles.panel}`} aria-label="Claims" data-over={value.is_over}>
-      <header className={styles.top}>
-        <p className={styles.claim}>{value.claim || value.title}</p>
-        <div className={`row ${styles.line}`}>
+      <Box component="header" flex="none">
+        <Box component="p" m="0 0 6px" fz="md" fw={620}>
+          {value.claim || value.title}
+        </Box>
+        <div className="row">
           {value.is_over && <Verdict verdict={value.verdict} borneOut />}
-          <span className={styles.progress}>
+          <Box component="span" flex="1 1 220px" c="dimmed">
             <Progress list={value} />
-          </span>
+          </Box>
           <Checkbox
             label="Printed marks on the scopes"
             checked={isShown}
             onChange={(event) => showPrinted(event.currentTarget.checked)}
           />
         </div>
-      </header>
+      </Box>
       <ul className="column">
         {value.claims.map((claim) => (
           <ClaimCard

@@ -1,4 +1,4 @@
-import { Button, Radio } from "@mantine/core";
+import { Box, Button, Radio } from "@mantine/core";
 import { useMemo } from "react";
 import { useShallow } from "zustand/react/shallow";
 import { controllersOf } from "../../api/fits";
@@ -51,7 +51,9 @@ export function ControllersPanel() {
           <fieldset key={slot} className={styles.slot}>
             <legend>{slotTitle(slot)}</legend>
             <Button
-              className={styles.open}
+              pos="absolute"
+              top={-24}
+              right={0}
               size="compact-xs"
               variant="subtle"
               onClick={() => {
@@ -80,9 +82,9 @@ export function ControllersPanel() {
               ))}
             </Radio.Group>
             {taken && (
-              <p className={styles.note}>
+              <Box component="p" className="note" m="4px 0 0">
                 Waits: {taken.title} drives this axis as well. Choose another to hand it back.
-              </p>
+              </Box>
             )}
           </fieldset>
         );

@@ -53,7 +53,7 @@ function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
         <TextInput
           aria-label="Name of the unit"
           placeholder="name"
-          className={styles.name}
+          w="16ch"
           value={name}
           maxLength={32}
           error={name !== "" && !isUnitName(name)}

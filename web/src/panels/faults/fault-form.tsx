@@ -1,4 +1,4 @@
-import { Button, Group, NumberInput, SegmentedControl, Stack } from "@mantine/core";
+import { Box, Button, Group, NumberInput, SegmentedControl, Stack } from "@mantine/core";
 import type { BlockCard, Parameter } from "../../api/types";
 import { type SeverityScale, severityText } from "../../bench/severity";
 import { Formula } from "../../ui/formula";
@@ -33,8 +33,10 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
   const factor = scale.percent ? 100 : 1;
   const unit = scale.percent ? "%" : unitText(parameter?.unit ?? "");
   return (
-    <div className={styles.form}>
-      <p className={styles.changes}>Changes the {fault.changes ?? fault.summary}.</p>
+    <Box p="0 12px 12px 27px">
+      <Box component="p" className="note" m="0 0 4px">
+        Changes the {fault.changes ?? fault.summary}.
+      </Box>
       {fault.equations.map((equation) => (
         <Formula key={equation.latex} latex={equation.latex} />
       ))}
@@ -122,6 +124,6 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
           {draftSeverity(draft, scale, parameter?.unit ?? "")}
         </Button>
       </Stack>
-    </div>
+    </Box>
   );
 }

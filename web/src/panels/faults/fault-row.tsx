@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { IconChevronRight } from "@tabler/icons-react";
 import { useState } from "react";
 import type { ActiveFault, BlockCard } from "../../api/types";
@@ -47,13 +47,13 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
           <span>{fault.title}</span>
         </button>
         {active ? (
-          <span className={`line ${styles.now}`}>
+          <Box component="span" className="line" flex="none">
             <b className={styles.acting}>
               {severityText(active.severity, scale, unit)}
               {active.since_tick !== undefined && <small> since {formatMoment(active.since_tick * dtMs)}</small>}
             </b>
             <Button onClick={() => send({ heal: [fault.name] }, `${fault.title} healed`)}>Heal</Button>
-          </span>
+          </Box>
         ) : (
           <Button
             variant="light"
@@ -89,5 +89,11 @@ function Chosen({ fault, active }: { fault: BlockCard; active: ActiveFault }) {
       const value = values[p.name];
       return `${parameterTitle(p).toLowerCase()}: ${typeof value === "number" ? formatShort(value, p.unit) : String(value)}`;
     });
-  return words.length > 0 && <p className={styles.chosen}>{words.join(", ")}</p>;
+  return (
+    words.length > 0 && (
+      <Box component="p" className="wrong" p="0 8px 6px 27px">
+        {words.join(", ")}
+      </Box>
+    )
+  );
 }

@@ -1,4 +1,4 @@
-import { Button, NativeSelect } from "@mantine/core";
+import { Box, Button, NativeSelect } from "@mantine/core";
 import { IconPlus } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../../api/api";
@@ -52,7 +52,7 @@ export function HypothesesPanel() {
   );
   return (
     <section className="view-page" aria-label="Hypotheses">
-      <div className={`row ${styles.bar}`}>
+      <Box className="row" pb={8}>
         <NativeSelect
           aria-label="Bank"
           value={id}
@@ -108,7 +108,7 @@ export function HypothesesPanel() {
             }}
           />
         )}
-      </div>
+      </Box>
       {wrong && (
         <p role="alert" className={styles.wrong}>
           {wrong}
@@ -117,7 +117,9 @@ export function HypothesesPanel() {
       <div className={styles.halves}>
         <HypothesisTable list={list} onChange={(next) => setDrafts({ ...drafts, [key]: next })} />
         <div>
-          <h2 className={styles.heading}>Which of them coincide under this drive?</h2>
+          <Box component="h2" m="4px 0">
+            Which of them coincide under this drive?
+          </Box>
           {refused && (
             <p role="alert" className={styles.wrong}>
               {refused.body.message}. {refused.body.hint}

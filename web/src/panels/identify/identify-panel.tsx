@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../../api/api";
 import type { Identification } from "../../api/types";
@@ -36,8 +36,8 @@ export function IdentifyPanel() {
     </Button>
   );
   return (
-    <section className={`view ${styles.panel}`} aria-label="Frequency response">
-      <div className={`row ${styles.bar}`}>
+    <Box component="section" className="view" p="8px 12px" aria-label="Frequency response">
+      <Box className="row" pb={8}>
         {button}
         {FIELDS.map(({ name, ...field }) => (
           <span key={name} className={styles.field}>
@@ -45,7 +45,7 @@ export function IdentifyPanel() {
             <NumberField {...field} value={how[name]} onCommit={(value) => setHow({ ...how, [name]: value })} />
           </span>
         ))}
-      </div>
+      </Box>
       {result ? (
         <div className={styles.result}>
           <div className={styles.bode}>
@@ -59,6 +59,6 @@ export function IdentifyPanel() {
           mass, a damper and a spring are fitted to what the sensor sees.
         </EmptyState>
       )}
-    </section>
+    </Box>
   );
 }

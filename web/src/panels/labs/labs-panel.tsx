@@ -1,4 +1,4 @@
-import { Button, NativeSelect } from "@mantine/core";
+import { Box, Button, NativeSelect } from "@mantine/core";
 import { useRef, useState } from "react";
 import { useCatalog } from "../../api/use-catalog";
 import { send } from "../../bench/send";
@@ -39,7 +39,7 @@ export function LabsPanel() {
   };
   return (
     <section className="view-page" aria-label="Labs">
-      <div className={`row ${styles.bar}`}>
+      <Box className="row" pb={8}>
         <NativeSelect
           aria-label="Diagnoser"
           value={id}
@@ -49,7 +49,7 @@ export function LabsPanel() {
         <Button title="Restart at tick 0; the settings here are kept" onClick={() => void countAfresh()}>
           Count afresh
         </Button>
-      </div>
+      </Box>
       <Outcome id={id} />
       <div className={styles.labs}>
         {labs.map((lab) => (

@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { useEffect, useRef } from "react";
 import { useMay } from "../../api/me";
 import { queryClient, useAnswer } from "../../api/queries";
@@ -87,7 +87,11 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
           <Section key={i} section={section} actions={actions} />
         ))}
       </ol>
-      {value.done && <p className={styles.finished}>All steps are done. Hand in gives you the sheet to print.</p>}
+      {value.done && (
+        <Box component="p" fw={560}>
+          All steps are done. Hand in gives you the sheet to print.
+        </Box>
+      )}
     </section>
   );
 }

@@ -1,4 +1,4 @@
-import { Button, Radio, TextInput } from "@mantine/core";
+import { Box, Button, Radio, TextInput } from "@mantine/core";
 import { type FormEvent, useState } from "react";
 import { ApiError } from "../../api/client";
 import type { SheetStep } from "../../api/types";
@@ -27,7 +27,11 @@ export function StepView({ step, isOpen, actions }: StepProps) {
   const { id, rule, earned, points, hints = [], next_hint_costs: hintCosts, answers = [] } = step;
   return (
     <div className={styles.step} data-open={isOpen}>
-      {step.question && <p className={styles.question}>{step.question}</p>}
+      {step.question && (
+        <Box component="p" fw={560}>
+          {step.question}
+        </Box>
+      )}
       {(step.conditions ?? []).length > 0 && <Conditions step={step} isOpen={isOpen} />}
       {answers.length > 0 && (
         <ul className={styles.answers} aria-label="Answers">
@@ -36,7 +40,11 @@ export function StepView({ step, isOpen, actions }: StepProps) {
             <li key={i} data-right={given.points === null ? undefined : (given.points ?? 0) > 0}>
               <b>{given.text}</b>
               {given.reason === null ? " – committed; judged after the run" : ` – ${given.reason}`}
-              {given.points !== null && <span className={styles.gain}>{signed(given.points)}</span>}
+              {given.points !== null && (
+                <Box component="span" ml={6} fw={600}>
+                  {signed(given.points)}
+                </Box>
+              )}
             </li>
           ))}
         </ul>
