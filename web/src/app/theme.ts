@@ -80,7 +80,9 @@ export const theme = createTheme({
     Button: { defaultProps: { size: "compact-sm", variant: "default" } },
     ActionIcon: { defaultProps: { variant: "subtle" } },
     NativeSelect: SMALL,
+    Select: SMALL,
     TextInput: SMALL,
+    Textarea: SMALL,
     NumberInput: SMALL,
     SegmentedControl: SMALL,
     Tooltip: {

@@ -91,7 +91,7 @@ export const align = showing(async (alignment: Alignment) => {
 /** Forget benches that are gone, or that have another rate than the bench on the page: the server draws nothing of them. */
 export async function forgetGone(): Promise<void> {
   const rate = rateHere();
-  if (rate === undefined) return;
+  if (rate === undefined || useBehind.getState().behind.length === 0) return;
   const there = new Set((await api.benches()).flatMap((one) => (one.sample_rate_khz === rate ? [one.id] : [])));
   useBehind.setState(({ behind }) => ({ behind: behind.filter((one) => there.has(one.bench)) }));
 }

@@ -50,7 +50,7 @@ export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
           value={name}
           onChange={(e) => setName(e.currentTarget.value)}
         />
-        <ScenarioSelect label="Benches begin with" value={scenario} onChange={setScenario} />
+        <ScenarioSelect size="sm" label="Benches begin with" value={scenario} onChange={setScenario} />
         <NumberInput
           size="sm"
           label="Duration"

@@ -1,4 +1,3 @@
-import { Box } from "@mantine/core";
 import { useEffect, useRef, useState } from "react";
 import { formatEntry, formatShort } from "./format";
 import styles from "./number-field.module.css";
@@ -79,11 +78,7 @@ export function NumberField({
           }
         }}
       />
-      {unit && (
-        <Box component="span" className="remark" ml={5}>
-          {unit}
-        </Box>
-      )}
+      {unit && <span className={styles.unit}>{unit}</span>}
       {wrong && (
         <span role="alert" className={styles.wrong}>
           {wrong}
