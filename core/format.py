@@ -1,6 +1,6 @@
 """Formats numbers for people, in reports, pictures, 3D and events.
 
-The page formats them the same way (``web/src/ui/format.ts``); ``web/src/ui/format-cases.json`` tests that both write
+The page formats them the same way (``web/src/ui/format.ts``); ``web/src/testing/cases/format.json`` tests that both write
 the same text for the same value.
 """
 

@@ -1,6 +1,6 @@
 """Names of figures in words, with the unit that the name of a field ends in.
 
-The page has the same rules; ``web/src/ui/metric-cases.json`` holds both to the same names.
+The page has the same rules; ``web/src/testing/cases/metric.json`` holds both to the same names.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Axes of charts: round ticks and the unit their numbers are in, chosen as the page chooses them.
 
-``web/src/ui/axis-cases.json`` holds both to the same ticks, units and labels.
+``web/src/testing/cases/axis.json`` holds both to the same ticks, units and labels.
 """
 
 from __future__ import annotations

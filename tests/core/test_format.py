@@ -31,7 +31,7 @@ from core.format import (
     unit_text,
 )
 
-CASES: dict[str, Any] = json.loads(Path("web/src/ui/format-cases.json").read_text("utf-8"))
+CASES: dict[str, Any] = json.loads(Path("web/src/testing/cases/format.json").read_text("utf-8"))
 FORMATS = {"si": format_si, "short": format_short, "in": format_in}
 LOWERED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 PREFIX = {"T": 1e12, "G": 1e9, "M": 1e6, "k": 1e3, "": 1.0, "m": 1e-3, "µ": 1e-6}

@@ -17,7 +17,7 @@ from scenarios.run import DEFAULT_SAMPLES
 from tests.server.conftest import TOKEN, Live
 
 ROOT = Path(__file__).resolve().parents[2]
-FOUND = json.loads((ROOT / "web/src/bench/as-code-cases.json").read_text("utf-8"))
+FOUND = json.loads((ROOT / "web/src/testing/cases/as-code.json").read_text("utf-8"))
 SOURCE = FOUND["source"]
 CASES = FOUND["cases"]
 HEADLESS = [case for case in CASES if "cli" in case]

@@ -12,8 +12,8 @@ from core.format import labels_on, unit_scale
 from scenarios.metric_name import metric_scale
 from scenarios.report.axis import Axis, Scale, decade_ticks, linear_ticks, time_scale
 
-UI = Path("web/src/ui")
-CASES: dict[str, Any] = json.loads((UI / "axis-cases.json").read_text("utf-8"))
+SHARED = Path("web/src/testing/cases")
+CASES: dict[str, Any] = json.loads((SHARED / "axis.json").read_text("utf-8"))
 
 
 def test_ticks_are_those_of_the_page() -> None:
@@ -34,7 +34,7 @@ def test_units_and_labels_are_those_of_the_page() -> None:
 
 
 def test_figures_have_the_names_of_the_page() -> None:
-    for metric, title in json.loads((UI / "metric-cases.json").read_text("utf-8")).items():
+    for metric, title in json.loads((SHARED / "metric.json").read_text("utf-8")).items():
         assert metric_scale(metric).title == title
 
 

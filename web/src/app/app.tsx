@@ -147,7 +147,14 @@ function Nowhere() {
   useTitle("Not found");
   return (
     <main>
-      <EmptyState title="Page not found" action={<Button onClick={() => setPage("bench")}>Go to the bench</Button>}>
+      <EmptyState
+        title="Page not found"
+        action={
+          <Button variant="filled" size="sm" onClick={() => setPage("bench")}>
+            Go to the bench
+          </Button>
+        }
+      >
         The server has no page at {window.location.pathname}.
       </EmptyState>
     </main>
@@ -167,9 +174,11 @@ function Again({ onRetry }: { onRetry(): void }) {
   };
   return (
     <Group justify="center">
-      <Button onClick={onRetry}>Try again</Button>
+      <Button variant="filled" size="sm" onClick={onRetry}>
+        Try again
+      </Button>
       {inAddress("link") && (
-        <Button variant="default" onClick={ownInstead}>
+        <Button size="sm" onClick={ownInstead}>
           Open my own bench
         </Button>
       )}

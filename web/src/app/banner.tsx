@@ -27,7 +27,7 @@ export function Banner() {
       <Line tone="alarm" title={connection.reason.title} text={connection.reason.advice}>
         {connection.reason.offer === "bench" && drives && <NewStart />}
         {(connection.reason.offer === "reload" || connection.reason.offer === "login") && (
-          <Button size="compact-sm" onClick={() => window.location.reload()}>
+          <Button variant="filled" onClick={() => window.location.reload()}>
             Reload
           </Button>
         )}
@@ -41,9 +41,7 @@ export function Banner() {
         text={`${capital(staleWords(stale))}. ${connection.reason.advice}`}
       >
         <Countdown until={connection.retryAt} />
-        <Button size="compact-sm" variant="default" onClick={stream.retry}>
-          Try now
-        </Button>
+        <Button onClick={stream.retry}>Try now</Button>
       </Line>
     );
   if (stale)
@@ -62,20 +60,12 @@ export function Banner() {
         text={`at ${formatClock(trip.tick * dtMs)} s, ${formatTick(trip.tick)}. The voltage is off; the panels show the last values before.`}
       >
         {drives && (
-          <Button size="compact-sm" color="alarm" onClick={actions.resetTrip}>
+          <Button variant="filled" color="alarm" onClick={actions.resetTrip}>
             Reset the trip
           </Button>
         )}
-        {teaches && (
-          <Button size="compact-sm" variant="default" onClick={actions.forkBeforeTrip}>
-            Fork from before
-          </Button>
-        )}
-        {drives && (
-          <Button size="compact-sm" variant="default" onClick={actions.reset}>
-            Start over
-          </Button>
-        )}
+        {teaches && <Button onClick={actions.forkBeforeTrip}>Fork from before</Button>}
+        {drives && <Button onClick={actions.reset}>Start over</Button>}
       </Line>
     );
   if (blind && playing)
@@ -85,11 +75,7 @@ export function Banner() {
         title={`A game is played here, seed ${playing.seed}`}
         text="Until it is over, the server hides the device, its noise and what happens to it."
       >
-        {drives && (
-          <Button size="compact-sm" variant="default" onClick={() => showPanel("games", "faults")}>
-            Games
-          </Button>
-        )}
+        {drives && <Button onClick={() => showPanel("games", "faults")}>Games</Button>}
       </Line>
     );
   if (blind)
@@ -99,11 +85,7 @@ export function Banner() {
         title="A fault is hidden here, or none"
         text="Until you answer, the server hides everything that tells which."
       >
-        {drives && (
-          <Button size="compact-sm" variant="default" onClick={() => showPanel("blind", "faults")}>
-            Answer
-          </Button>
-        )}
+        {drives && <Button onClick={() => showPanel("blind", "faults")}>Answer</Button>}
       </Line>
     );
   return null;
@@ -124,10 +106,10 @@ function Line({
 }) {
   return (
     // Announced by the page's live regions, not here a second time.
-    <section className={styles.banner} data-tone={tone} data-brief={tone === "warn"} aria-label="Notice">
+    <section className={`row ${styles.banner}`} data-tone={tone} data-brief={tone === "warn"} aria-label="Notice">
       <strong>{title}</strong>
       <span>{text}</span>
-      <div className={styles.actions}>{children}</div>
+      <div className={`line ${styles.actions}`}>{children}</div>
     </section>
   );
 }
@@ -149,15 +131,11 @@ function NewStart() {
   return (
     <>
       {scenario && (
-        <Button size="compact-sm" onClick={() => startAgain(scenario).catch(showError)}>
+        <Button variant="filled" onClick={() => startAgain(scenario).catch(showError)}>
           Start it again
         </Button>
       )}
-      <Button
-        size="compact-sm"
-        variant={scenario ? "default" : "filled"}
-        onClick={() => openOwnBench().catch(showError)}
-      >
+      <Button variant={scenario ? "default" : "filled"} onClick={() => openOwnBench().catch(showError)}>
         Open my own
       </Button>
     </>

@@ -12,7 +12,7 @@ export function BranchMenu({ bench }: { bench: Bench }) {
   useCatalog(); // the titles come with it
   const others = slotMates(bench.controller, bench.controllers).filter((name) => name !== bench.controller);
   return (
-    <Menu position="top-end" shadow="md">
+    <Menu position="top-end">
       <Menu.Target>
         <StripButton
           variant={bench.origin?.is_past ? "filled" : "default"}

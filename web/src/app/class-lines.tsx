@@ -31,12 +31,10 @@ function Asked() {
   if (!company || company.driver?.id !== me) return null;
   return company.asking.map((one) => (
     <Line key={one.id} tone="warn" title={`${nameOf(one)} asks to drive this bench.`}>
-      <Button size="compact-sm" onClick={() => changeDriver("hand_over", one)}>
+      <Button variant="filled" onClick={() => changeDriver("hand_over", one)}>
         Hand over
       </Button>
-      <Button size="compact-sm" variant="default" onClick={() => changeDriver("refuse", one)}>
-        Go on driving
-      </Button>
+      <Button onClick={() => changeDriver("refuse", one)}>Go on driving</Button>
     </Line>
   ));
 }
@@ -60,7 +58,7 @@ function Place() {
   if (at === me.lent && at !== me.bench)
     return (
       <Line title="Your teacher has handed you this bench." text="You drive it until your teacher takes it back.">
-        <Button size="compact-sm" onClick={() => changeDriver("leave").then(goHome)}>
+        <Button variant="filled" onClick={() => changeDriver("leave").then(goHome)}>
           Give it back
         </Button>
       </Line>
@@ -68,9 +66,7 @@ function Place() {
   if (at === me.shown && at !== me.bench)
     return (
       <Line title="Your teacher shows this bench to all." text="You are watching; your own bench keeps running.">
-        <Button size="compact-sm" variant="default" onClick={goHome}>
-          My own bench
-        </Button>
+        <Button onClick={goHome}>My own bench</Button>
       </Line>
     );
   if (at === me.shown) return <Line title="Your teacher shows your bench to all." />;
@@ -78,7 +74,7 @@ function Place() {
   if (!other || at === other) return null;
   return (
     <Line title={me.lent ? "Your teacher has handed you a bench." : "Your teacher shows a bench to all."}>
-      <Button size="compact-sm" onClick={() => goTo(other)}>
+      <Button variant="filled" onClick={() => goTo(other)}>
         {me.lent ? "Drive it" : "See it"}
       </Button>
     </Line>
@@ -91,9 +87,7 @@ function Given() {
   if (!given) return null;
   return (
     <Line title={`Your teacher has arranged your panels: ${given.name}.`}>
-      <Button size="compact-sm" variant="default" onClick={leaveGiven}>
-        Back to mine
-      </Button>
+      <Button onClick={leaveGiven}>Back to mine</Button>
       <CloseButton size="sm" aria-label="Keep this layout" onClick={() => useGiven.setState({ given: undefined })} />
     </Line>
   );
@@ -113,7 +107,7 @@ function Shown() {
         title={`All of ${name} see this bench.`}
         text="They cannot change it; their own benches keep running."
       >
-        <Button size="compact-sm" onClick={() => classes.endShowing(id).then(again, showError)}>
+        <Button variant="filled" onClick={() => classes.endShowing(id).then(again, showError)}>
           End showing
         </Button>
       </Line>
@@ -132,10 +126,10 @@ function Line({
   children?: ReactNode;
 }) {
   return (
-    <section className={styles.banner} data-tone={tone} aria-label="Class">
+    <section className={`row ${styles.banner}`} data-tone={tone} aria-label="Class">
       <strong>{title}</strong>
       {text && <span>{text}</span>}
-      <div className={styles.actions}>{children}</div>
+      <div className={`line ${styles.actions}`}>{children}</div>
     </section>
   );
 }

@@ -17,7 +17,7 @@ export function Ended({ role }: { role: Me["role"] }) {
         <EmptyState
           title="Your session has ended"
           action={
-            <Button component="a" href="./join">
+            <Button variant="filled" size="sm" component="a" href="./join">
               Join a class
             </Button>
           }

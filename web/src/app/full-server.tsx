@@ -25,7 +25,9 @@ export function FullServer({ onJoin, onRetry }: FullServerProps) {
           : "All benches are watched or busy. Wait until one is closed, or ask the administrator of the server."}{" "}
         Meanwhile you can join one and watch.
       </p>
-      <Button onClick={onRetry}>Try again</Button>
+      <Button variant="filled" size="sm" onClick={onRetry}>
+        Try again
+      </Button>
       <ul aria-label="Benches that run">
         {benches.map((b) => (
           <li key={b.id}>
@@ -36,7 +38,7 @@ export function FullServer({ onJoin, onRetry }: FullServerProps) {
                 {new Date(b.created).toLocaleTimeString([], { timeStyle: "short" })}
               </small>
             </div>
-            <Button size="xs" variant="default" onClick={() => onJoin(b.id)} aria-label={`Join ${b.title}`}>
+            <Button size="xs" onClick={() => onJoin(b.id)} aria-label={`Join ${b.title}`}>
               Join
             </Button>
           </li>

@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { useMemo, useState } from "react";
 import { useShallow } from "zustand/react/shallow";
 import { useMay } from "../api/me";
@@ -50,8 +50,8 @@ export function HiddenView({ view, question }: { view: ViewName; question: Quest
   const shown = tools.find((tool) => tool.view === wanted);
   const Tool = shown && VIEW[shown.view].component;
   return (
-    <section className={styles.hidden} aria-label={`${VIEW[view].title}, hidden`}>
-      <div className={styles.bar}>
+    <section className="view" aria-label={`${VIEW[view].title}, hidden`}>
+      <div className={`row ${styles.bar}`}>
         <p>{`${VIEW[view].title}: hidden until ${question.game ? "the game is over" : "you answer"}. Measure instead:`}</p>
         {tools.map(({ view: tool, words }) => (
           <Button
@@ -66,9 +66,9 @@ export function HiddenView({ view, question }: { view: ViewName; question: Quest
         ))}
       </div>
       {Tool && (
-        <div className={styles.tool}>
+        <Box flex={1} mih={0}>
           <Tool params={{ scope: measured, ...params }} setParams={setParams} />
-        </div>
+        </Box>
       )}
     </section>
   );

@@ -6,7 +6,7 @@ import { classes } from "../api/classes";
 import { useMay } from "../api/me";
 import { useClasses } from "../api/use-classes";
 import { announce } from "../bench/announce";
-import { showError } from "../bench/send";
+import { showError, showing } from "../bench/send";
 import { useView } from "../bench/view-store";
 import styles from "./dialogs.module.css";
 import { deleteLayout, ownLayouts, refusal, renameLayout, saveLayout, setLayout, sharedLayout } from "./layouts";
@@ -38,14 +38,10 @@ function Layouts() {
       .then(() => announce(`All have the ${layout} layout now.`))
       .then(() => useView.setState({ dialog: "none" }), showError);
 
-  const share = async () => {
-    try {
-      const made = await api.makeLink({ layout: { ...sharedLayout() }, title: layout, note: "" });
-      setLink({ id: made.id, name: layout });
-    } catch (error) {
-      showError(error);
-    }
-  };
+  const share = showing(async () => {
+    const made = await api.makeLink({ layout: { ...sharedLayout() }, title: layout, note: "" });
+    setLink({ id: made.id, name: layout });
+  });
 
   return (
     <>
@@ -68,15 +64,14 @@ function Layouts() {
               ) : (
                 <>
                   <h3>{name}</h3>
-                  <div className={styles.buttons}>
+                  <div className={`line ${styles.buttons}`}>
                     <Button size="xs" variant="light" disabled={layout === name} onClick={() => setLayout(name)}>
                       {layout === name ? "Shown" : "Show"}
                     </Button>
-                    <ActionIcon variant="subtle" aria-label={`Rename ${name}`} onClick={() => setRenaming(name)}>
+                    <ActionIcon aria-label={`Rename ${name}`} onClick={() => setRenaming(name)}>
                       <IconPencil size={16} />
                     </ActionIcon>
                     <ActionIcon
-                      variant="subtle"
                       aria-label={`Delete ${name}`}
                       onClick={() => {
                         if (!window.confirm(`Delete the layout ${name} for good?`)) return;
@@ -98,18 +93,12 @@ function Layouts() {
         <LinkBox path={`?layout=${link.id}`} what={`Link of the layout ${link.name}`} />
       )}
       {teaches && link?.name !== layout && (
-        <Button variant="default" leftSection={<IconLink size={16} />} onClick={share}>
+        <Button size="sm" leftSection={<IconLink size={16} />} onClick={share}>
           Make a link of the {layout} layout
         </Button>
       )}
       {all.map(({ id, name }) => (
-        <Button
-          key={id}
-          variant="default"
-          mt="sm"
-          leftSection={<IconPresentation size={16} />}
-          onClick={() => give(id)}
-        >
+        <Button size="sm" key={id} mt="sm" leftSection={<IconPresentation size={16} />} onClick={() => give(id)}>
           Give it to all of {name}
         </Button>
       ))}
@@ -139,13 +128,14 @@ function Name({ label, button, first = "", onName }: NameProps) {
   return (
     <form className={styles.name} onSubmit={give}>
       <TextInput
+        size="sm"
         label={label}
         value={name}
         error={error}
         autoFocus={first !== ""}
         onChange={(e) => setName(e.currentTarget.value)}
       />
-      <Button type="submit" variant="light" leftSection={<IconCheck size={16} />}>
+      <Button size="sm" type="submit" variant="light" leftSection={<IconCheck size={16} />}>
         {button}
       </Button>
     </form>

@@ -1,4 +1,4 @@
-import { Button, TextInput } from "@mantine/core";
+import { Box, Button, TextInput } from "@mantine/core";
 import { IconCheck, IconCopy } from "@tabler/icons-react";
 import { useState } from "react";
 import { isLocal } from "../api/classes";
@@ -31,10 +31,15 @@ export function LinkBox({ path, what, remark, onCopy }: LinkBoxProps) {
   };
 
   return (
-    <div className={styles.link}>
+    <Box mt={12}>
       <div className={styles.name}>
-        <TextInput label={what} value={address} readOnly onFocus={(e) => e.currentTarget.select()} />
-        <Button leftSection={copied === address ? <IconCheck size={16} /> : <IconCopy size={16} />} onClick={copy}>
+        <TextInput size="sm" label={what} value={address} readOnly onFocus={(e) => e.currentTarget.select()} />
+        <Button
+          variant="filled"
+          size="sm"
+          leftSection={copied === address ? <IconCheck size={16} /> : <IconCopy size={16} />}
+          onClick={copy}
+        >
           {copied === address ? "Copied" : "Copy"}
         </Button>
       </div>
@@ -43,10 +48,10 @@ export function LinkBox({ path, what, remark, onCopy }: LinkBoxProps) {
           Other computers cannot reach this address. Open the page at the address that others use, then share.
         </p>
       )}
-      <div className={styles.qr}>
+      <Box w={240} m="16px auto 8px">
         <QrCode address={address} />
-      </div>
+      </Box>
       <p className={styles.remark}>{remark || NEEDS_TOKEN}</p>
-    </div>
+    </Box>
   );
 }

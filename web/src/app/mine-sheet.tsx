@@ -1,4 +1,4 @@
-import { ActionIcon, Button, TextInput } from "@mantine/core";
+import { ActionIcon, Box, Button, TextInput } from "@mantine/core";
 import { IconPencil, IconTrash } from "@tabler/icons-react";
 import { useCallback, useEffect, useState } from "react";
 import { api } from "../api/api";
@@ -6,6 +6,7 @@ import { useMay } from "../api/me";
 import type { Link } from "../api/types";
 import { ownLinks } from "../bench/open-bench";
 import { showError } from "../bench/send";
+import { useBusy } from "../bench/use-busy";
 import { setPage, useView } from "../bench/view-store";
 import { EmptyState } from "../ui/empty-state";
 import { formatTick } from "../ui/format";
@@ -63,18 +64,13 @@ function Kept() {
 /** What was kept, and what can be done with it; only the person who made it renames and deletes it here. */
 function Row({ link, isOwn = false, onChanged }: { link: Link; isOwn?: boolean; onChanged(): void }) {
   const [title, setTitle] = useState<string | undefined>(undefined);
-  const [busy, setBusy] = useState(false);
-  const open = async () => {
-    setBusy(true);
-    try {
+  const [busy, during] = useBusy();
+  const open = () =>
+    during(async () => {
       await openLink(link.id);
       setPage("bench");
       useView.setState({ dialog: "none" });
-    } catch (error) {
-      showError(error);
-      setBusy(false);
-    }
-  };
+    });
   const rename = async () => {
     const next = title?.trim();
     setTitle(undefined);
@@ -82,7 +78,7 @@ function Row({ link, isOwn = false, onChanged }: { link: Link; isOwn?: boolean; 
   };
   return (
     <li>
-      <div className={styles.grow}>
+      <Box flex={1} miw={0}>
         {title === undefined ? (
           <h3>{link.title}</h3>
         ) : (
@@ -93,7 +89,6 @@ function Row({ link, isOwn = false, onChanged }: { link: Link; isOwn?: boolean; 
             }}
           >
             <TextInput
-              size="xs"
               aria-label={`New title of ${link.title}`}
               value={title}
               maxLength={200}
@@ -108,18 +103,17 @@ function Row({ link, isOwn = false, onChanged }: { link: Link; isOwn?: boolean; 
           {link.tick ? `done up to ${formatTick(link.tick)}` : "from its beginning"} ·{" "}
           {new Date(link.created).toLocaleString([], { dateStyle: "short", timeStyle: "short" })}
         </small>
-      </div>
-      <div className={styles.buttons}>
+      </Box>
+      <div className={`line ${styles.buttons}`}>
         <Button size="xs" variant="light" loading={busy} onClick={open} aria-label={`Open ${link.title}`}>
           Open
         </Button>
         {isOwn && (
           <>
-            <ActionIcon variant="subtle" aria-label={`Rename ${link.title}`} onClick={() => setTitle(link.title)}>
+            <ActionIcon aria-label={`Rename ${link.title}`} onClick={() => setTitle(link.title)}>
               <IconPencil size={16} />
             </ActionIcon>
             <ActionIcon
-              variant="subtle"
               aria-label={`Delete ${link.title}`}
               onClick={() =>
                 window.confirm(`Delete ${link.title} for good? Its link will no longer open.`) &&

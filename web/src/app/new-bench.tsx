@@ -6,6 +6,7 @@ import { useMay } from "../api/me";
 import type { Device, ScenarioSummary } from "../api/types";
 import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
+import { useBusy } from "../bench/use-busy";
 import { setPage, useView } from "../bench/view-store";
 import { byChapter } from "../gallery/chapters";
 import { showSheet } from "../panels/sheet/begin";
@@ -31,7 +32,7 @@ function Gallery() {
   const [device, setDevice] = useState("");
   const [query, setQuery] = useState("");
   const [paused, setPaused] = useState(false);
-  const [busy, setBusy] = useState<string | undefined>(undefined);
+  const [busy, during] = useBusy<string>();
   const teaches = useMay("teach");
 
   useEffect(() => {
@@ -39,9 +40,8 @@ function Gallery() {
     api.devices().then(setDevices, showError);
   }, []);
 
-  const start = async (scenario: string) => {
-    setBusy(scenario);
-    try {
+  const start = (scenario: string) =>
+    during(async () => {
       const bench = await api.createBench({
         scenario,
         paused,
@@ -50,12 +50,7 @@ function Gallery() {
       });
       openOwn(bench.id);
       useView.setState({ dialog: "none" });
-    } catch (error) {
-      showError(error);
-    } finally {
-      setBusy(undefined);
-    }
-  };
+    }, scenario);
 
   const benches = scenarios?.filter((s) => s.plant !== null).sort(byChapter);
   const chosen = devices.find((d) => d.id === device);
@@ -70,7 +65,6 @@ function Gallery() {
       <Button
         fullWidth
         size="xs"
-        variant="default"
         mb="sm"
         leftSection={<IconRulerMeasure size={16} />}
         onClick={() => {
@@ -83,7 +77,6 @@ function Gallery() {
       <Button
         fullWidth
         size="xs"
-        variant="default"
         mb="sm"
         leftSection={<IconFolderOpen size={16} />}
         onClick={() => useView.setState({ dialog: "mine" })}
@@ -93,7 +86,6 @@ function Gallery() {
       <Button
         fullWidth
         size="xs"
-        variant="default"
         mb="sm"
         leftSection={<IconClipboardList size={16} />}
         onClick={() => {
@@ -105,21 +97,14 @@ function Gallery() {
         Begin a lab sheet
       </Button>
       <div className={styles.filters}>
-        <TextInput
-          size="xs"
-          label="Search"
-          value={query}
-          onChange={(e) => setQuery(e.currentTarget.value)}
-          data-autofocus
-        />
+        <TextInput label="Search" value={query} onChange={(e) => setQuery(e.currentTarget.value)} data-autofocus />
         <NativeSelect
-          size="xs"
           label="Device"
           value={device}
           data={[{ value: "", label: "the scenario's own" }, ...devices.map((d) => ({ value: d.id, label: d.title }))]}
           onChange={(e) => setDevice(e.currentTarget.value)}
         />
-        <Switch size="xs" label="Start paused" checked={paused} onChange={(e) => setPaused(e.currentTarget.checked)} />
+        <Switch label="Start paused" checked={paused} onChange={(e) => setPaused(e.currentTarget.checked)} />
       </div>
       {!found && <Text c="dimmed">Loading the library…</Text>}
       {unsuited > 0 && (

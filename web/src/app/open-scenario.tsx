@@ -51,7 +51,7 @@ export function OpenScenario({ onKept }: { onKept?(): void }) {
     <Input.Wrapper error={error && <span role="alert">{error}</span>} errorProps={{ fz: "sm", mt: 4 }}>
       {/* biome-ignore lint/a11y/noStaticElementInteractions: dropping is beside the button, not instead of it */}
       <div
-        className={styles.drop}
+        className={`row ${styles.drop}`}
         data-over={over}
         data-testid="drop"
         onDragOver={drag(true)}
@@ -70,7 +70,7 @@ export function OpenScenario({ onKept }: { onKept?(): void }) {
         </FileButton>
         <span>a TOML file from disk, or drop one here</span>
         {teaches ? (
-          <Checkbox size="xs" label="Keep it here" checked={keep} onChange={(e) => setKeep(e.currentTarget.checked)} />
+          <Checkbox label="Keep it here" checked={keep} onChange={(e) => setKeep(e.currentTarget.checked)} />
         ) : (
           <span>It takes the place of your bench.</span>
         )}

@@ -17,7 +17,11 @@ export function OpenedLine() {
       ? "This bench gives other bits here than where it was made."
       : `Made with ${brief(opened.version)}; this bench gives other bits today (${brief(opened.version_now)}).`;
   return (
-    <section className={styles.banner} data-tone={opened.same_bits ? "hint" : "warn"} aria-label="Note of the link">
+    <section
+      className={`row ${styles.banner}`}
+      data-tone={opened.same_bits ? "hint" : "warn"}
+      aria-label="Note of the link"
+    >
       {opened.note && (
         <>
           <strong>Note:</strong>
@@ -25,7 +29,7 @@ export function OpenedLine() {
         </>
       )}
       {!opened.same_bits && <span>{other}</span>}
-      <div className={styles.actions}>
+      <div className={`line ${styles.actions}`}>
         <CloseButton size="sm" aria-label="Dismiss the note" onClick={() => setDismissed(bench)} />
       </div>
     </section>

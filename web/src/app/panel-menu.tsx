@@ -1,4 +1,4 @@
-import { Menu } from "@mantine/core";
+import { Box, Menu } from "@mantine/core";
 import { IconPlus } from "@tabler/icons-react";
 import type { DockviewGroupPanel, IDockviewPanel } from "dockview-react";
 import { type KeyboardEvent, useState } from "react";
@@ -28,7 +28,7 @@ export function PanelMenu({
   const [query, setQuery] = useState("");
   const entries = useEntries(query);
   return (
-    <Menu position="bottom-end" shadow="md" width={360} returnFocus>
+    <Menu position="bottom-end" width={360} returnFocus>
       <Menu.Target>
         <button
           type="button"
@@ -42,7 +42,7 @@ export function PanelMenu({
       <Menu.Dropdown className={styles.menu}>
         <Menu.Search
           size="xs"
-          className={styles.search}
+          m="4px 4px 8px"
           aria-label="Search panels, views and signals"
           placeholder="Search panels, views, signals"
           value={query}
@@ -52,10 +52,16 @@ export function PanelMenu({
         {entries.map(({ key, title, about, run }) => (
           <Menu.Item key={key} onClick={run}>
             {title}
-            <small className={styles.about}>{about}</small>
+            <Box component="small" display="block">
+              {about}
+            </Box>
           </Menu.Item>
         ))}
-        {entries.length === 0 && <p className={styles.none}>No panel, view or signal has this name.</p>}
+        {entries.length === 0 && (
+          <Box component="p" m="8px 12px" c="dimmed">
+            No panel, view or signal has this name.
+          </Box>
+        )}
         {activePanel && !query && (
           <>
             <Menu.Divider />

@@ -1,4 +1,4 @@
-import { ActionIcon } from "@mantine/core";
+import { ActionIcon, Box } from "@mantine/core";
 import { IconX } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { useShallow } from "zustand/react/shallow";
@@ -36,7 +36,7 @@ export function Phone() {
   const page = usePageVisible();
   return (
     <PanelVisible value={page}>
-      <div className={styles.phone}>
+      <div className={`column ${styles.phone}`}>
         <header className={styles.status}>
           <div>
             <h1>{title ?? "CombBench"}</h1>
@@ -78,9 +78,9 @@ function Lower({ usual }: { usual: ViewName }) {
   if (panel) return <Asked key={panel} panel={panel} view={extra as ViewName} />;
   return (
     <div className={styles.usual}>
-      <div className={styles.lanes}>
+      <Box h="100%" mih={220}>
         <PanelBody view={usual} params={{}} setParams={() => undefined} />
-      </div>
+      </Box>
       {sample && <Why />}
     </div>
   );
@@ -92,7 +92,7 @@ function Asked({ panel, view }: { panel: PanelName; view: ViewName }) {
   const [params, setParams] = useState<PanelParams>({});
   const views = viewsOn(panel, axes && { axes }).filter((name) => name !== "time");
   return (
-    <section className={styles.asked} aria-label={PANELS[panel].title}>
+    <Box component="section" className="column" mih={0} bg="var(--panel)" aria-label={PANELS[panel].title}>
       <div className={styles.views}>
         {views.map((name) => (
           <button
@@ -109,7 +109,7 @@ function Asked({ panel, view }: { panel: PanelName; view: ViewName }) {
       <div className={styles.body}>
         <PanelBody key={view} view={view} params={params} setParams={setParams} />
       </div>
-    </section>
+    </Box>
   );
 }
 
@@ -125,7 +125,7 @@ function Why() {
 
 function Close({ what, onClose }: { what: string; onClose(): void }) {
   return (
-    <ActionIcon className={styles.close} variant="subtle" color="gray" aria-label={`Close ${what}`} onClick={onClose}>
+    <ActionIcon className={styles.close} color="gray" aria-label={`Close ${what}`} onClick={onClose}>
       <IconX size={18} />
     </ActionIcon>
   );

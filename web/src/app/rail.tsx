@@ -12,7 +12,7 @@ export function Rail() {
   const role = useMe((s) => s.me?.role);
   const offered = Object.entries(PAGES).filter(([id, { tabOf }]) => !tabOf && isOffered(id as PageName, role));
   return (
-    <nav className={styles.rail} aria-label="Pages">
+    <nav className={`column ${styles.rail}`} aria-label="Pages">
       <button type="button" title="Search (Ctrl K)" onClick={openSearch}>
         <IconSearch size={21} />
         Search

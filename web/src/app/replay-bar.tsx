@@ -1,4 +1,4 @@
-import { Button, NativeSelect } from "@mantine/core";
+import { Box, Button, NativeSelect } from "@mantine/core";
 import { IconArrowLeft, IconRepeat } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../api/api";
@@ -6,7 +6,7 @@ import { useAnswer } from "../api/queries";
 import type { Bench } from "../api/types";
 import { restoreLayout } from "../bench/dock";
 import { benchBefore, openBench } from "../bench/open-bench";
-import { send, showError } from "../bench/send";
+import { send, showing } from "../bench/send";
 import { REPLAY_SPEEDS, speedItems } from "../bench/time-scale";
 import { useBench } from "../stream/bench-store";
 import { formatMoment } from "../ui/format";
@@ -42,22 +42,18 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
     );
     if (took && next && bench.state !== "running") await send({ kind: "start" });
   };
-  const leave = async () => {
-    try {
-      const id = benchBefore();
-      if (id && (await api.benches()).some((b) => b.id === id)) openBench(id);
-      else await openOwnBench();
-      await api.removeBench(bench.id);
-    } catch (error) {
-      showError(error);
-    }
-  };
+  const leave = showing(async () => {
+    const id = benchBefore();
+    if (id && (await api.benches()).some((b) => b.id === id)) openBench(id);
+    else await openOwnBench();
+    await api.removeBench(bench.id);
+  });
 
   return (
-    <section className={styles.bar} aria-label="Replay">
+    <section className={`row ${styles.bar}`} aria-label="Replay">
       <strong>Replay</strong>
       <span className={styles.name}>{about.name}</span>
-      <div className={styles.track}>
+      <Box pos="relative" flex="1 1 200px" p="0 8px">
         <Slider
           size="sm"
           min={first}
@@ -80,12 +76,11 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
             }}
           />
         )}
-      </div>
+      </Box>
       <span className={styles.time}>
         {ms(Math.min(bench.tick, end))} of {ms(first)} … {ms(end)}
       </span>
       <NativeSelect
-        size="xs"
         aria-label="Speed of the replay"
         value={String(nearest ?? 1)}
         data={speedItems()}
@@ -97,7 +92,6 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
         }
       />
       <Button
-        size="compact-sm"
         variant={looping ? "light" : "default"}
         aria-pressed={looping}
         leftSection={<IconRepeat size={15} />}
@@ -106,8 +100,6 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
         Loop
       </Button>
       <Button
-        size="compact-sm"
-        variant="default"
         title="The loop begins here"
         onClick={() => {
           const next: [number, number] = [bench.tick, to > bench.tick ? to : end];
@@ -118,8 +110,6 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
         from here
       </Button>
       <Button
-        size="compact-sm"
-        variant="default"
         title="The loop ends here"
         disabled={bench.tick <= from + 2}
         onClick={() => {
@@ -130,12 +120,8 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
       >
         to here
       </Button>
-      {about.layout && (
-        <Button size="compact-sm" variant="default" onClick={() => about.layout && restoreLayout(about.layout)}>
-          Its layout
-        </Button>
-      )}
-      <Button size="compact-sm" leftSection={<IconArrowLeft size={15} />} onClick={leave}>
+      {about.layout && <Button onClick={() => about.layout && restoreLayout(about.layout)}>Its layout</Button>}
+      <Button variant="filled" leftSection={<IconArrowLeft size={15} />} onClick={leave}>
         Leave
       </Button>
     </section>

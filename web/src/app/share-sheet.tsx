@@ -80,6 +80,7 @@ function MadeLink({ bench }: { bench: string }) {
       </p>
       <LinkBox path={watched || `?link=${made.id}`} what="Link" remark={watched && WATCHED} onCopy={keepNote} />
       <Textarea
+        size="sm"
         label="Note, shown above the bench to people who open the link"
         maxLength={LONGEST_NOTE}
         autosize

@@ -26,7 +26,7 @@ export function StepBar() {
   const next = steps.findIndex((step) => !step.done);
   const now = steps[(next < 0 ? steps.length : next) - 1];
   return (
-    <section className={styles.lead} data-of-bench="" aria-label="Steps of the scenario">
+    <section className={`line ${styles.lead}`} data-of-bench="" aria-label="Steps of the scenario">
       <StepWords bench={bench} steps={steps} />
       {repeats && (
         <StripButton
@@ -38,7 +38,7 @@ export function StepBar() {
       )}
       {drives && (
         <Button
-          size="compact-sm"
+          variant="filled"
           leftSection={<IconPlayerTrackNext size={16} />}
           title="Run as fast as possible to just before the next step"
           disabled={bench.fast_forward !== null || hasEnded(bench, steps) || (next < 0 && !bench.samples)}

@@ -10,7 +10,7 @@ interface StripButtonProps extends ButtonProps, Omit<ComponentPropsWithRef<"butt
 /** A button of the strip: an icon, and its word where there is room. */
 export function StripButton({ icon, label, ...rest }: StripButtonProps) {
   return (
-    <Button size="compact-sm" variant="default" px={6} aria-label={label} title={label} {...rest}>
+    <Button px={6} aria-label={label} title={label} {...rest}>
       {icon}
       <span className={styles.word}>{label}</span>
     </Button>

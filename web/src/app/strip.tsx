@@ -35,7 +35,7 @@ export function Strip() {
   if (present && !narrates && !lectures) return null;
   return (
     <footer className={styles.strip}>
-      <div className={styles.row}>
+      <div className={`line ${styles.row}`}>
         <LectureStrip />
         {!present && hasSteps && <StepBar />}
         {!present && tips && <TryThis tips={tips} />}
@@ -60,7 +60,7 @@ function Rest({ tips, hasSteps }: { tips: TickedHints | undefined; hasSteps: boo
         <StripButton icon={<IconChevronUp size={16} />} label={label} onClick={() => setOpened(!opened)} />
       </Popover.Target>
       <Popover.Dropdown
-        className={rest.rest}
+        className={`column ${rest.rest}`}
         onClick={({ target }) => (target as Element).closest("button:not([aria-haspopup])") && setOpened(false)}
       >
         {tips && <HintList tips={tips} />}
@@ -70,7 +70,7 @@ function Rest({ tips, hasSteps }: { tips: TickedHints | undefined; hasSteps: boo
             <NarratorPanel />
           </div>
         )}
-        <Button size="compact-sm" variant="subtle" onClick={toggleNarrator}>
+        <Button variant="subtle" onClick={toggleNarrator}>
           {narrates ? "Narrator off (Q)" : "Narrator on (Q)"}
         </Button>
       </Popover.Dropdown>

@@ -49,6 +49,8 @@ const dark: MantineColorsTuple = [
 /** A size of Mantine, or what a finger needs. */
 const atLeastTarget = (name: string, size: string | number = "sm") => `max(var(--${name}-${size}), var(--target))`;
 
+const SMALL = { defaultProps: { size: "xs" } };
+
 /** The label stands beside the middle of its box, which a finger needs larger than the letters. */
 const BESIDE = { body: { alignItems: "center" } };
 
@@ -74,6 +76,15 @@ export const theme = createTheme({
   spacing: { xs: "4px", sm: "8px", md: "12px", lg: "16px", xl: "24px" },
   radius: { xs: "3px", sm: "5px", md: "6px", lg: "8px", xl: "12px" },
   components: {
+    // the usual sizes: a place that needs another one says so
+    Button: { defaultProps: { size: "compact-sm", variant: "default" } },
+    ActionIcon: { defaultProps: { variant: "subtle" } },
+    NativeSelect: SMALL,
+    Select: SMALL,
+    TextInput: SMALL,
+    Textarea: SMALL,
+    NumberInput: SMALL,
+    SegmentedControl: SMALL,
     Tooltip: {
       defaultProps: {
         openDelay: 400,
@@ -99,10 +110,12 @@ export const theme = createTheme({
     Pill: { styles: { root: { fontSize: "var(--size-0)" } } },
     Radio: Radio.extend({ vars: (_, { size }) => ({ root: { "--radio-size": atLeastTarget("radio-size", size) } }) }),
     Checkbox: Checkbox.extend({
+      ...SMALL,
       styles: BESIDE,
       vars: (_, { size }) => ({ root: { "--checkbox-size": atLeastTarget("checkbox-size", size) } }),
     }),
     Switch: Switch.extend({
+      ...SMALL,
       styles: BESIDE,
       vars: (_, { size }) => ({ root: { "--switch-height": atLeastTarget("switch-height", size) } }),
     }),
@@ -112,6 +125,7 @@ export const theme = createTheme({
     Menu: {
       // a menu holds nothing but items, so it opens with the first of them in focus
       defaultProps: {
+        shadow: "md",
         withInitialFocusPlaceholder: false,
         middlewares: { flip: true, shift: true, size: { padding: 8 } },
       },

@@ -50,7 +50,7 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
     else if (tick < end) lookBack(tick);
   };
   return (
-    <section className={styles.timeline} data-of-bench="" data-past={isPast} aria-label="Timeline">
+    <section className={`line ${styles.timeline}`} data-of-bench="" data-past={isPast} aria-label="Timeline">
       <p>
         {stale ? (
           <strong>{staleWords(stale)}</strong>
@@ -90,7 +90,7 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
 
 function BackToNow() {
   return (
-    <Button size="compact-sm" leftSection={<IconPlayerTrackNextFilled size={14} />} onClick={() => void backToNow()}>
+    <Button variant="filled" leftSection={<IconPlayerTrackNextFilled size={14} />} onClick={() => void backToNow()}>
       Back to now
     </Button>
   );

@@ -1,9 +1,8 @@
 import { Button, CloseButton } from "@mantine/core";
 import { IconPlayerPlayFilled, IconSquare, IconSquareCheckFilled } from "@tabler/icons-react";
-import { useState } from "react";
 import { useMay } from "../api/me";
 import { showPanel } from "../bench/dock";
-import { showError } from "../bench/send";
+import { useBusy } from "../bench/use-busy";
 import { startBeside } from "./first-bench";
 import type { Hints } from "./hints";
 import rest from "./rest.module.css";
@@ -17,7 +16,7 @@ export function TryThis({ tips }: { tips: TickedHints }) {
   const { hints, done } = tips;
   const at = hints.findIndex(({ id }) => !done.has(id));
   return (
-    <section className={styles.lead} aria-label="Try this">
+    <section className={`line ${styles.lead}`} aria-label="Try this">
       <p className={styles.words}>
         <strong>
           {at < 0 ? "All tried." : `Try this${hints.length > 1 ? ` (${at + 1} of ${hints.length})` : ""}:`}
@@ -49,11 +48,7 @@ export function HintList({ tips }: { tips: TickedHints }) {
       </ul>
       <div className={rest.actions}>
         {teaches && !tourSeen() && <OfferTour />}
-        {tips.canHide && (
-          <Button size="compact-sm" variant="default" onClick={() => showPanel("blind", "faults")}>
-            Find a hidden fault
-          </Button>
-        )}
+        {tips.canHide && <Button onClick={() => showPanel("blind", "faults")}>Find a hidden fault</Button>}
       </div>
     </section>
   );
@@ -61,15 +56,12 @@ export function HintList({ tips }: { tips: TickedHints }) {
 
 /** A scenario that shows by itself what there is to see. */
 function Guided({ scenario, label }: Hints["guided"]) {
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const start = () => {
-    setBusy(true);
-    startBeside(scenario)
-      .catch(showError)
-      .finally(() => setBusy(false));
+    void during(() => startBeside(scenario));
   };
   return (
-    <Button size="compact-sm" loading={busy} leftSection={<IconPlayerPlayFilled size={14} />} onClick={start}>
+    <Button variant="filled" loading={busy} leftSection={<IconPlayerPlayFilled size={14} />} onClick={start}>
       {label}
     </Button>
   );

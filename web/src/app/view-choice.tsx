@@ -23,7 +23,7 @@ export function ViewChoice({ panel, room }: { panel: IDockviewPanel; room: numbe
   const label = `Views of ${PANELS[name].title}`;
   if (wide > room)
     return (
-      <Menu position="bottom-end" shadow="md">
+      <Menu position="bottom-end">
         <Menu.Target>
           <button type="button" className="dock-view" aria-label={`${label}: ${VIEW[shown].title}`}>
             {VIEW[shown].title} <IconChevronDown size={12} />

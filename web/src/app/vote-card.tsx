@@ -44,7 +44,7 @@ function Card({ vote }: { vote: OpenVote }) {
   const cast = (answer: number, moment: number | null) =>
     castVote(vote.id, answer, moment).then(() => announce(`Your answer: ${nameOf(answers[answer])}`), showError);
   return (
-    <section className={styles.card} aria-label="Vote">
+    <section className={`column ${styles.card}`} aria-label="Vote">
       <h2>{question.text}</h2>
       <div className={styles.answers}>
         {answers.map((answer, i) => (

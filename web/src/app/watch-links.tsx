@@ -4,6 +4,7 @@ import { useState } from "react";
 import { classes } from "../api/classes";
 import { useAnswer } from "../api/queries";
 import { showError } from "../bench/send";
+import { useBusy } from "../bench/use-busy";
 import styles from "./dialogs.module.css";
 
 const USUAL_H = 4;
@@ -21,22 +22,16 @@ interface WatchLinksProps {
 export function WatchLinks({ bench, link, onLet }: WatchLinksProps) {
   const { value: watchers, again } = useAnswer(["watchers", bench], () => classes.watchers(bench));
   const [hours, setHours] = useState<number | string>(USUAL_H);
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const [own, setOwn] = useState("");
   const isRight = Number(hours) > 0 && Number(hours) <= LONGEST_H;
-  const letWatch = async () => {
-    setBusy(true);
-    try {
+  const letWatch = () =>
+    during(async () => {
       const { id, path } = await classes.letWatch(bench, link, Number(hours));
       setOwn(id);
       onLet(path ?? "");
       again();
-    } catch (error) {
-      showError(error);
-    } finally {
-      setBusy(false);
-    }
-  };
+    });
   const end = async (id: string) => {
     if (id === own) onLet("");
     await classes.endWatching(bench, id).then(again, showError);
@@ -49,6 +44,7 @@ export function WatchLinks({ bench, link, onLet }: WatchLinksProps) {
       </p>
       <div className={styles.name}>
         <NumberInput
+          size="sm"
           label="Lasts, hours"
           min={0.1}
           max={LONGEST_H}
@@ -56,13 +52,7 @@ export function WatchLinks({ bench, link, onLet }: WatchLinksProps) {
           onChange={setHours}
           error={isRight ? undefined : `More than 0, at most ${LONGEST_H}`}
         />
-        <Button
-          variant="default"
-          leftSection={<IconEye size={16} />}
-          loading={busy}
-          disabled={!isRight}
-          onClick={letWatch}
-        >
+        <Button size="sm" leftSection={<IconEye size={16} />} loading={busy} disabled={!isRight} onClick={letWatch}>
           Let people watch
         </Button>
       </div>
@@ -71,9 +61,7 @@ export function WatchLinks({ bench, link, onLet }: WatchLinksProps) {
           {watchers.map(({ id, until }) => (
             <li key={id}>
               <span>Lasts until {new Date(until).toLocaleString([], { dateStyle: "short", timeStyle: "short" })}</span>
-              <Button size="compact-sm" variant="default" onClick={() => void end(id)}>
-                End
-              </Button>
+              <Button onClick={() => void end(id)}>End</Button>
             </li>
           ))}
         </ul>

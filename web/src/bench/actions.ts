@@ -9,7 +9,7 @@ import { layoutNow } from "./dock";
 import { openOwn } from "./open-bench";
 import { forkBeforeTrip } from "./past";
 import type { PageName } from "./places";
-import { send, showError } from "./send";
+import { send, showing } from "./send";
 import { sendAndTell } from "./tell";
 import { stepTimeScale } from "./time-scale";
 import { setPage, useView } from "./view-store";
@@ -69,63 +69,47 @@ async function replay(before_tick: number | undefined): Promise<void> {
   if (began && bench()?.state === "paused") void send({ kind: "start" });
 }
 
-async function fork(): Promise<void> {
+const fork = showing(async () => {
   const from = bench();
   if (!from) return;
-  try {
-    const made = await api.fork(from.id);
-    openOwn(made.id);
-    notifications.show({ title: "Forked", message: `This is a copy of ${from.title}; the original is untouched.` });
-  } catch (error) {
-    showError(error);
-  }
-}
+  const made = await api.fork(from.id);
+  openOwn(made.id);
+  notifications.show({ title: "Forked", message: `This is a copy of ${from.title}; the original is untouched.` });
+});
 
 /** Begin to record with the last moments, or end what is recorded. */
-async function record(): Promise<void> {
+const record = showing(async () => {
   const from = bench();
   if (!from) return;
-  try {
-    if (from.recording.length > 0) {
-      for (const id of from.recording) await api.stopRecording(from.id, id);
-      notifications.show({
-        title: "Recorded",
-        message: `${may("teach") ? "Replay, download or compare" : "Download"} it under Compare › Recordings.`,
-      });
-    } else {
-      await api.record(from.id, { name: from.title.slice(0, 100) || "recording", layout: layoutNow() ?? null });
-    }
-  } catch (error) {
-    showError(error);
+  if (from.recording.length > 0) {
+    for (const id of from.recording) await api.stopRecording(from.id, id);
+    notifications.show({
+      title: "Recorded",
+      message: `${may("teach") ? "Replay, download or compare" : "Download"} it under Compare › Recordings.`,
+    });
+  } else {
+    await api.record(from.id, { name: from.title.slice(0, 100) || "recording", layout: layoutNow() ?? null });
   }
-}
+});
 
 /** Keep this moment: it stands on the timeline. */
-async function keep(): Promise<void> {
+const keep = showing(async () => {
   const from = bench();
   if (!from) return;
-  try {
-    const kept = await api.keep(from.id);
-    notifications.show({ title: "Moment kept", message: `Tick ${kept.tick} stands on the timeline.` });
-  } catch (error) {
-    showError(error);
-  }
-}
+  const kept = await api.keep(from.id);
+  notifications.show({ title: "Moment kept", message: `Tick ${kept.tick} stands on the timeline.` });
+});
 
-async function saveScenario(): Promise<void> {
+const saveScenario = showing(async () => {
   const from = bench();
   if (!from) return;
-  try {
-    const toml = await api.scenarioToml(from.id);
-    const name = `${from.scenario_id || "bench"}-${from.tick}.toml`;
-    saveFile(name, new Blob([toml], { type: "application/toml" }));
-    const digest = /^# .*digest ([0-9a-f]+)/.exec(toml)?.[1];
-    notifications.show({
-      title: "Saved as a scenario",
-      message: `Run it again with: combbench run ${name}. It gives the same bits${digest ? `, digest ${digest.slice(0, 12)}…` : ""}.`,
-      autoClose: 15_000,
-    });
-  } catch (error) {
-    showError(error);
-  }
-}
+  const toml = await api.scenarioToml(from.id);
+  const name = `${from.scenario_id || "bench"}-${from.tick}.toml`;
+  saveFile(name, new Blob([toml], { type: "application/toml" }));
+  const digest = /^# .*digest ([0-9a-f]+)/.exec(toml)?.[1];
+  notifications.show({
+    title: "Saved as a scenario",
+    message: `Run it again with: combbench run ${name}. It gives the same bits${digest ? `, digest ${digest.slice(0, 12)}…` : ""}.`,
+    autoClose: 15_000,
+  });
+});

@@ -1,7 +1,7 @@
 import { expect, it } from "vitest";
 import type { LogEntry } from "../api/types";
+import cases from "../testing/cases/as-code.json";
 import { asCode } from "./as-code";
-import cases from "./as-code-cases.json";
 
 it.each(cases.cases)("writes the command of $event.tick as the readers of these texts have it", (one) => {
   const { event, ...texts } = one;

@@ -1,6 +1,6 @@
 import type { Command, LogEntry } from "../api/types";
 
-// A command of the log as scripts write it; `as-code-cases.json` holds the texts that shells, servers and Python read in a test.
+// A command of the log as scripts write it; `testing/cases/as-code.json` holds the texts that shells, servers and Python read in a test.
 
 /** The bench of a log: where its server is, and the scenario it was made of. */
 export interface Source {

@@ -4,7 +4,7 @@ import type { Bench, LogEntry } from "../api/types";
 import { useBench } from "../stream/bench-store";
 import { currentEvents } from "../stream/event-log";
 import { alarm } from "./announce";
-import { showError } from "./send";
+import { showError, showing } from "./send";
 
 /** As many as the server sends. */
 export const MOST_BEHIND = 8;
@@ -48,26 +48,22 @@ export function behindText(behind: readonly Behind[], difference: boolean): stri
 const rateHere = () => useBench.getState().bench?.sample_rate_khz;
 
 /** Put a bench behind the one on the page, if it has the same sample rate. */
-export async function addBehind(id: string): Promise<void> {
+export const addBehind = showing(async (id: string) => {
   const { behind, alignment } = useBehind.getState();
   if (behind.some((one) => one.bench === id) || behind.length >= MOST_BEHIND) return;
   const rate = rateHere(); // while the answer is awaited the page may connect anew, and know no bench
-  try {
-    const bench = await api.bench(id);
-    if (bench.sample_rate_khz !== rate) {
-      alarm(
-        `${wordsOf(bench)} runs at ${bench.sample_rate_khz} kHz and this bench at ${rate} kHz: it cannot lie behind.`,
-      );
-      return;
-    }
-    const shift = (await shiftOf(id, alignment)) ?? 0;
-    useBehind.setState(({ behind }) => ({
-      behind: [...behind.filter((one) => one.bench !== id), { bench: id, words: wordsOf(bench), shift }],
-    }));
-  } catch (error) {
-    showError(error);
+  const bench = await api.bench(id);
+  if (bench.sample_rate_khz !== rate) {
+    alarm(
+      `${wordsOf(bench)} runs at ${bench.sample_rate_khz} kHz and this bench at ${rate} kHz: it cannot lie behind.`,
+    );
+    return;
   }
-}
+  const shift = (await shiftOf(id, alignment)) ?? 0;
+  useBehind.setState(({ behind }) => ({
+    behind: [...behind.filter((one) => one.bench !== id), { bench: id, words: wordsOf(bench), shift }],
+  }));
+});
 
 /** Call a bench behind the traces something else. */
 export function renameBehind(id: string, words: string): void {
@@ -81,25 +77,21 @@ export function removeBehind(id: string): void {
 }
 
 /** Align all benches behind at their last events of a kind; those without such an event stay at the same time. */
-export async function align(alignment: Alignment): Promise<void> {
-  try {
-    const shifts = await Promise.all(
-      useBehind.getState().behind.map(async ({ bench }) => [bench, (await shiftOf(bench, alignment)) ?? 0] as const),
-    );
-    const by = new Map(shifts);
-    useBehind.setState(({ behind }) => ({
-      alignment,
-      behind: behind.map((one) => ({ ...one, shift: by.get(one.bench) ?? one.shift })),
-    }));
-  } catch (error) {
-    showError(error);
-  }
-}
+export const align = showing(async (alignment: Alignment) => {
+  const shifts = await Promise.all(
+    useBehind.getState().behind.map(async ({ bench }) => [bench, (await shiftOf(bench, alignment)) ?? 0] as const),
+  );
+  const by = new Map(shifts);
+  useBehind.setState(({ behind }) => ({
+    alignment,
+    behind: behind.map((one) => ({ ...one, shift: by.get(one.bench) ?? one.shift })),
+  }));
+});
 
 /** Forget benches that are gone, or that have another rate than the bench on the page: the server draws nothing of them. */
 export async function forgetGone(): Promise<void> {
   const rate = rateHere();
-  if (rate === undefined) return;
+  if (rate === undefined || useBehind.getState().behind.length === 0) return;
   const there = new Set((await api.benches()).flatMap((one) => (one.sample_rate_khz === rate ? [one.id] : [])));
   useBehind.setState(({ behind }) => ({ behind: behind.filter((one) => there.has(one.bench)) }));
 }

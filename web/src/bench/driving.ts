@@ -3,7 +3,7 @@ import { useMe } from "../api/me";
 import type { Company, DrivingTurn } from "../api/types";
 import { useBench } from "../stream/bench-store";
 import { announce } from "./announce";
-import { showError } from "./send";
+import { showing } from "./send";
 
 type Somebody = Company["drivers"][number];
 
@@ -25,13 +25,9 @@ export function drivingWords(company: Company, me: string | undefined): string {
 }
 
 /** Ask for the bench on the page, hand it over or take it back. */
-export async function changeDriver(what: DrivingTurn, to?: Somebody): Promise<void> {
+export const changeDriver = showing(async (what: DrivingTurn, to?: Somebody) => {
   const id = useBench.getState().bench?.id;
   if (!id) return;
-  try {
-    const { company } = await classes.drive(id, what, to?.id);
-    if (company) announce(`${drivingWords(company, useMe.getState().me?.id)}.`);
-  } catch (error) {
-    showError(error);
-  }
-}
+  const { company } = await classes.drive(id, what, to?.id);
+  if (company) announce(`${drivingWords(company, useMe.getState().me?.id)}.`);
+});

@@ -1,6 +1,6 @@
 import { units } from "../api/units";
 import { useBench } from "../stream/bench-store";
-import { showError } from "./send";
+import { showing } from "./send";
 import { beginWith, nameOfClass } from "./unit-draft";
 import { sourceOnBench } from "./unit-values";
 import { setPage, useView } from "./view-store";
@@ -12,16 +12,12 @@ export function openEditor(): void {
 }
 
 /** Begin with a copy of a unit of the library, under a name of its own; with a starter, named as its class; or with a unit of the server. */
-export async function editCopy(name: string): Promise<void> {
-  try {
-    const { source, origin } = await units.text(name);
-    const own = origin === "library" ? `my_${name}`.slice(0, 32) : origin === "starter" ? nameOfClass(source) : name;
-    beginWith(own, source);
-    openEditor();
-  } catch (error) {
-    showError(error);
-  }
-}
+export const editCopy = showing(async (name: string) => {
+  const { source, origin } = await units.text(name);
+  const own = origin === "library" ? `my_${name}`.slice(0, 32) : origin === "starter" ? nameOfClass(source) : name;
+  beginWith(own, source);
+  openEditor();
+});
 
 /** Edit a unit as it is on the bench. */
 export function editOwn(name: string): void {

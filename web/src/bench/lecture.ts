@@ -8,7 +8,7 @@ import { jump } from "../ui/hover";
 import { announce } from "./announce";
 import { type Before, stepAside, stepBack } from "./aside";
 import { openBench } from "./open-bench";
-import { showError } from "./send";
+import { showError, showing } from "./send";
 import { setPage, useView } from "./view-store";
 
 const KEPT = "combbench.lecture";
@@ -53,18 +53,14 @@ export const plannedTo = (script: readonly Pick<Cue, "minutes">[], at: number): 
   script.slice(0, at + 1).reduce((sum, { minutes }) => sum + minutes, 0);
 
 /** Begin a lecture at its first cue. The bench on the page is paused if nobody else watches it. */
-export async function startLecture(id: string): Promise<void> {
-  try {
-    if (lectureRuns()) await leaveLecture();
-    const lecture = await lectures.get(id);
-    const before = await stepAside();
-    useLecture.setState({ ...NONE, lecture, before, at: -1, began: Date.now() });
-    setPage("bench");
-    await goTo(0);
-  } catch (error) {
-    showError(error);
-  }
-}
+export const startLecture = showing(async (id: string) => {
+  if (lectureRuns()) await leaveLecture();
+  const lecture = await lectures.get(id);
+  const before = await stepAside();
+  useLecture.setState({ ...NONE, lecture, before, at: -1, began: Date.now() });
+  setPage("bench");
+  await goTo(0);
+});
 
 let wanted = 0;
 

@@ -28,10 +28,10 @@ export function PageHead({ name, item, heading = name }: PageHeadProps) {
   };
   const label = copied === address ? "Link copied" : "Copy link";
   return (
-    <div className={styles.head}>
+    <div className={`line ${styles.head}`}>
       <h1>{heading}</h1>
       <Tooltip label={label}>
-        <ActionIcon variant="subtle" size="md" aria-label={label} onClick={() => void copy()}>
+        <ActionIcon size="md" aria-label={label} onClick={() => void copy()}>
           {copied === address ? <IconCheck size={16} /> : <IconLink size={16} />}
         </ActionIcon>
       </Tooltip>

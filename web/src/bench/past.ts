@@ -3,7 +3,7 @@ import { useBench } from "../stream/bench-store";
 import { announce } from "./announce";
 import { addBehind } from "./behind";
 import { openBench, openOwn } from "./open-bench";
-import { send, showError } from "./send";
+import { send, showError, showing } from "./send";
 
 /** Ticks before a moment of the past that its panels can show. */
 const WINDOW_TICKS = 20_000;
@@ -78,18 +78,14 @@ function helloOf(id: string): Promise<void> {
 }
 
 /** Go back from the past to the bench it is of; a bench that only showed the past is closed. */
-export async function backToNow(): Promise<void> {
+export const backToNow = showing(async () => {
   const bench = useBench.getState().bench;
   if (!bench?.origin) return;
-  try {
-    const { id, origin } = bench;
-    await api.reopenBench(origin.bench); // it may have been let go
-    openBench(origin.bench, true, true);
-    if (origin.is_past) await api.removeBench(id);
-  } catch (error) {
-    showError(error);
-  }
-}
+  const { id, origin } = bench;
+  await api.reopenBench(origin.bench); // it may have been let go
+  openBench(origin.bench, true, true);
+  if (origin.is_past) await api.removeBench(id);
+});
 
 /** Show a bench that stands at the moment that is shown, for a branch to begin there. */
 async function standHere(): Promise<string | undefined> {
@@ -107,70 +103,54 @@ async function standAt(of: string, tick: number): Promise<string> {
 }
 
 /** Go on from the moment that is shown, of the past or now, as a bench of its own with a name. */
-export async function goOn(name: string, change?: () => Promise<boolean>): Promise<void> {
-  try {
-    const id = await standHere();
-    if (!id || (change && !(await change()))) return;
-    await api.nameBench(id, name.slice(0, LONGEST_NAME)).catch(showError);
-    if (await send({ kind: "start" }, "A branch starts here")) openOwn(id, true);
-  } catch (error) {
-    showError(error);
-  }
-}
+export const goOn = showing(async (name: string, change?: () => Promise<boolean>) => {
+  const id = await standHere();
+  if (!id || (change && !(await change()))) return;
+  await api.nameBench(id, name.slice(0, LONGEST_NAME)).catch(showError);
+  if (await send({ kind: "start" }, "A branch starts here")) openOwn(id, true);
+});
 
 /** Go on from the moment that is shown as if other values had been there from tick 0; what was done is done again. */
-export async function goOnHaving(name: string, set: Record<string, unknown>): Promise<void> {
+export const goOnHaving = showing(async (name: string, set: Record<string, unknown>) => {
   const bench = useBench.getState().bench;
   if (!bench) return;
-  try {
-    const made = await api.variant(bench.id, set, true);
-    await api.nameBench(made.id, name.slice(0, LONGEST_NAME));
-    const isPast = bench.origin?.is_past ?? false;
-    openOwn(made.id, isPast);
-    await helloOf(made.id);
-    await addBehind(isPast && bench.origin ? bench.origin.bench : bench.id);
-    if (isPast) await api.removeBench(bench.id);
-    await send({ kind: "start" }, "A branch starts here; all commands were replayed");
-  } catch (error) {
-    showError(error);
-  }
-}
+  const made = await api.variant(bench.id, set, true);
+  await api.nameBench(made.id, name.slice(0, LONGEST_NAME));
+  const isPast = bench.origin?.is_past ?? false;
+  openOwn(made.id, isPast);
+  await helloOf(made.id);
+  await addBehind(isPast && bench.origin ? bench.origin.bench : bench.id);
+  if (isPast) await api.removeBench(bench.id);
+  await send({ kind: "start" }, "A branch starts here; all commands were replayed");
+});
 
 /** Fork the bench before what was done at a tick, and let it go on without that. */
-export async function goOnWithout(tick: number, words: string): Promise<void> {
+export const goOnWithout = showing(async (tick: number, words: string) => {
   const bench = useBench.getState().bench;
   if (!bench) return;
-  try {
-    const made = await api.fork(bench.id, {
-      tick,
-      before: true,
-      paused: true,
-      window_ticks: WINDOW_TICKS,
-      name: `without ${words}`.slice(0, LONGEST_NAME),
-    });
-    openOwn(made.id);
-    await helloOf(made.id);
-    await send({ kind: "start" });
-    announce(`A branch without this: ${words}.`);
-  } catch (error) {
-    showError(error);
-  }
-}
+  const made = await api.fork(bench.id, {
+    tick,
+    before: true,
+    paused: true,
+    window_ticks: WINDOW_TICKS,
+    name: `without ${words}`.slice(0, LONGEST_NAME),
+  });
+  openOwn(made.id);
+  await helloOf(made.id);
+  await send({ kind: "start" });
+  announce(`A branch without this: ${words}.`);
+});
 
 /** Fork a bench that has tripped from shortly before. */
-export async function forkBeforeTrip(): Promise<void> {
+export const forkBeforeTrip = showing(async () => {
   const bench = useBench.getState().bench;
   if (!bench?.trip) return;
   const before = Math.round(BEFORE_TRIP_PERIODS * (bench.drive_period_ticks ?? BEFORE_TRIP_TICKS));
-  try {
-    const tick = Math.max(bench.trip.tick - before, bench.earliest_tick ?? 0);
-    const made = await api.fork(bench.id, { tick, paused: true, window_ticks: WINDOW_TICKS });
-    openOwn(made.id);
-    announce(`A branch from ${bench.trip.tick - tick} ticks before the trip; it waits.`);
-  } catch (error) {
-    showError(error);
-  }
-}
+  const tick = Math.max(bench.trip.tick - before, bench.earliest_tick ?? 0);
+  const made = await api.fork(bench.id, { tick, paused: true, window_ticks: WINDOW_TICKS });
+  openOwn(made.id);
+  announce(`A branch from ${bench.trip.tick - tick} ticks before the trip; it waits.`);
+});
 
 const BEFORE_TRIP_PERIODS = 10;
 const BEFORE_TRIP_TICKS = 100;

@@ -38,3 +38,9 @@ export function showError(error: unknown): void {
     autoClose: 8000,
   });
 }
+
+/** The same deed; a refusal is shown. */
+export const showing =
+  <A extends unknown[]>(deed: (...args: A) => Promise<unknown>) =>
+  (...args: A): Promise<void> =>
+    deed(...args).then(() => undefined, showError);

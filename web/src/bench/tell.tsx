@@ -22,8 +22,6 @@ export function tellUndoable(said: string, undo?: () => unknown): void {
         {said}
         {undo && (
           <Button
-            size="compact-sm"
-            variant="default"
             onClick={() => {
               notifications.hide(id);
               undo();

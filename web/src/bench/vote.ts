@@ -7,7 +7,7 @@ import { useBench } from "../stream/bench-store";
 import { announce } from "./announce";
 import { showPanel } from "./dock";
 import { cueNow } from "./lecture";
-import { showError } from "./send";
+import { showing } from "./send";
 
 /** The vote that the teacher's page is at. */
 export const useVote = create<{ vote: Vote | undefined }>(() => ({ vote: undefined }));
@@ -18,35 +18,25 @@ export const showVote = (vote: Vote | undefined): void => useVote.setState({ vot
  * Open the vote of the cue, once; the panel says how it goes, and asks again if that is wanted. Where several classes are
  * there, it asks who votes.
  */
-export async function askCue(): Promise<void> {
+export const askCue = showing(async () => {
   const vote = cueNow()?.vote;
   if (!vote) return;
   showPanel("vote", "view3d");
-  try {
-    const [groups, open] = await Promise.all([classes.all(), votes.all()]);
-    const class_id = groups[0]?.id ?? null;
-    const { text, diagnoser = "", when = null, right } = vote;
-    const isAsked = open.some(
-      (one) => one.class_id === class_id && (one.state === "open" || one.question.text === text),
-    );
-    if (groups.length > 1 || isAsked) return;
-    const answers = diagnoser ? (useBench.getState().bench?.diagnosers[diagnoser]?.names ?? []) : (vote.answers ?? []);
-    await votes.open({ class_id, text, answers, diagnoser, when, right });
-    await queryClient.invalidateQueries({ queryKey: ["votes"] });
-    announce(`The vote is open: ${text}`);
-  } catch (error) {
-    showError(error);
-  }
-}
+  const [groups, open] = await Promise.all([classes.all(), votes.all()]);
+  const class_id = groups[0]?.id ?? null;
+  const { text, diagnoser = "", when = null, right } = vote;
+  const isAsked = open.some((one) => one.class_id === class_id && (one.state === "open" || one.question.text === text));
+  if (groups.length > 1 || isAsked) return;
+  const answers = diagnoser ? (useBench.getState().bench?.diagnosers[diagnoser]?.names ?? []) : (vote.answers ?? []);
+  await votes.open({ class_id, text, answers, diagnoser, when, right });
+  await queryClient.invalidateQueries({ queryKey: ["votes"] });
+  announce(`The vote is open: ${text}`);
+});
 
 /** Show the answers of the vote that the page has, with those that are right. */
-export async function revealVote(): Promise<void> {
+export const revealVote = showing(async () => {
   const { vote } = useVote.getState();
   if (!vote || vote.results) return;
-  try {
-    await votes.reveal(vote.id);
-    await queryClient.invalidateQueries({ queryKey: ["votes"] });
-  } catch (error) {
-    showError(error);
-  }
-}
+  await votes.reveal(vote.id);
+  await queryClient.invalidateQueries({ queryKey: ["votes"] });
+});

@@ -24,12 +24,11 @@ export function BenchmarkPage() {
   const [track, setTrack] = useState("known");
   const chosen = value?.results.find((one) => one.id === track);
   return (
-    <div className={styles.page}>
-      <header className={styles.top}>
+    <div className={`column ${styles.page}`}>
+      <header className={`row ${styles.top}`}>
         <PageHead name="Scores" heading="Benchmark" />
         {value && (
           <NativeSelect
-            size="xs"
             aria-label="Track"
             value={track}
             data={value.results.map(({ id, title }) => ({ value: id, label: title }))}

@@ -1,5 +1,6 @@
 import type { Benchmark, BenchmarkRow } from "../api/types";
 import { formatNumber, formatPercent } from "../ui/format";
+import { TableHead } from "../ui/table-head";
 import styles from "./benchmark.module.css";
 
 /** Standard errors to either side of a mean that hold 95 %. */
@@ -72,21 +73,15 @@ export function ResultsTable({ named, rows, costs, label }: Results) {
     // biome-ignore lint/a11y/noNoninteractiveTabindex: a region that scrolls is reached by the keyboard
     <section className={styles.scroll} aria-label={label} tabIndex={0}>
       <table className={styles.table}>
-        <thead>
-          <tr>
-            <th scope="col">rank</th>
-            <th scope="col">diagnoser</th>
-            {COLUMNS.map((column) => (
-              <th key={column.title} scope="col" title={column.meaning}>
-                {column.title}
-              </th>
-            ))}
-            <th scope="col" title={COST}>
-              time, ns
-            </th>
-            <th scope="col">digest</th>
-          </tr>
-        </thead>
+        <TableHead
+          names={[
+            "rank",
+            "diagnoser",
+            ...COLUMNS.map(({ title, meaning }) => [title, meaning] as const),
+            ["time, ns", COST],
+            "digest",
+          ]}
+        />
         <tbody>
           {rows.map((row, i) => (
             <tr key={row.unit}>

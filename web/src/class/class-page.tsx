@@ -22,7 +22,7 @@ export function ClassPage() {
     again();
   };
   return (
-    <main className={styles.page}>
+    <main className={`column ${styles.page}`}>
       <Stale error={error} since={since} onRetry={again} />
       {!all ? (
         !error && <EmptyState title="Asking the server">A class and its students appear here.</EmptyState>
@@ -32,14 +32,13 @@ export function ClassPage() {
         <ClassView key={group.id} group={group} onChanged={again}>
           {all.length > 1 && (
             <NativeSelect
-              size="xs"
               aria-label="Class"
               value={group.id}
               data={all.map(({ id, name }) => ({ value: id, label: name }))}
               onChange={(e) => setWanted(e.currentTarget.value)}
             />
           )}
-          <Button size="xs" variant="default" onClick={() => setAnother(true)}>
+          <Button size="xs" onClick={() => setAnother(true)}>
             Another class
           </Button>
         </ClassView>

@@ -1,4 +1,4 @@
-import { Button, NativeSelect, TextInput } from "@mantine/core";
+import { Box, Button, NativeSelect, TextInput } from "@mantine/core";
 import { type ReactNode, useCallback, useMemo, useState } from "react";
 import { classes } from "../api/classes";
 import { useAnswer } from "../api/queries";
@@ -90,38 +90,47 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
   const tripped = members.filter((tile) => tile.state === "tripped").map((tile) => tile.id);
   return (
     <>
-      <header className={styles.top}>
+      <header className={`row ${styles.top}`}>
         <PageHead name="Class" item={name} heading={name} />
         <p>
           {formatCount(members.length, "student")}
-          {hands > 0 && <b className={styles.hands}> · {formatCount(hands, "hand")} up</b>}
-          {tripped.length > 0 && <b className={styles.trips}> · {formatNumber(tripped.length, 0)} tripped</b>} · ends{" "}
-          {clock(until)}
+          {hands > 0 && (
+            <Box component="b" c="var(--accent)">
+              {" "}
+              · {formatCount(hands, "hand")} up
+            </Box>
+          )}
+          {tripped.length > 0 && (
+            <Box component="b" c="var(--alarm)">
+              {" "}
+              · {formatNumber(tripped.length, 0)} tripped
+            </Box>
+          )}{" "}
+          · ends {clock(until)}
         </p>
-        <div className={styles.buttons}>
+        <div className={`row ${styles.buttons}`}>
           {children}
           {here && shown !== here.id && (
             <Button
               size="xs"
-              variant="default"
               title={`The bench on your page: ${here.title}`}
               onClick={() => void classes.show(id, here.id).then(onChanged, showError)}
             >
               Show my bench to all
             </Button>
           )}
-          <Button size="xs" variant="default" onClick={() => setLog(true)}>
+          <Button size="xs" onClick={() => setLog(true)}>
             What was done
           </Button>
-          <Button size="xs" variant="default" onClick={end}>
+          <Button size="xs" onClick={end}>
             End the class…
           </Button>
         </div>
       </header>
       {shown && (
-        <p className={styles.shown}>
+        <p className={`row ${styles.shown}`}>
           <b>All see one bench{shown === here?.id ? `: ${here.title}` : ""}.</b> Their own benches keep running.
-          <Button size="xs" onClick={() => void classes.endShowing(id).then(onChanged, showError)}>
+          <Button variant="filled" size="xs" onClick={() => void classes.endShowing(id).then(onChanged, showError)}>
             End showing
           </Button>
         </p>
@@ -143,10 +152,9 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
           </EmptyState>
         </section>
       ) : (
-        <section className={styles.students} aria-label="Students">
-          <div className={styles.row}>
+        <section className={`column ${styles.students}`} aria-label="Students">
+          <div className={`row ${styles.row}`}>
             <TextInput
-              size="xs"
               type="search"
               aria-label="Search students"
               placeholder="Name"
@@ -154,7 +162,6 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
               onChange={(e) => setWords(e.currentTarget.value)}
             />
             <NativeSelect
-              size="xs"
               aria-label="Order"
               value={order}
               data={Object.entries(ORDERS).map(([value, label]) => ({ value, label }))}

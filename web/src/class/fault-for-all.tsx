@@ -11,7 +11,7 @@ const USUAL = 0.05;
 interface FaultForAllProps {
   count: number;
   /** What is being carried out. */
-  busy: string;
+  busy: string | undefined;
   command(what: string, order: Command): void;
 }
 
@@ -33,18 +33,16 @@ export function FaultForAll({ count, busy, command }: FaultForAllProps) {
   const unit = scale.percent ? "%" : unitText(parameter?.unit ?? "");
 
   return (
-    <fieldset className={styles.group} aria-label="A fault for all">
+    <fieldset className={`row ${styles.group}`} aria-label="A fault for all">
       <span className={styles.what}>Fault</span>
       <NativeSelect
         className={styles.choice}
-        size="xs"
         aria-label="Fault"
         value={fault?.name ?? ""}
         data={faults.map(({ name, title }) => ({ value: name, label: title }))}
         onChange={(e) => setKind(e.currentTarget.value)}
       />
       <NumberInput
-        size="xs"
         w={96}
         aria-label={`Severity of ${fault?.title ?? "the fault"}`}
         suffix={` ${unit}`}
@@ -59,7 +57,6 @@ export function FaultForAll({ count, busy, command }: FaultForAllProps) {
       />
       <Button
         size="xs"
-        variant="default"
         disabled={!fits || !fault || count === 0}
         loading={busy === fault?.title}
         onClick={() => fault && wanted !== undefined && command(fault.title, { fault: fault.name, severity: wanted })}
@@ -68,7 +65,6 @@ export function FaultForAll({ count, busy, command }: FaultForAllProps) {
       </Button>
       <Button
         size="xs"
-        variant="default"
         loading={busy === "Heal all"}
         disabled={count === 0}
         onClick={() => command("Heal all", { heal: "all" })}

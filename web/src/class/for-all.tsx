@@ -1,9 +1,9 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { IconPlayerPauseFilled, IconPlayerPlayFilled } from "@tabler/icons-react";
 import { useState } from "react";
 import { classes } from "../api/classes";
 import type { Command, Outcomes } from "../api/types";
-import { showError } from "../bench/send";
+import { useBusy } from "../bench/use-busy";
 import { formatCount } from "../ui/format";
 import styles from "./class.module.css";
 import { FaultForAll } from "./fault-for-all";
@@ -28,20 +28,14 @@ interface ForAllProps {
 export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: ForAllProps) {
   const library = useLibrary();
   const [scenario, setScenario] = useState("first-look");
-  const [busy, setBusy] = useState("");
+  const [busy, during] = useBusy<string>();
   const [said, setSaid] = useState("");
 
-  const carryOut = async (what: string, asked: () => Promise<Outcomes>) => {
-    setBusy(what);
-    try {
+  const carryOut = (what: string, asked: () => Promise<Outcomes>) =>
+    during(async () => {
       setSaid(outcomeLine(what, await asked()));
       onDone();
-    } catch (error) {
-      showError(error);
-    } finally {
-      setBusy("");
-    }
-  };
+    }, what);
   const command = (what: string, order: Command) =>
     carryOut(what, () => classes.command(group, order, chosen.length > 0 ? [...chosen] : null));
   const stopped = chosen.length > 0 ? tripped.filter((id) => chosen.includes(id)) : [...tripped];
@@ -53,8 +47,10 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
 
   return (
     <section className={styles.all} aria-label="For all benches">
-      <div className={styles.row}>
-        <b className={styles.whom}>{chosen.length > 0 ? `For the ${chosen.length} chosen` : "For all benches"}</b>
+      <div className={`row ${styles.row}`}>
+        <Box component="b" miw="12ch" fw={600}>
+          {chosen.length > 0 ? `For the ${chosen.length} chosen` : "For all benches"}
+        </Box>
         {chosen.length > 0 && (
           <Button size="xs" variant="subtle" onClick={onChooseNone}>
             Choose none
@@ -62,7 +58,6 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
         )}
         <Button
           size="xs"
-          variant="default"
           leftSection={<IconPlayerPauseFilled size={15} />}
           loading={busy === "Freeze"}
           disabled={count === 0}
@@ -72,7 +67,6 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
         </Button>
         <Button
           size="xs"
-          variant="default"
           leftSection={<IconPlayerPlayFilled size={15} />}
           loading={busy === "Release"}
           disabled={count === 0}
@@ -82,7 +76,6 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
         </Button>
         <Button
           size="xs"
-          variant="default"
           loading={busy === "Start all together"}
           disabled={count === 0}
           title="Every bench returns to tick 0, then all start at once. A bench at tick 0 keeps its settings."
@@ -97,6 +90,7 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
         </Button>
         {stopped.length > 0 && (
           <Button
+            variant="filled"
             size="xs"
             color="alarm"
             loading={busy === "Reset trips"}
@@ -109,7 +103,7 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
       </div>
       <div className={styles.groups}>
         <FaultForAll count={count} busy={busy} command={command} />
-        <fieldset className={styles.group} aria-label="A scenario for all">
+        <fieldset className={`row ${styles.group}`} aria-label="A scenario for all">
           <span className={styles.what}>Scenario</span>
           <ScenarioSelect
             className={styles.choice}
@@ -120,7 +114,6 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
           />
           <Button
             size="xs"
-            variant="default"
             disabled={count === 0 || chosen.length > 0}
             title={chosen.length > 0 ? "A scenario begins on all benches; choose none first" : undefined}
             onClick={begin}
@@ -138,7 +131,7 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
           group={group}
           count={count}
           chosen={chosen}
-          busy={busy !== ""}
+          busy={busy !== undefined}
           onBegin={(title, asked) => void carryOut(title, asked)}
         />
       </div>

@@ -28,32 +28,25 @@ export function HideForAll({ group, count, chosen, carryOut }: HideForAllProps) 
       );
   };
   return (
-    <fieldset className={styles.group} aria-label="Hidden faults for all">
+    <fieldset className={`row ${styles.group}`} aria-label="Hidden faults for all">
       <span className={styles.what}>Hidden fault</span>
       <NativeSelect
         className={styles.choice}
-        size="xs"
         aria-label="Bench of the hidden fault"
         value={scenario}
         data={library.map(({ id, title }) => ({ value: id, label: title }))}
         onChange={(e) => setScenario(e.currentTarget.value)}
       />
       <Checkbox
-        size="xs"
         label="Show the bank"
         title="Students see the verdicts of the diagnosers, but not the real fault"
         checked={shows}
         onChange={(e) => setShows(e.currentTarget.checked)}
       />
-      <Button size="xs" variant="default" disabled={count === 0} onClick={hide}>
+      <Button size="xs" disabled={count === 0} onClick={hide}>
         Set hidden faults
       </Button>
-      <Button
-        size="xs"
-        variant="default"
-        disabled={count === 0}
-        onClick={() => carryOut("Reveal answers", () => blind.revealAll(group))}
-      >
+      <Button size="xs" disabled={count === 0} onClick={() => carryOut("Reveal answers", () => blind.revealAll(group))}>
         Reveal answers
       </Button>
     </fieldset>

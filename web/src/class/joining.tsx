@@ -31,7 +31,7 @@ export function Joining({ group, isBrief, onChanged }: JoiningProps) {
   const change = (done: Promise<Class>) => done.then(onChanged, showError);
   const isAlone = address ? isLocal(address) : false;
   return (
-    <section className={styles.joining} data-brief={isBrief} aria-label="How to join">
+    <section className={`row ${styles.joining}`} data-brief={isBrief} aria-label="How to join">
       {group.code && address ? (
         <>
           {!isBrief && <QrCode address={address} />}
@@ -54,15 +54,20 @@ export function Joining({ group, isBrief, onChanged }: JoiningProps) {
       ) : (
         <p className={styles.note}>Joining is closed. Students who have joined stay.</p>
       )}
-      <div className={styles.buttons}>
+      <div className={`row ${styles.buttons}`}>
         {address && (
-          <Button leftSection={<IconArrowsMaximize size={16} />} onClick={() => setOnWall(true)}>
+          <Button
+            variant="filled"
+            size="sm"
+            leftSection={<IconArrowsMaximize size={16} />}
+            onClick={() => setOnWall(true)}
+          >
             Show on the wall
           </Button>
         )}
-        <Menu shadow="md">
+        <Menu>
           <Menu.Target>
-            <Button variant="default">New code</Button>
+            <Button size="sm">New code</Button>
           </Menu.Target>
           <Menu.Dropdown>
             <Menu.Label>An earlier code ends at once</Menu.Label>
@@ -74,7 +79,7 @@ export function Joining({ group, isBrief, onChanged }: JoiningProps) {
           </Menu.Dropdown>
         </Menu>
         {address && (
-          <Button variant="default" onClick={() => change(classes.closeJoining(group.id))}>
+          <Button size="sm" onClick={() => change(classes.closeJoining(group.id))}>
             Close joining
           </Button>
         )}

@@ -3,7 +3,7 @@ import { type FormEvent, useState } from "react";
 import { classes } from "../api/classes";
 import type { Class } from "../api/types";
 import { PageHead } from "../bench/page-head";
-import { showError } from "../bench/send";
+import { useBusy } from "../bench/use-busy";
 import styles from "./class.module.css";
 import { ScenarioSelect } from "./scenario-select";
 
@@ -22,22 +22,16 @@ export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
   const [scenario, setScenario] = useState("first-look");
   const [hours, setHours] = useState<number | string>(8);
   const [minutes, setMinutes] = useState<number | string>(120);
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const wrong = {
     hours: Number(hours) > 0 && Number(hours) <= LONGEST_H ? undefined : `More than 0, at most ${LONGEST_H}`,
     minutes: Number(minutes) > 0 && Number(minutes) <= 60 * LONGEST_H ? undefined : "More than 0",
   };
-  const open = async (event: FormEvent) => {
+  const open = (event: FormEvent) => {
     event.preventDefault();
-    setBusy(true);
-    try {
-      const bench = { scenario, paused: false, quiet_lead: true };
-      onOpened(await classes.open({ name: name.trim(), bench, hours: Number(hours), minutes: Number(minutes) }));
-    } catch (error) {
-      showError(error);
-    } finally {
-      setBusy(false);
-    }
+    const bench = { scenario, paused: false, quiet_lead: true };
+    const wanted = { name: name.trim(), bench, hours: Number(hours), minutes: Number(minutes) };
+    void during(() => classes.open(wanted).then(onOpened));
   };
   return (
     <section className={styles.form} aria-label="Open a class">
@@ -48,6 +42,7 @@ export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
       </p>
       <form onSubmit={open}>
         <TextInput
+          size="sm"
           label="Name of the class"
           placeholder="Control laboratory, Tuesday"
           required
@@ -55,8 +50,9 @@ export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
           value={name}
           onChange={(e) => setName(e.currentTarget.value)}
         />
-        <ScenarioSelect label="Benches begin with" value={scenario} onChange={setScenario} />
+        <ScenarioSelect size="sm" label="Benches begin with" value={scenario} onChange={setScenario} />
         <NumberInput
+          size="sm"
           label="Duration"
           description="Everything is deleted when it ends."
           inputWrapperOrder={BELOW}
@@ -67,6 +63,7 @@ export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
           onChange={setHours}
         />
         <NumberInput
+          size="sm"
           label="The code lets students in for"
           description="You can make a new one at any time."
           inputWrapperOrder={BELOW}
@@ -76,12 +73,18 @@ export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
           error={wrong.minutes}
           onChange={setMinutes}
         />
-        <div className={styles.buttons}>
-          <Button type="submit" loading={busy} disabled={!name.trim() || Boolean(wrong.hours || wrong.minutes)}>
+        <div className={`row ${styles.buttons}`}>
+          <Button
+            variant="filled"
+            size="sm"
+            type="submit"
+            loading={busy}
+            disabled={!name.trim() || Boolean(wrong.hours || wrong.minutes)}
+          >
             Open the class
           </Button>
           {onCancel && (
-            <Button variant="default" onClick={onCancel}>
+            <Button size="sm" onClick={onCancel}>
               Back
             </Button>
           )}

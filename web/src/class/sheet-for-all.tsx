@@ -29,17 +29,16 @@ export function SheetForAll({ group, count, chosen, busy, onBegin }: SheetForAll
     onBegin(card.title, () => sheets.forAll(group, card.id, chosen.length > 0 ? [...chosen] : null));
   };
   return (
-    <fieldset className={styles.group} aria-label="A lab sheet for all">
+    <fieldset className={`row ${styles.group}`} aria-label="A lab sheet for all">
       <span className={styles.what}>Lab sheet</span>
       <NativeSelect
         className={styles.choice}
-        size="xs"
         aria-label="Lab sheet"
         value={card.id}
         data={cards.map(({ id, title }) => ({ value: id, label: title }))}
         onChange={(e) => setWanted(e.currentTarget.value)}
       />
-      <Button size="xs" variant="default" disabled={count === 0 || busy} onClick={begin}>
+      <Button size="xs" disabled={count === 0 || busy} onClick={begin}>
         {chosen.length > 0 ? "Begin sheet" : "Begin sheet on all"}
       </Button>
       <Button component="a" size="xs" variant="subtle" href={sheets.grades(group, "csv")} download>

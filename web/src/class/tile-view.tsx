@@ -1,4 +1,4 @@
-import { ActionIcon, Checkbox, Menu } from "@mantine/core";
+import { ActionIcon, Box, Checkbox, Menu } from "@mantine/core";
 import { IconCheck, IconDots, IconHandStop, IconX } from "@tabler/icons-react";
 import { memo } from "react";
 import { answersOf } from "../api/blind";
@@ -39,10 +39,9 @@ interface TileViewProps {
 export const TileView = memo(function TileView({ tile, isChosen, actions }: TileViewProps) {
   const { id, name, hand, bench, watchers, scenario, state, controller = "", verdicts = [] } = tile;
   return (
-    <li className={styles.tile} data-hand={hand} data-state={state ?? "none"} aria-label={name}>
-      <div className={styles.head}>
+    <li className={`column ${styles.tile}`} data-hand={hand} data-state={state ?? "none"} aria-label={name}>
+      <div className={`line ${styles.head}`}>
         <Checkbox
-          size="xs"
           aria-label={`Choose ${name}`}
           checked={isChosen}
           onChange={(e) => actions.choose(id, e.currentTarget.checked)}
@@ -65,9 +64,9 @@ export const TileView = memo(function TileView({ tile, isChosen, actions }: Tile
             <IconHandStop size={17} />
           </button>
         )}
-        <Menu position="bottom-end" shadow="md">
+        <Menu position="bottom-end">
           <Menu.Target>
-            <ActionIcon size={26} variant="subtle" color="gray" aria-label={`What can be done with ${name}`}>
+            <ActionIcon size={26} color="gray" aria-label={`What can be done with ${name}`}>
               <IconDots size={16} />
             </ActionIcon>
           </Menu.Target>
@@ -153,9 +152,9 @@ function Faults({ faults }: { faults: NonNullable<Tile["faults"]> }) {
   const acting = faults.filter(({ severity }) => severity !== 0);
   if (acting.length === 0) return <span>no fault</span>;
   return (
-    <b className={styles.acting}>
+    <Box component="b" c="var(--alarm)" fw={560}>
       {acting.map(({ name, severity }) => `${titleOf(name)} ${strength(cardOf("faults", name), severity)}`).join(", ")}
-    </b>
+    </Box>
   );
 }
 

@@ -35,7 +35,7 @@ export function Wall({ opened, name, code, address, onClose }: WallProps) {
       transitionProps={{ duration: 0 }}
     >
       <p className={styles.code}>{code}</p>
-      <div className={styles.foot}>
+      <div className={`row ${styles.foot}`}>
         <QrCode address={address} />
         <p>
           Scan, or open <b>{brief(address)}</b> and type the code

@@ -70,11 +70,11 @@ function Frames() {
   return (
     <>
       <path
-        className={styles.driveFrame}
+        fill="#cc79a7"
         d={`M${near} ${-half}H${far}V${half}H${near}ZM${-near} ${-half}H${-far}V${half}H${-near}Z`}
       />
       <path
-        className={styles.senseFrame}
+        fill="#009e73"
         d={`M${-half} ${near}V${far}H${half}V${near}ZM${-half} ${-near}V${-far}H${half}V${-near}Z`}
       />
     </>

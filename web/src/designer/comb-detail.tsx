@@ -24,13 +24,13 @@ export function CombDetail({ geometry: g }: { geometry: Record<string, number> }
         role="img"
         aria-label={`Comb: gap ${formatSi(gap, "um", 3)}, overlap ${formatSi(g.overlap_um, "um", 3)}`}
       >
-        <path d={bars(3, 0, whole - length)} className={styles.stator} />
-        <path d={bars(2, pitch / 2, 0)} className={styles.shuttle} />
+        <path d={bars(3, 0, whole - length)} fill="var(--strong-line)" />
+        <path d={bars(2, pitch / 2, 0)} fill="#56b4e9" />
         <path
           d={`M${whole - length} ${y(tall) + text * 0.5} H${length} M${whole - length} ${y(tall)} v${text} M${length} ${y(tall)} v${text}`}
           className={styles.scale}
         />
-        <text x={whole / 2} y={y(tall) + text * 1.6} fontSize={text} textAnchor="middle" className={styles.detailText}>
+        <text x={whole / 2} y={y(tall) + text * 1.6} fontSize={text} textAnchor="middle" fill="var(--text)">
           overlap {formatSi(g.overlap_um, "um", 3)}
         </text>
       </svg>

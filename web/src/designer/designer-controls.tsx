@@ -42,7 +42,6 @@ export function DesignerControls({ catalogue, device, state, onChange }: Designe
     <section className={styles.controls} aria-label="What can be turned">
       <NativeSelect
         label="Device"
-        size="xs"
         value={state.id}
         data={catalogue.devices.map((d) => ({ value: d.id, label: d.title || d.id }))}
         onChange={(event) => onChange({ ...newDesign(event.currentTarget.value), environment: state.environment })}

@@ -6,7 +6,8 @@ import { useMay } from "../api/me";
 import type { DeviceCatalogue, Evaluation, ProcessSpread } from "../api/types";
 import { openOwn } from "../bench/open-bench";
 import { PageHead } from "../bench/page-head";
-import { showError } from "../bench/send";
+import { showError, showing } from "../bench/send";
+import { useBusy } from "../bench/use-busy";
 import { openPlace, setPage, useView } from "../bench/view-store";
 import { EmptyState } from "../ui/empty-state";
 import { formatSi } from "../ui/format";
@@ -42,7 +43,7 @@ export function Designer() {
   const [state, setState] = useState(() => newDesign(FIRST));
   const [original, setOriginal] = useState<Evaluation | undefined>(undefined);
   const [spread, setSpread] = useState<ProcessSpread["statistics"][string] | undefined>(undefined);
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const { evaluation, bode, drawing, refusal, design } = useDesign(state);
 
   useEffect(() => {
@@ -61,38 +62,28 @@ export function Designer() {
     setState(next);
     if (next.id !== state.id) openPlace("designer", next.id, true);
   };
-  const draw = async () => {
+  const draw = showing(async () => {
     const seed = (state.drawn?.seed ?? 0) + 1;
     const undrawn = { ...state, drawn: undefined };
-    try {
-      const { geometry, statistics } = await api.spread({ ...designDocument(undrawn), seed });
-      setState({ ...undrawn, drawn: { seed, geometry } });
-      setSpread(statistics.f0_hz);
-    } catch (error) {
-      showError(error);
-    }
-  };
-  const use = async () => {
-    if (!evaluation) return;
-    setBusy(true);
-    try {
+    const { geometry, statistics } = await api.spread({ ...designDocument(undrawn), seed });
+    setState({ ...undrawn, drawn: { seed, geometry } });
+    setSpread(statistics.f0_hz);
+  });
+  const use = () =>
+    during(async () => {
+      if (!evaluation) return;
       const wanted = isGyroscope(device) ? gyroscopeBenchOf : benchOf;
       openOwn((await api.createBench(wanted(design, evaluation.title, evaluation.metrics))).id);
       setPage("bench");
-    } catch (error) {
-      showError(error);
-    } finally {
-      setBusy(false);
-    }
-  };
+    });
 
   if (!catalogue || !device)
     return <EmptyState title="Loading the devices">They come from the server's catalogue.</EmptyState>;
   return (
     <main className={styles.page}>
-      <header className={styles.top}>
+      <header className={`row ${styles.top}`}>
         <PageHead name="Design" item={isKnown ? device.title : undefined} heading="Device designer" />
-        {item && !isKnown && <span className={styles.refusal}>The catalogue has no device {item}.</span>}
+        {item && !isKnown && <span className="wrong">The catalogue has no device {item}.</span>}
         {state.drawn && (
           <span className={styles.drawn}>
             device {state.drawn.seed} of the process
@@ -101,19 +92,18 @@ export function Designer() {
           </span>
         )}
         {refusal && (
-          <span className={styles.refusal} role="alert">
+          <span className="wrong" role="alert">
             {refusal.body.message}. {refusal.body.hint}
           </span>
         )}
         <div className={styles.actions}>
           {state.drawn && (
-            <Button size="xs" variant="default" onClick={() => setState({ ...state, drawn: undefined })}>
+            <Button size="xs" onClick={() => setState({ ...state, drawn: undefined })}>
               Back to the drawing
             </Button>
           )}
           <Button
             size="xs"
-            variant="default"
             leftSection={<IconDice5 size={16} />}
             disabled={isGyroscope(device) || catalogued(device, "geometry.beam_length_um") === undefined}
             title="A device as the process might make it; the same number gives the same device"
@@ -123,6 +113,7 @@ export function Designer() {
           </Button>
           {drives && (
             <Button
+              variant="filled"
               size="xs"
               leftSection={<IconPlayerPlay size={16} />}
               title={teaches ? undefined : "It takes the place of your bench"}
@@ -138,10 +129,10 @@ export function Designer() {
       <DesignerControls catalogue={catalogue} device={device} state={state} onChange={change} />
       {evaluation && "gyro.axis_deg" in evaluation.metrics ? (
         <>
-          <section className={styles.drawing} aria-label="Drawing">
+          <section className={`column ${styles.drawing}`} aria-label="Drawing">
             <AxesView metrics={evaluation.metrics} title={evaluation.title} />
           </section>
-          <div className={styles.results}>
+          <div className={`column ${styles.results}`}>
             <section className={styles.figures} aria-label="Figures">
               <FigureGrid figures={evaluation.figures.filter(isOfGyroscope)} original={original?.figures} drawn />
             </section>
@@ -149,14 +140,14 @@ export function Designer() {
         </>
       ) : evaluation && bode && drawing ? (
         <>
-          <section className={styles.drawing} aria-label="Drawing">
+          <section className={`column ${styles.drawing}`} aria-label="Drawing">
             <DeviceView
               geometry={evaluation.geometry}
               title={evaluation.title}
               onChooseDrawn={() => setState(newDesign(FIRST))}
             />
           </section>
-          <div className={styles.results}>
+          <div className={`column ${styles.results}`}>
             <section className={styles.figures} aria-label="Figures">
               <FigureGrid
                 figures={evaluation.figures}

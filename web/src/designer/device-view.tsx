@@ -25,7 +25,7 @@ export function DeviceView({ geometry, title, onChooseDrawn }: DeviceViewProps) 
       <EmptyState
         title="No drawing"
         action={
-          <Button size="xs" variant="default" onClick={onChooseDrawn}>
+          <Button size="xs" onClick={onChooseDrawn}>
             Take LCR-350
           </Button>
         }

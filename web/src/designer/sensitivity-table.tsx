@@ -1,5 +1,6 @@
 import type { Evaluation } from "../api/types";
 import { formatChange, formatIn, formatSi } from "../ui/format";
+import { TableHead } from "../ui/table-head";
 import styles from "./designer.module.css";
 
 const STEPS: [string, string][] = [
@@ -38,16 +39,7 @@ export function SensitivityTable({ evaluation }: { evaluation: Evaluation }) {
     <>
       <h2 className={styles.heading}>Sensitivity to the process</h2>
       <table className={styles.table}>
-        <thead>
-          <tr>
-            <th scope="col">If the process makes</th>
-            {COLUMNS.map(([key, sign]) => (
-              <th key={key} scope="col">
-                {sign}
-              </th>
-            ))}
-          </tr>
-        </thead>
+        <TableHead names={["If the process makes", ...COLUMNS.map(([, sign]) => sign)]} />
         <tbody>
           {STEPS.map(([name, words]) => (
             <tr key={name}>

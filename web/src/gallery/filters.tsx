@@ -14,7 +14,6 @@ export function Filters({ all, filter, onChange }: FiltersProps) {
   return (
     <>
       <NativeSelect
-        size="xs"
         aria-label="Chapter"
         value={filter.chapter}
         data={[
@@ -24,7 +23,6 @@ export function Filters({ all, filter, onChange }: FiltersProps) {
         onChange={(e) => set({ chapter: e.currentTarget.value })}
       />
       <NativeSelect
-        size="xs"
         aria-label="Verdict"
         value={filter.verdict}
         data={[
@@ -35,7 +33,6 @@ export function Filters({ all, filter, onChange }: FiltersProps) {
         onChange={(e) => set({ verdict: e.currentTarget.value })}
       />
       <TextInput
-        size="xs"
         type="search"
         placeholder="Title, device, controller, fault"
         aria-label="Search the gallery"

@@ -1,12 +1,13 @@
 import { Button, Progress } from "@mantine/core";
 import { IconFileText, IconPlayerPlay, IconPlayerTrackNext } from "@tabler/icons-react";
-import { useEffect, useRef, useState } from "react";
+import { useEffect, useRef } from "react";
 import { api } from "../api/api";
 import { useMay } from "../api/me";
 import type { GalleryCard } from "../api/types";
 import { openOwn } from "../bench/open-bench";
 import { PlaceLink } from "../bench/page-head";
 import { showError } from "../bench/send";
+import { useBusy } from "../bench/use-busy";
 import { setPage } from "../bench/view-store";
 import { useOnScreen } from "../ui/on-screen";
 import { Verdict } from "../ui/verdict";
@@ -31,26 +32,21 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
     onSight(card.id, isShown);
     return () => onSight(card.id, false);
   }, [card.id, isShown, onSight]);
-  const [starting, setStarting] = useState(false);
+  const [starting, during] = useBusy();
   const drives = useMay("drive");
   const teaches = useMay("teach");
   const { title } = card;
   const underWay = card.state === "queued" || card.state === "running";
 
-  const live = async () => {
-    setStarting(true);
-    try {
+  const live = () =>
+    during(async () => {
       openOwn((await api.createBench({ scenario: card.id, paused: false, quiet_lead: true })).id);
       setPage("bench");
-    } catch (error) {
-      showError(error);
-      setStarting(false);
-    }
-  };
+    });
   const headless = () => api.startRun({ scenario: card.id }).then(onChanged, showError);
 
   return (
-    <li ref={element} className={styles.card}>
+    <li ref={element} className={`column ${styles.card}`}>
       <div className={styles.thumbnail}>
         {card.figure ? (
           <img src={`./api/v1/gallery/${card.id}/figure?v=${card.figure}`} alt={`Figure of ${title}`} loading="lazy" />
@@ -58,13 +54,13 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
           <img src={`./api/v1/runs/${card.run}/thumbnail`} alt={`Figure of ${title}`} loading="lazy" />
         ) : (
           !underWay && (
-            <div className={styles.wait} data-failed={card.problem !== ""}>
+            <div className={`column ${styles.wait}`} data-failed={card.problem !== ""}>
               {card.problem ? `No figure: ${card.problem}` : isMaking ? "Its figure is being made" : "Not measured yet"}
             </div>
           )
         )}
         {underWay && (
-          <div className={styles.wait}>
+          <div className={`column ${styles.wait}`}>
             {card.state === "queued" ? "waits for its turn" : "running"}
             <Progress value={card.progress * 100} size="sm" w="60%" aria-label={`Progress of ${title}`} />
           </div>
@@ -101,7 +97,6 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
               component="a"
               href={`./api/v1/runs/${card.run}/report`}
               target="_blank"
-              size="compact-sm"
               variant="subtle"
               leftSection={<IconFileText size={15} />}
               aria-label={`Report of ${title}`}
@@ -111,8 +106,6 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
           )}
           {teaches && card.state !== "done" && (
             <Button
-              size="compact-sm"
-              variant="default"
               leftSection={<IconPlayerTrackNext size={15} />}
               disabled={underWay}
               title="Headless, with report, trace and script; at lower priority than the live benches"
@@ -124,7 +117,6 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
           )}
           {drives && card.study === null && (
             <Button
-              size="compact-sm"
               variant="light"
               leftSection={<IconPlayerPlay size={15} />}
               title={teaches ? undefined : "It takes the place of your bench"}

@@ -47,18 +47,18 @@ export function GalleryPage() {
   };
 
   return (
-    <main className={styles.page}>
-      <header className={styles.top}>
+    <main className={`column ${styles.page}`}>
+      <header className={`row ${styles.top}`}>
         <PageHead name="Gallery" item={one?.title} />
         {item ? (
-          <Button size="xs" variant="default" onClick={() => setPage("gallery")}>
+          <Button size="xs" onClick={() => setPage("gallery")}>
             All experiments
           </Button>
         ) : (
           <Filters all={all ?? []} filter={filter} onChange={setFilter} />
         )}
         {all && !item && (
-          <output className={styles.count}>
+          <output className="note">
             {cards.length === all.length
               ? formatCount(all.length, "experiment")
               : `${formatNumber(cards.length, 0)} of ${formatNumber(all.length, 0)}`}
@@ -68,7 +68,6 @@ export function GalleryPage() {
         {drives && !item && (
           <Button
             size="xs"
-            variant="default"
             leftSection={<IconFolderOpen size={16} />}
             onClick={() => useView.setState({ dialog: "mine" })}
           >
@@ -76,7 +75,7 @@ export function GalleryPage() {
           </Button>
         )}
         {figures?.is_making && (
-          <div className={styles.making}>
+          <div className={`line ${styles.making}`}>
             Figures: {formatNumber(figures.made, 0)} of {formatNumber(figures.total, 0)}
             <Progress
               value={(100 * figures.made) / figures.total}
@@ -87,7 +86,7 @@ export function GalleryPage() {
           </div>
         )}
         {figures?.problem && (
-          <p className={styles.problem} role="status">
+          <p className="wrong" role="status">
             {figures.problem}
           </p>
         )}
@@ -110,7 +109,7 @@ export function GalleryPage() {
         <EmptyState
           title={item ? `The library has no experiment ${item}` : "No experiment matches"}
           action={
-            <Button size="xs" variant="default" onClick={showAll}>
+            <Button size="xs" onClick={showAll}>
               Show all
             </Button>
           }

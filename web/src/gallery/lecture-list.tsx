@@ -24,7 +24,7 @@ export function LectureList() {
               <p>{summary}</p>
             </div>
             <Button
-              size="compact-sm"
+              variant="filled"
               leftSection={<IconPlayerPlay size={15} />}
               aria-label={`Start ${title}`}
               onClick={() => void startLecture(id)}

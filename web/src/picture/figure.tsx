@@ -28,7 +28,7 @@ export function Figure<Shown>({ title, label, height, paint, read, legend, child
   const [text, setText] = useState<string | undefined>(undefined);
   const take = () => ({ title, stem: fileStem(title), height: 1.5 * height, legend: legend?.("light"), paint });
   return (
-    <figure className={styles.figure}>
+    <figure className={`column ${styles.figure}`}>
       <figcaption>
         {title}
         <output>{text}</output>

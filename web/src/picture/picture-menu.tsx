@@ -25,7 +25,7 @@ export function PictureMenu({ take, name, children }: PictureMenuProps) {
     saveFile(`${picture.stem}.${kind}`, content);
   };
   return (
-    <Menu position="bottom-end" shadow="md">
+    <Menu position="bottom-end">
       <Menu.Target>
         <ActionIcon
           size={26}

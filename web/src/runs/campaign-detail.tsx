@@ -41,7 +41,7 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
   const shown = columns ?? picture?.figures.slice(0, FIRST_COLUMNS) ?? [];
 
   return (
-    <article className={styles.result}>
+    <article className={`column ${styles.result}`}>
       <header>
         <h2>{sweepName(sweep)}</h2>
         <small>
@@ -63,7 +63,7 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
         )
       ) : (
         <>
-          <div className={styles.links}>
+          <div className={`row ${styles.links}`}>
             <ReportButton files={files} title="One HTML file that needs nothing else" />
             <ScriptButton files={files} title="A script that repeats this campaign over REST" />
             <span>
@@ -107,7 +107,7 @@ function Said({ points }: { points: PointTally[] }) {
   const warnings = [...new Set(points.flatMap((point) => point.warnings ?? []))].slice(0, MOST_SAID);
   if (errors.length + warnings.length === 0) return null;
   return (
-    <ul className={styles.refusal}>
+    <ul className="wrong">
       {[...errors, ...warnings.map((text) => `Warning: ${text}`)].map((text) => (
         <li key={text}>{text}</li>
       ))}

@@ -24,10 +24,9 @@ export function CampaignFigures({ picture, onChoose }: CampaignFiguresProps) {
     parts.flatMap(({ mean }) => mean),
   );
   return (
-    <section className={styles.diagnosis} aria-label="Figures">
-      <div className={styles.links}>
+    <section className={`column ${styles.diagnosis}`} aria-label="Figures">
+      <div className={`row ${styles.links}`}>
         <Select
-          size="xs"
           label="Figure"
           searchable
           allowDeselect={false}
@@ -38,7 +37,6 @@ export function CampaignFigures({ picture, onChoose }: CampaignFiguresProps) {
         />
         {kind === "ranking" && (
           <Select
-            size="xs"
             label="Across"
             allowDeselect={false}
             value={picture.across}

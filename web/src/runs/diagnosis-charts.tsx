@@ -24,12 +24,11 @@ export function DiagnosisCharts({ points, words }: { points: PointTally[]; words
   const drawn = found.slice(0, MOST_LINES);
   const one = found[Math.min(at, found.length - 1)];
   return (
-    <section className={styles.diagnosis} aria-label="Diagnosis">
-      <div className={styles.links}>
+    <section className={`column ${styles.diagnosis}`} aria-label="Diagnosis">
+      <div className={`row ${styles.links}`}>
         <h3>Diagnosis</h3>
         {diagnosers.length > 1 && (
           <NativeSelect
-            size="xs"
             aria-label="Diagnoser"
             value={id}
             data={diagnosers.map((name) => ({ value: name, label: words[name] ?? name }))}
@@ -71,7 +70,6 @@ export function DiagnosisCharts({ points, words }: { points: PointTally[]; words
       </div>
       {found.length > 1 && (
         <NativeSelect
-          size="xs"
           label="Confusion at"
           w="fit-content"
           value={String(at)}

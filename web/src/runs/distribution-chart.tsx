@@ -55,18 +55,11 @@ export function DistributionChart({ sweep, quantities, figures, first, every }: 
     label: figures.includes(name) ? metricScale(name, []).title : labelScale(name, []).title,
   }));
   return (
-    <section className={styles.diagnosis} aria-label="Distribution of runs">
+    <section className={`column ${styles.diagnosis}`} aria-label="Distribution of runs">
       <h3>Distribution of runs</h3>
-      <div className={styles.links}>
+      <div className={`row ${styles.links}`}>
+        <NativeSelect label="Across" value={x} data={names} onChange={(e) => setAcross(e.currentTarget.value)} />
         <NativeSelect
-          size="xs"
-          label="Across"
-          value={x}
-          data={names}
-          onChange={(e) => setAcross(e.currentTarget.value)}
-        />
-        <NativeSelect
-          size="xs"
           label="Up"
           value={y}
           data={[{ value: "", label: "number of runs" }, ...names]}
@@ -103,7 +96,7 @@ function Scale({ most }: { most: number }) {
   const scheme = useScheme();
   const colours = [0, 0.25, 0.5, 0.75, 1].map((share) => rampColour(share, scheme));
   return (
-    <p className={styles.scale}>
+    <p className="line remark">
       <span>runs in a cell: 1</span>
       <span className={styles.ramp} style={{ background: `linear-gradient(to right, ${colours.join(", ")})` }} />
       <span>{most} (logarithmic)</span>

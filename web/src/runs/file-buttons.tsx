@@ -5,6 +5,7 @@ import { IconBrandPython, IconFileText } from "@tabler/icons-react";
 export function ReportButton({ files, title }: { files: string; title?: string }) {
   return (
     <Button
+      variant="filled"
       component="a"
       href={`${files}/report`}
       target="_blank"
@@ -25,7 +26,6 @@ export function ScriptButton({ files, title }: { files: string; title: string })
       href={`${files}/script`}
       download
       size="xs"
-      variant="default"
       leftSection={<IconBrandPython size={15} />}
       title={title}
     >

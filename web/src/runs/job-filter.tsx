@@ -16,7 +16,6 @@ export function JobFilter({ filter, scenarios, onChange }: JobFilterProps) {
   return (
     <search className={styles.filter}>
       <TextInput
-        size="xs"
         type="search"
         aria-label="Search runs"
         placeholder="Name, title or scenario"
@@ -24,14 +23,12 @@ export function JobFilter({ filter, scenarios, onChange }: JobFilterProps) {
         onChange={(e) => onChange({ ...filter, text: e.currentTarget.value })}
       />
       <NativeSelect
-        size="xs"
         aria-label="State"
         value={filter.state ?? ""}
         data={[{ value: "", label: "Any state" }, ...STATES.map((state) => ({ value: state as string, label: state }))]}
         onChange={(e) => onChange({ ...filter, state: STATES.find((state) => state === e.currentTarget.value) })}
       />
       <NativeSelect
-        size="xs"
         aria-label="Scenario of the runs"
         value={filter.scenario ?? ""}
         data={[{ value: "", label: "Any scenario" }, ...scenarios]}

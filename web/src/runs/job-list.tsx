@@ -54,8 +54,6 @@ export function JobList({ jobs, chosen, onChoose, onChanged }: JobListProps) {
     <>
       <div className={styles.tools}>
         <Button
-          size="compact-sm"
-          variant="default"
           leftSection={<IconArrowsDiff size={15} />}
           disabled={finished.length < 2 || finished.length > MOST_COMPARED}
           title={`Mark from 2 to ${MOST_COMPARED} finished runs`}
@@ -64,8 +62,6 @@ export function JobList({ jobs, chosen, onChoose, onChanged }: JobListProps) {
           Compare{finished.length > 1 && ` ${finished.length}`}
         </Button>
         <Button
-          size="compact-sm"
-          variant="default"
           leftSection={<IconTrash size={15} />}
           disabled={removable.length === 0}
           title="Removes runs that have ended, with their files; runs under way stay"
@@ -78,7 +74,6 @@ export function JobList({ jobs, chosen, onChoose, onChanged }: JobListProps) {
         {jobs.map((job) => (
           <li key={keyOf(job)} data-chosen={job.id === chosen?.id}>
             <Checkbox
-              size="xs"
               aria-label={`Mark ${job.title}, ${job.about}`}
               checked={marked.has(keyOf(job))}
               onChange={(e) => mark(job, e.currentTarget.checked)}
@@ -108,7 +103,6 @@ export function JobList({ jobs, chosen, onChoose, onChanged }: JobListProps) {
             {job.isActive && (
               <ActionIcon
                 size={28}
-                variant="subtle"
                 color="alarm"
                 aria-label={`Cancel ${job.title}`}
                 title={

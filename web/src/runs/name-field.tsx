@@ -19,7 +19,6 @@ export function NameField({ label, title, save }: NameFieldProps) {
   };
   return (
     <TextInput
-      size="xs"
       label="Name"
       placeholder={title}
       maxLength={LONGEST}

@@ -94,7 +94,7 @@ export function PointsTable({ points, metrics, found, isPage, page, setPage, ord
         </table>
       </div>
       {isPage && (
-        <div className={styles.pages}>
+        <div className={`row ${styles.pages}`}>
           <p className={styles.note} role="status">
             Points {formatNumber((page - 1) * PAGE + 1, 0)} to {formatNumber(Math.min(page * PAGE, found), 0)} of{" "}
             {formatNumber(found, 0)}

@@ -28,11 +28,10 @@ export function RunComparison({ ids }: { ids: string }) {
   const different = value.figures.filter((row) => row.differences.some((one) => one !== 0));
   const rows = onlyDifferent ? different : value.figures;
   return (
-    <article className={styles.result} aria-label="Comparison">
+    <article className={`column ${styles.result}`} aria-label="Comparison">
       <h2>{formatCount(value.runs.length, "run")} side by side</h2>
       <Traces ids={ids} comparison={value} names={names} />
       <Checkbox
-        size="xs"
         label={`Only the ${formatCount(different.length, "figure")} that differ`}
         checked={onlyDifferent}
         onChange={(e) => setOnlyDifferent(e.currentTarget.checked)}
@@ -94,7 +93,6 @@ function Traces({ ids, comparison, names }: { ids: string; comparison: Compariso
   return (
     <>
       <Select
-        size="xs"
         label="Signal"
         searchable
         allowDeselect={false}

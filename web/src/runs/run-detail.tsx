@@ -10,6 +10,7 @@ import { Downloads, TRACE_FORMATS } from "../ui/downloads";
 import { EmptyState } from "../ui/empty-state";
 import { formatBeside, formatCount, formatFigure, formatPercent, formatShort, formatSi } from "../ui/format";
 import { metricScale } from "../ui/metric-name";
+import { TableHead } from "../ui/table-head";
 import { ReportButton, ScriptButton } from "./file-buttons";
 import { runName } from "./jobs";
 import { NameField } from "./name-field";
@@ -54,7 +55,7 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
     }, showError);
   const hasTrace = summary.ticks > 0;
   return (
-    <article className={styles.result}>
+    <article className={`column ${styles.result}`}>
       <header>
         <h2>{runName(run)}</h2>
         <small>
@@ -68,22 +69,21 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
           title={run.title || run.scenario_id}
           save={(label) => api.renameRun(run.id, label).then(onChanged)}
         />
-        {summary.trip && <p className={styles.refusal}>Tripped: {summary.trip.reason}</p>}
+        {summary.trip && <p className="wrong">Tripped: {summary.trip.reason}</p>}
         {summary.warnings.map((text) => (
-          <p key={text} className={styles.refusal}>
+          <p key={text} className="wrong">
             Warning: {text}
           </p>
         ))}
       </header>
-      <div className={styles.overview}>
+      <div className={`row ${styles.overview}`}>
         <img src={`${files}/thumbnail`} alt={`Figure of ${runName(run)}`} />
-        <div className={styles.links}>
+        <div className={`row ${styles.links}`}>
           <ReportButton files={files} />
           <ScriptButton files={files} title="A script that repeats this run over REST and checks its bits" />
           {hasTrace && (
             <Button
               size="xs"
-              variant="default"
               leftSection={<IconPlayerPlay size={15} />}
               title="The scenario as the library has it, on a live bench"
               onClick={live}
@@ -108,13 +108,7 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
       )}
       <h3>Figures</h3>
       <table className={styles.table}>
-        <thead>
-          <tr>
-            <th scope="col">figure</th>
-            <th scope="col">{summary.metrics_std ? "mean" : "value"}</th>
-            {summary.metrics_std && <th scope="col">std</th>}
-          </tr>
-        </thead>
+        <TableHead names={["figure", summary.metrics_std ? "mean" : "value", Boolean(summary.metrics_std) && "std"]} />
         <tbody>
           {Object.entries(summary.metrics).map(([name, value]) => {
             const { title, shown } = metricScale(name, [value]);

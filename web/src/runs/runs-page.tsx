@@ -77,7 +77,7 @@ export function RunsPage() {
           <EmptyState
             title="No run matches"
             action={
-              <Button size="xs" variant="default" onClick={() => setFilter(ALL)}>
+              <Button size="xs" onClick={() => setFilter(ALL)}>
                 Show all
               </Button>
             }
@@ -92,7 +92,12 @@ export function RunsPage() {
           )
         )}
       </section>
-      <section ref={detail} className={styles.detail} data-chosen={chosen !== undefined} aria-label="Result">
+      <section
+        ref={detail}
+        className={`column ${styles.detail}`}
+        data-chosen={chosen !== undefined}
+        aria-label="Result"
+      >
         {chosen?.kind === "comparison" ? (
           <RunComparison key={chosen.id} ids={chosen.id} />
         ) : job?.kind === "run" ? (

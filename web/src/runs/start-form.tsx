@@ -50,7 +50,7 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
 
   return (
     <form
-      className={styles.form}
+      className={`column ${styles.form}`}
       aria-label="Start"
       onSubmit={(event) => {
         event.preventDefault();
@@ -58,7 +58,6 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
       }}
     >
       <SegmentedControl
-        size="xs"
         fullWidth
         aria-label="What to start"
         value={draft.kind}
@@ -69,7 +68,6 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
         onChange={(kind) => set({ kind: kind as Draft["kind"] })}
       />
       <Select
-        size="xs"
         label="Scenario"
         searchable
         allowDeselect={false}
@@ -79,7 +77,6 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
         onChange={(scenario) => scenario && set({ scenario })}
       />
       <TextInput
-        size="xs"
         label="Name"
         placeholder="Default: scenario title"
         maxLength={120}
@@ -97,7 +94,6 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
       {!isRun && (
         <>
           <SegmentedControl
-            size="xs"
             fullWidth
             aria-label="How to vary"
             value={draft.vary}
@@ -120,7 +116,6 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
           )}
           {draft.vary === "hypercube" && <Hypercube draft={draft} paths={paths} set={set} />}
           <NumberInput
-            size="xs"
             allowDecimal={false}
             label="Random devices"
             description="0 = use the scenario's device. Needs a device with a drawing, such as lcr-350."
@@ -133,7 +128,6 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
       )}
       <div className={styles.pair}>
         <NumberInput
-          size="xs"
           allowDecimal={false}
           label="First seed"
           min={0}
@@ -141,7 +135,6 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
           onChange={(n) => set({ firstSeed: Number(n) || 0 })}
         />
         <NumberInput
-          size="xs"
           allowDecimal={false}
           label="Seeds"
           min={1}
@@ -152,7 +145,6 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
       </div>
       {isRun && (
         <Checkbox
-          size="xs"
           label="Keep all signals"
           description="Also of controllers and sensors that are not in use. The figures are the same."
           checked={draft.all}
@@ -160,12 +152,12 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
         />
       )}
       {refusal && (
-        <p className={styles.refusal} role="alert">
+        <p className="wrong" role="alert">
           {refusal.field && !refusal.message.includes(refusal.field) && <b>{refusal.field}: </b>}
           {refusal.message}. {refusal.hint}
         </p>
       )}
-      <Button type="submit" size="sm" loading={busy} leftSection={<IconPlayerTrackNext size={17} />}>
+      <Button variant="filled" type="submit" size="sm" loading={busy} leftSection={<IconPlayerTrackNext size={17} />}>
         {isRun
           ? `Run ${draft.seeds > 1 ? formatCount(draft.seeds, "seed") : ""}`
           : `Start ${formatCount(total, "run")}`}
@@ -191,21 +183,18 @@ function Hypercube({ draft, paths, set }: { draft: Draft; paths: string[]; set(p
         entry={(row, change, name) => (
           <span className={styles.bounds}>
             <TextInput
-              size="xs"
               aria-label={`${name}: from`}
               placeholder="from"
               value={row.min}
               onChange={(e) => change({ ...row, min: e.currentTarget.value })}
             />
             <TextInput
-              size="xs"
               aria-label={`${name}: to`}
               placeholder="to"
               value={row.max}
               onChange={(e) => change({ ...row, max: e.currentTarget.value })}
             />
             <Checkbox
-              size="xs"
               label="log"
               aria-label={`${name}: logarithmic`}
               checked={row.log}
@@ -216,7 +205,6 @@ function Hypercube({ draft, paths, set }: { draft: Draft; paths: string[]; set(p
       />
       <div className={styles.pair}>
         <NumberInput
-          size="xs"
           allowDecimal={false}
           label="Points"
           min={1}
@@ -225,7 +213,6 @@ function Hypercube({ draft, paths, set }: { draft: Draft; paths: string[]; set(p
           onChange={(n) => set({ points: Number(n) })}
         />
         <NumberInput
-          size="xs"
           allowDecimal={false}
           label="Seed of the points"
           min={0}

@@ -26,7 +26,6 @@ export function ValueRows({ label, more, placeholder, rows, paths, onChange }: V
       onChange={onChange}
       entry={(row, change, name) => (
         <TextInput
-          size="xs"
           aria-label={`${name}: value`}
           placeholder={placeholder}
           value={row.text}
@@ -52,7 +51,7 @@ export function PathRows<T extends { path: string }>(props: PathRowsProps<T>) {
   const { label, more, rows, paths, empty, onChange, entry } = props;
   const change = (at: number, row: T) => onChange(rows.map((old, i) => (i === at ? row : old)));
   return (
-    <fieldset className={styles.rows}>
+    <fieldset className={`column ${styles.rows}`}>
       <legend>{label}</legend>
       {rows.map((row, at) => {
         const name = row.path || `${label} ${at + 1}`;
@@ -60,7 +59,6 @@ export function PathRows<T extends { path: string }>(props: PathRowsProps<T>) {
           // biome-ignore lint/suspicious/noArrayIndexKey: a row is its place
           <div key={at} className={styles.row}>
             <Autocomplete
-              size="xs"
               aria-label={`${label} ${at + 1}: path`}
               placeholder="sensor.noise_um"
               data={paths}
@@ -78,7 +76,6 @@ export function PathRows<T extends { path: string }>(props: PathRowsProps<T>) {
             {entry(row, (next) => change(at, next), name)}
             <ActionIcon
               size={24}
-              variant="subtle"
               aria-label={`Remove ${name}`}
               onClick={() => onChange(rows.filter((_, i) => i !== at))}
             >

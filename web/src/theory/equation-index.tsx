@@ -1,4 +1,4 @@
-import { Switch, TextInput } from "@mantine/core";
+import { Box, Switch, TextInput } from "@mantine/core";
 import { IconSearch } from "@tabler/icons-react";
 import { memo, useDeferredValue, useEffect, useMemo, useRef, useState } from "react";
 import { useCatalog } from "../api/use-catalog";
@@ -25,7 +25,7 @@ export function EquationIndex() {
   }, [isFilled]);
   return (
     <section ref={section} className={styles.index} aria-label="Equations">
-      <header className={styles.head}>
+      <header className={`row ${styles.head}`}>
         <div>
           <h2>Equations</h2>
           <p role="status">
@@ -35,7 +35,6 @@ export function EquationIndex() {
           </p>
         </div>
         <TextInput
-          size="xs"
           aria-label="Search equations"
           placeholder="Name, section or word: 5.2.4, gain, MRAC"
           leftSection={<IconSearch size={15} />}
@@ -50,7 +49,11 @@ export function EquationIndex() {
         />
       </header>
       {isFilled && <Families families={families} />}
-      {blocks.length > 0 && listed.length === 0 && <p className={styles.none}>No equation has all these words.</p>}
+      {blocks.length > 0 && listed.length === 0 && (
+        <Box component="p" c="dimmed">
+          No equation has all these words.
+        </Box>
+      )}
     </section>
   );
 }
@@ -72,11 +75,11 @@ function Families({ families }: { families: ReturnType<typeof found> }) {
 const Row = memo(function Row({ entry: { blocks, equation } }: { entry: Entry }) {
   return (
     <li className={styles.row}>
-      <div className={styles.name}>
+      <Box display="grid" fz="sm">
         <b>{blocks.join(", ")}</b>
         <span>{equation.label.replaceAll("_", " ")}</span>
         {equation.source && <small>{equation.source}</small>}
-      </div>
+      </Box>
       {equation.printed ? (
         <div className={styles.erratum}>
           <EquationDetail equation={equation} />

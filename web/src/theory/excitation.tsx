@@ -6,6 +6,7 @@ import { useAsked } from "../api/queries";
 import { formatSi } from "../ui/format";
 import { Formula } from "../ui/formula";
 import { NumberField } from "../ui/number-field";
+import { TableHead } from "../ui/table-head";
 import { roundTo } from "../ui/unit-scale";
 import styles from "./theory.module.css";
 
@@ -35,21 +36,15 @@ export function Excitation() {
     <section className={styles.card} aria-label="Persistent excitation">
       <h2>Does the input excite enough?</h2>
       <Formula latex="\alpha_2 I\ge\int_t^{t+\delta}\varphi\varphi^T\,d\tau\ge\alpha_1 I>0,\quad\varphi=\tfrac1{(s+\lambda)^2}[u,-\dot y,-y]^T" />
-      <div className={styles.examples}>
+      <div className={`row ${styles.examples}`}>
         {PRESETS.map(({ name, tones: preset }) => (
-          <Button key={name} size="compact-xs" variant="default" onClick={() => setTones(preset)}>
+          <Button key={name} size="compact-xs" onClick={() => setTones(preset)}>
             {name}
           </Button>
         ))}
       </div>
       <table className={styles.tones}>
-        <thead>
-          <tr>
-            <th scope="col">Frequency over ω₀</th>
-            <th scope="col">Amplitude</th>
-            <th />
-          </tr>
-        </thead>
+        <TableHead names={["Frequency over ω₀", "Amplitude", ""]} />
         <tbody>
           {tones.map((tone, i) => (
             // biome-ignore lint/suspicious/noArrayIndexKey: a tone is known by its place
@@ -76,7 +71,6 @@ export function Excitation() {
               </td>
               <td>
                 <ActionIcon
-                  variant="subtle"
                   size={26}
                   disabled={tones.length < 2}
                   aria-label={`Remove tone ${i + 1}`}
@@ -89,7 +83,7 @@ export function Excitation() {
           ))}
         </tbody>
       </table>
-      <div className={styles.examples}>
+      <div className={`row ${styles.examples}`}>
         <Button
           size="compact-xs"
           variant="light"

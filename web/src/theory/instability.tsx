@@ -58,9 +58,8 @@ export function Instability() {
         One gain adapted on k/(s² + b₁s + 1) under a sine. In orange the error grows, in blue it decays. Each point
         shows how fast the worst solution grows, by Floquet's theorem.
       </p>
-      <div className={styles.examples}>
+      <div className={`row ${styles.examples}`}>
         <NativeSelect
-          size="xs"
           aria-label="Rule"
           value={rule}
           data={RULES.map(({ value, label }) => ({ value, label }))}

@@ -46,9 +46,9 @@ export function PositiveReal() {
         error={parsed.why ?? refusal?.body.message}
         onChange={(e) => setText(e.currentTarget.value)}
       />
-      <div className={styles.examples}>
+      <div className={`row ${styles.examples}`}>
         {EXAMPLES.map((example) => (
-          <Button key={example} size="compact-xs" variant="default" onClick={() => setText(example)}>
+          <Button key={example} size="compact-xs" onClick={() => setText(example)}>
             {example}
           </Button>
         ))}

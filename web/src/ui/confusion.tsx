@@ -1,5 +1,6 @@
 import styles from "./confusion.module.css";
 import { formatCount, formatNumber, formatPart } from "./format";
+import { TableHead } from "./table-head";
 
 interface ConfusionProps {
   title: string;
@@ -13,16 +14,7 @@ export function Confusion({ title, names, counts }: ConfusionProps) {
   return (
     <table className={styles.confusion}>
       <caption>{title}: % of samples, truth down, verdict across</caption>
-      <thead>
-        <tr>
-          <td />
-          {names.map((name) => (
-            <th key={name} scope="col">
-              {name}
-            </th>
-          ))}
-        </tr>
-      </thead>
+      <TableHead names={["", ...names]} />
       <tbody>
         {names.map((truth, row) => {
           const total = counts[row].reduce((sum, n) => sum + n, 0);

@@ -22,7 +22,7 @@ export class ErrorFence extends Component<ErrorFenceProps, { error: Error | unde
   override render() {
     if (!this.state.error) return this.props.children;
     const retry = (
-      <Button size="xs" variant="default" onClick={() => this.setState({ error: undefined })}>
+      <Button size="xs" onClick={() => this.setState({ error: undefined })}>
         Show it again
       </Button>
     );

@@ -1,4 +1,5 @@
 import { describe, expect, it } from "vitest";
+import cases from "../testing/cases/format.json";
 import {
   formatBeside,
   formatChange,
@@ -19,7 +20,6 @@ import {
   labelsOn,
   tickLabels,
 } from "./format";
-import cases from "./format-cases.json";
 import { plainScale, UNITS, unitScale, unitText } from "./unit-scale";
 
 const FORMATS = { si: formatSi, short: formatShort, in: formatIn };

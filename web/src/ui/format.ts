@@ -1,7 +1,7 @@
 import { decimalsFor, isPlain, roundTo, type UnitScale, unitScale, unitText } from "./unit-scale";
 
 // Every number the page writes for people is written here. `core/format.py` does the same for reports, pictures and
-// logs; `format-cases.json` holds both to one text for one value.
+// logs; `testing/cases/format.json` holds both to one text for one value.
 
 const MINUS = "−";
 const THIN = "\u202f";

@@ -49,13 +49,12 @@ export function Knob(props: KnobProps) {
   const take = (position: number) => valueAt(position, scale, step);
   return (
     <div className={styles.knob} data-changed={!isOriginal}>
-      <div className={styles.line}>
+      <div className={`row ${styles.line}`}>
         <span className={styles.label}>{label}</span>
         {!isOriginal && (
           <Tooltip label={`Back to ${formatShort(original, unit)}`}>
             <ActionIcon
               size={20}
-              variant="subtle"
               aria-label={`${label}: back to ${formatShort(original, unit)}`}
               onClick={() => onChange(original)}
             >

@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import cases from "./metric-cases.json";
+import cases from "../testing/cases/metric.json";
 import { metricName, metricScale, metricTitle } from "./metric-name";
 
 it("says a metric in words and keeps whose it is", () => {

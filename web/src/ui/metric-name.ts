@@ -2,7 +2,7 @@ import names from "../../../scenarios/metric_names.json";
 import { formatFigure, formatSpread } from "./format";
 import { plainScale, roundTo } from "./unit-scale";
 
-// The rules of reports (`scenarios/metric_name.py`); `metric-cases.json` holds both to the same names.
+// The rules of reports (`scenarios/metric_name.py`); `testing/cases/metric.json` holds both to the same names.
 
 /** Units by the ending that the names of fields have for them. */
 const UNITS: Partial<Record<string, string>> = names.units;

@@ -1,4 +1,4 @@
-import { Tabs } from "@mantine/core";
+import { Box, Tabs } from "@mantine/core";
 import type { ReactNode } from "react";
 import styles from "./page-tabs.module.css";
 
@@ -22,14 +22,14 @@ export function PageTabs({
   const [first] = Object.keys(tabs);
   const value = shown && shown in tabs ? shown : first;
   return (
-    <main className={styles.page}>
+    <Box component="main" display="flex" mih={0}>
       <Tabs
         value={value}
         onChange={(next) => next && onShow(next)}
         keepMounted={false}
         classNames={{ root: styles.tabs, list: styles.list, panel: styles.panel }}
       >
-        <header className={styles.top}>
+        <header className={`row ${styles.top}`}>
           <Tabs.List aria-label={title}>
             {Object.entries(tabs).map(([id, tab]) => (
               <Tabs.Tab key={id} value={id}>
@@ -40,6 +40,6 @@ export function PageTabs({
         </header>
         <Tabs.Panel value={value}>{tabs[value].body}</Tabs.Panel>
       </Tabs>
-    </main>
+    </Box>
   );
 }

@@ -1,6 +1,5 @@
 import { Button } from "@mantine/core";
 import type { ApiError } from "../api/client";
-import styles from "./ui.module.css";
 
 interface StaleProps {
   error: ApiError | undefined;
@@ -13,9 +12,9 @@ interface StaleProps {
 export function Stale({ error, since, onRetry }: StaleProps) {
   if (!error) return null;
   return (
-    <p className={styles.stale} role="alert">
+    <p className="row wrong" role="alert">
       {error.body.message} {since && `What you see is of ${since.toLocaleTimeString()}.`} {error.body.hint}
-      <Button size="compact-xs" variant="default" onClick={onRetry}>
+      <Button size="compact-xs" onClick={onRetry}>
         Ask again
       </Button>
     </p>

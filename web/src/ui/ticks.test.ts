@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import cases from "./axis-cases.json";
+import cases from "../testing/cases/axis.json";
 import { labelsOn } from "./format";
 import { decadeTicks, linearTicks } from "./ticks";
 import { timeUnit } from "./time-axis";

@@ -1,3 +1,4 @@
+import { Box } from "@mantine/core";
 import { DASHES } from "./palette";
 import styles from "./ui.module.css";
 
@@ -23,7 +24,10 @@ export function SignalName({ name }: { name: string }) {
   const [block, ...rest] = name.split(".");
   return (
     <span className={styles.signal} title={name}>
-      <span className={styles.block}>{words(block)}</span> <span data-rest>{words(rest.join(" "))}</span>
+      <Box component="span" c="dimmed">
+        {words(block)}
+      </Box>{" "}
+      <span data-rest>{words(rest.join(" "))}</span>
     </span>
   );
 }

@@ -31,7 +31,7 @@ export function BenchMenu() {
   const load = () => api.benches().then(setBenches, showError);
 
   return (
-    <Menu width={340} position="bottom-start" shadow="md" onOpen={load}>
+    <Menu width={340} position="bottom-start" onOpen={load}>
       <Menu.Target>
         <UnstyledButton
           className={styles.bench}

@@ -15,7 +15,11 @@ export function CompanyMenu() {
   const words = drivingWords(company, me);
   const isDriver = company.driver?.id === me;
   const button = (
-    <UnstyledButton className={styles.company} data-driver={company.is_leased && isDriver} title="Who is here">
+    <UnstyledButton
+      className={`line ${styles.company}`}
+      data-driver={company.is_leased && isDriver}
+      title="Who is here"
+    >
       {company.is_leased ? <IconSteeringWheel size={17} /> : <IconUsers size={17} />}
       <span>{words}</span>
     </UnstyledButton>
@@ -30,7 +34,7 @@ export function CompanyMenu() {
       </Popover>
     );
   return (
-    <Menu width={280} position="bottom-end" shadow="md">
+    <Menu width={280} position="bottom-end">
       <Menu.Target>{button}</Menu.Target>
       <Menu.Dropdown>
         <Here company={company} />

@@ -4,7 +4,7 @@ import { api } from "../../api/api";
 import { useMay } from "../../api/me";
 import { useAsked } from "../../api/queries";
 import type { Device, Document } from "../../api/types";
-import { showError } from "../../bench/send";
+import { useBusy } from "../../bench/use-busy";
 import { isDrawnGyroscope, isGyroscope } from "../../designer/design";
 import { useBench } from "../../stream/bench-store";
 import { formatSi } from "../../ui/format";
@@ -21,7 +21,7 @@ export function DeviceSelect() {
   const locked = useLockedWhileHidden();
   const { answer: devices = [] } = useAsked(["devices"], api.devices);
   const [asked, setAsked] = useState<Device | undefined>(undefined);
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const suits = (device: Device) => device.plants.includes(plant ?? "");
   const offered = devices.filter((device) => suits(device) || hasUsualBench(device));
   const choices = [...offered.filter(suits), ...offered.filter((device) => !suits(device))].map((device) => ({
@@ -32,12 +32,7 @@ export function DeviceSelect() {
   }));
   const known = devices.find((device) => device.id === id);
   if (!known && devices.length > 0) choices.push({ ...OWN, group: "On this bench" });
-  const begin = (device: Device) => {
-    setBusy(true);
-    beginWith(device)
-      .then(() => setAsked(undefined), showError)
-      .finally(() => setBusy(false));
-  };
+  const begin = (device: Device) => during(() => beginWith(device).then(() => setAsked(undefined)));
   return (
     <>
       <HeaderSelect
@@ -62,10 +57,10 @@ export function DeviceSelect() {
             {!teaches && " The bench you have now is gone."}
           </Text>
           <Group justify="flex-end" mt="md">
-            <Button variant="default" onClick={() => setAsked(undefined)}>
+            <Button size="sm" onClick={() => setAsked(undefined)}>
               Cancel
             </Button>
-            <Button loading={busy} data-autofocus onClick={() => begin(asked)}>
+            <Button variant="filled" size="sm" loading={busy} data-autofocus onClick={() => begin(asked)}>
               Begin again
             </Button>
           </Group>

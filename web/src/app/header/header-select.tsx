@@ -36,7 +36,6 @@ export function HeaderSelect({ label, value, choices, locked, onChoose }: Header
     <Select
       ref={input}
       className={styles.choice}
-      size="xs"
       style={{ "--letters": (shown?.title.length ?? 8) + 6 } as CSSProperties}
       label={label}
       title={locked ?? shown?.title}

@@ -23,7 +23,7 @@ export function Header() {
       <DeviceSelect />
       <SensorSelect />
       <ControllerSelect />
-      <div className={styles.middle}>
+      <div className={`line ${styles.middle}`}>
         {drives && <RunControls />}
         <StateBadge />
         {drives && <TimeScaleControl />}

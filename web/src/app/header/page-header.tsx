@@ -13,12 +13,7 @@ export function PageHeader() {
     <header className={`${styles.header} ${styles.plain}`}>
       <img src="./comb.svg" alt="" width="22" height="22" />
       <h1 className={styles.title}>CombBench</h1>
-      <Button
-        size="compact-sm"
-        variant="default"
-        leftSection={<IconArrowLeft size={15} />}
-        onClick={() => setPage("bench")}
-      >
+      <Button leftSection={<IconArrowLeft size={15} />} onClick={() => setPage("bench")}>
         Back to the bench
       </Button>
       <strong>{title ?? "No bench"}</strong>

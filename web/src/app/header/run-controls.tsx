@@ -15,8 +15,9 @@ export function RunControls() {
   const stuck = state === "tripped" || unknown;
   const period = useBench((s) => s.bench?.drive_period_ticks ?? null);
   return (
-    <div className={styles.run}>
+    <div className="line">
       <Button
+        variant="filled"
         size="compact-md"
         w="6.5em"
         leftSection={running ? <IconPlayerPauseFilled size={17} /> : <IconPlayerPlayFilled size={17} />}
@@ -26,7 +27,7 @@ export function RunControls() {
       >
         {running ? "Pause" : "Run"}
       </Button>
-      <Menu position="bottom-start" shadow="md">
+      <Menu position="bottom-start">
         <Menu.Target>
           <Button
             size="compact-md"

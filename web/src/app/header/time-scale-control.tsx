@@ -36,12 +36,7 @@ export function TimeScaleControl() {
   return (
     <fieldset className={styles.scale} aria-label="Time scale" disabled={unknown}>
       <Tooltip label="Half as fast ( [ )">
-        <ActionIcon
-          variant="subtle"
-          size="md"
-          aria-label="÷2: half as fast"
-          onClick={() => set(stepTimeScale(target, 0.5))}
-        >
+        <ActionIcon size="md" aria-label="÷2: half as fast" onClick={() => set(stepTimeScale(target, 0.5))}>
           ÷2
         </ActionIcon>
       </Tooltip>
@@ -98,12 +93,7 @@ export function TimeScaleControl() {
         </Popover.Dropdown>
       </Popover>
       <Tooltip label="Twice as fast ( ] )">
-        <ActionIcon
-          variant="subtle"
-          size="md"
-          aria-label="×2: twice as fast"
-          onClick={() => set(stepTimeScale(target, 2))}
-        >
+        <ActionIcon size="md" aria-label="×2: twice as fast" onClick={() => set(stepTimeScale(target, 2))}>
           ×2
         </ActionIcon>
       </Tooltip>

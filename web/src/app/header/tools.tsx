@@ -75,7 +75,7 @@ export function Tools() {
     { label: "Keyboard ( ? )", run: actions.keys },
   ];
   return (
-    <Menu width={330} position="bottom-end" shadow="md">
+    <Menu width={330} position="bottom-end">
       <Menu.Target>
         <Button
           size="compact-md"

@@ -9,20 +9,19 @@ import styles from "./header.module.css";
 export function Visitor() {
   const me = useMe((s) => s.me);
   if (!me || me.role === "teacher") return null;
-  if (me.role === "watcher") return <p className={styles.visitor}>You watch this bench</p>;
+  if (me.role === "watcher") return <p className={`line ${styles.visitor}`}>You watch this bench</p>;
   const turn = () =>
     raiseHand(!me.hand).then(
       ({ hand }) => announce(hand ? "Your hand is up; the teacher sees it." : "Your hand is down."),
       showError,
     );
   return (
-    <div className={styles.visitor}>
+    <div className={`line ${styles.visitor}`}>
       <p title={`${me.name}, ${me.class_name}`}>
         <b>{me.name}</b>
         <small>{me.class_name}</small>
       </p>
       <Button
-        size="compact-sm"
         variant={me.hand ? "filled" : "default"}
         aria-pressed={me.hand}
         leftSection={<IconHandStop size={16} />}

@@ -59,7 +59,7 @@ export function LectureStrip() {
         <IconChevronLeft size={17} />
       </ActionIcon>
       <Button
-        size="compact-sm"
+        variant="filled"
         rightSection={<IconChevronRight size={15} />}
         disabled={at === lecture.script.length - 1}
         title="Next cue (Space, Page Down, →)"
@@ -72,18 +72,18 @@ export function LectureStrip() {
         <strong>{cue.title}</strong>
       </p>
       {cue.vote && (
-        <Button size="compact-sm" variant="light" title="Open the vote of this cue (A)" onClick={() => void askCue()}>
+        <Button variant="light" title="Open the vote of this cue (A)" onClick={() => void askCue()}>
           Ask by a vote
         </Button>
       )}
       {page !== "bench" && (
-        <Button size="compact-sm" variant="light" onClick={() => setPage("bench")}>
+        <Button variant="light" onClick={() => setPage("bench")}>
           Back to the bench
         </Button>
       )}
       <Menu width={380} position="top-start" shadow="md">
         <Menu.Target>
-          <ActionIcon size={28} variant="subtle" aria-label="All cues" title="All cues">
+          <ActionIcon size={28} aria-label="All cues" title="All cues">
             <IconList size={17} />
           </ActionIcon>
         </Menu.Target>
@@ -98,13 +98,12 @@ export function LectureStrip() {
       </Menu>
       <Popover width="min(720px, 94vw)" position="top-start" shadow="md">
         <Popover.Target>
-          <ActionIcon size={28} variant="subtle" aria-label="Notes" title="Notes of the speaker, on the projector too">
+          <ActionIcon size={28} aria-label="Notes" title="Notes of the speaker, on the projector too">
             <IconNotes size={17} />
           </ActionIcon>
         </Popover.Target>
         <Popover.Dropdown>
           <Button
-            size="compact-sm"
             variant="light"
             leftSection={<IconExternalLink size={15} />}
             title="Notes of the speaker in a window of their own, for a second screen (I)"

@@ -104,7 +104,7 @@ function Following() {
   }, [channel]);
   if (!now?.cue)
     return (
-      <main className={styles.presenter}>
+      <main className={`column ${styles.presenter}`}>
         <h1>No lecture runs</h1>
         <p>Begin one in the window of the bench; the notes appear here. Gallery has the notes of every lecture.</p>
       </main>
@@ -153,10 +153,12 @@ function Page({ now, turn, children }: PageProps) {
       <ClockFace used={used} planned={now.planned} whole={now.whole} />
       {now.cue && <Notes cue={now.cue} next={now.next} />}
       <p className={styles.bar}>
-        <Button variant="default" onClick={() => turn(-1)}>
+        <Button size="sm" onClick={() => turn(-1)}>
           Back
         </Button>
-        <Button onClick={() => turn(1)}>Next</Button>
+        <Button variant="filled" size="sm" onClick={() => turn(1)}>
+          Next
+        </Button>
       </p>
       {children}
     </main>

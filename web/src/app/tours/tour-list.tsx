@@ -21,13 +21,7 @@ export function TourList() {
       </p>
       <Group gap={6}>
         {TOURS.map((tour) => (
-          <Button
-            key={tour.id}
-            size="compact-sm"
-            variant="default"
-            disabled={narrow}
-            onClick={() => void startTour(tour)}
-          >
+          <Button key={tour.id} disabled={narrow} onClick={() => void startTour(tour)}>
             {tour.title}
           </Button>
         ))}
@@ -40,9 +34,5 @@ export function TourList() {
 export function OfferTour() {
   const { width } = useViewportSize();
   if ((width || window.innerWidth) < TOUR_PX) return null;
-  return (
-    <Button size="compact-sm" variant="default" onClick={() => void startTour(TOURS[0])}>
-      Take the tour
-    </Button>
-  );
+  return <Button onClick={() => void startTour(TOURS[0])}>Take the tour</Button>;
 }

@@ -59,10 +59,9 @@ export function AdaptationPanel() {
     shown.current &&
     stripsPicture(shown.current, unit.strips, `Adaptation of ${unit.block.replaceAll("_", " ")}`, LEGEND);
   return (
-    <section className={styles.panel} aria-label="Adaptation">
-      <div className={styles.bar}>
+    <section className={`view ${styles.panel}`} aria-label="Adaptation">
+      <div className={`row ${styles.bar}`}>
         <NativeSelect
-          size="xs"
           aria-label="What adapts"
           value={unit.block}
           data={units.map((u) => ({
@@ -71,7 +70,7 @@ export function AdaptationPanel() {
           }))}
           onChange={(e) => setWanted(e.currentTarget.value)}
         />
-        <span className={styles.legend}>
+        <span className={`line ${styles.legend}`}>
           <i data-kind="now" /> now <i data-kind="ideal" /> ideal
         </span>
         <LaneTools time={time} onWindow={setWindowMs} take={take} />

@@ -1,9 +1,9 @@
 import { Button } from "@mantine/core";
-import { useMemo, useRef, useState } from "react";
+import { useMemo, useRef } from "react";
 import { useMay } from "../../api/me";
 import { usePanelVisible } from "../../api/panel-visible";
 import { openVariant } from "../../bench/open-bench";
-import { showError } from "../../bench/send";
+import { useBusy } from "../../bench/use-busy";
 import { useBench } from "../../stream/bench-store";
 import { middles } from "../../stream/panel-frame";
 import { useFeed } from "../../stream/use-feed";
@@ -18,7 +18,7 @@ const USUAL_LEAST = 1e-5;
 export function ExcitationMeter() {
   const signals = useBench((s) => s.bench?.signals);
   const parameters = useBench((s) => s.bench?.parameters);
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const teaches = useMay("teach");
   const source = signals?.find((s) => s.name.endsWith(".excitation_relative"))?.name.split(".")[0];
   const section = (parameters?.identifiers as Record<string, { least_excitation?: number }> | undefined)?.[
@@ -51,13 +51,12 @@ export function ExcitationMeter() {
 
   if (!source) {
     const add = () => {
-      setBusy(true);
-      openVariant(
-        { "identifiers.excitation": { kind: "excitation" } },
-        "The bench restarts with an excitation monitor.",
-      )
-        .catch(showError)
-        .finally(() => setBusy(false));
+      void during(() =>
+        openVariant(
+          { "identifiers.excitation": { kind: "excitation" } },
+          "The bench restarts with an excitation monitor.",
+        ),
+      );
     };
     return (
       <p className={styles.nometer}>
@@ -71,7 +70,7 @@ export function ExcitationMeter() {
     );
   }
   return (
-    <div className={styles.meter}>
+    <div className={`row ${styles.meter}`}>
       <span>Excitation</span>
       <div
         ref={fill}

@@ -37,6 +37,7 @@ export function AllanPanel() {
         action={
           teaches && (
             <Button
+              variant="filled"
               size="xs"
               onClick={() =>
                 openVariant({ "readouts.allan.kind": "allan" }, "Bench with an Allan read-out").catch(showError)
@@ -71,8 +72,8 @@ function Readout({ bench, name }: { bench: string; name: string }) {
   const take = (): Picture | undefined =>
     readout && { ...pictureName("Allan deviation"), height: 480, legend: allanEntries("light"), paint };
   return (
-    <section className={styles.panel} aria-label="Allan deviation">
-      <div className={styles.bar}>
+    <section className="view" aria-label="Allan deviation">
+      <div className={`row ${styles.bar}`}>
         <span>
           {readout
             ? `Record of ${formatIn(readout.record_s, "s", readout.record_s < 100 ? 2 : 0)}`
@@ -92,7 +93,7 @@ function Readout({ bench, name }: { bench: string; name: string }) {
         <PictureMenu take={take} />
       </div>
       <div className={styles.body}>
-        <div className={styles.chart}>
+        <div className={`column ${styles.chart}`}>
           <div className={styles.stage}>
             <Painted
               label={`Allan deviation over ${formatCount(readout?.octaves.length ?? 0, "averaging time")}`}

@@ -1,5 +1,6 @@
 import type { RateReadout } from "../../api/types";
 import { formatShort, formatSpread } from "../../ui/format";
+import { TableHead } from "../../ui/table-head";
 import styles from "./allan.module.css";
 import { driftGrade, walkGrade } from "./deviation";
 
@@ -7,13 +8,7 @@ import { driftGrade, walkGrade } from "./deviation";
 export function FigureTable({ figures }: { figures: RateReadout["figures"] }) {
   return (
     <table className={styles.table}>
-      <thead>
-        <tr>
-          <th scope="col">Noise</th>
-          <th scope="col">Fitted</th>
-          <th scope="col">Of the rate itself</th>
-        </tr>
-      </thead>
+      <TableHead names={["Noise", "Fitted", "Of the rate itself"]} />
       <tbody>
         {figures.map((figure) => (
           <tr key={figure.letter}>

@@ -5,12 +5,11 @@ import type { BlockCard, Document } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { hypothesisWords } from "../../bench/hypothesis-words";
 import { openVariant } from "../../bench/open-bench";
-import { showError } from "../../bench/send";
+import { useBusy } from "../../bench/use-busy";
 import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { middles, type PanelFrame } from "../../stream/panel-frame";
 import { EmptyState } from "../../ui/empty-state";
-import styles from "./behaviour.module.css";
 import { BehaviourPlot, type Drawing } from "./behaviour-plot";
 import { drawRegions } from "./paint-regions";
 import { drawSets } from "./paint-sets";
@@ -37,7 +36,7 @@ export function BehaviourPanel() {
   const signals = useBench((s) => s.bench?.signals);
   const { block } = useCatalog();
   const [wanted, setWanted] = useState<string | undefined>(undefined);
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const teaches = useMay("teach");
   const picture = useRef<TakePicture>(null);
   const regions = block("diagnose", "regions");
@@ -50,10 +49,7 @@ export function BehaviourPanel() {
   }, [diagnosers, parameters, signals, regions]);
   const shown = all.find(({ id }) => id === wanted) ?? all[0];
   const begin = (kind: string, said: string) => {
-    setBusy(true);
-    openVariant({ [`diagnosers.${kind}`]: { kind } }, said)
-      .catch(showError)
-      .finally(() => setBusy(false));
+    void during(() => openVariant({ [`diagnosers.${kind}`]: { kind } }, said));
   };
   if (!shown)
     return (
@@ -65,6 +61,7 @@ export function BehaviourPanel() {
           !replay && (
             <>
               <Button
+                variant="filled"
                 size="xs"
                 loading={busy}
                 onClick={() => begin("consistency", "The bench restarts with a test of consistency.")}
@@ -73,7 +70,6 @@ export function BehaviourPanel() {
               </Button>
               <Button
                 size="xs"
-                variant="default"
                 loading={busy}
                 onClick={() => begin("regions", "The bench restarts with regions of performance.")}
               >
@@ -88,7 +84,7 @@ export function BehaviourPanel() {
       </EmptyState>
     );
   return (
-    <section className={styles.panel} aria-label="Behaviour">
+    <section className="view" aria-label="Behaviour">
       <BehaviourPlot
         key={`${bench} ${shown.id}`}
         title={shown.kind === "sets" ? "Behaviours" : "Regions of performance"}
@@ -100,7 +96,6 @@ export function BehaviourPanel() {
       >
         {all.length > 1 && (
           <NativeSelect
-            size="xs"
             aria-label="Diagnoser drawn"
             value={shown.id}
             data={all.map(({ id }) => ({ value: id, label: id.replaceAll("_", " ") }))}

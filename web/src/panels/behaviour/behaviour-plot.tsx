@@ -1,19 +1,12 @@
-import { type ReactNode, type Ref, useEffect, useImperativeHandle, useMemo, useRef } from "react";
-import { usePanelVisible } from "../../api/panel-visible";
-import { useView } from "../../bench/view-store";
+import { type ReactNode, type Ref, useImperativeHandle, useMemo, useRef } from "react";
 import type { LegendEntry } from "../../picture/legend";
+import { LiveCanvas } from "../../picture/live-canvas";
 import type { Box, Look, Pen } from "../../picture/pen";
 import { pictureName } from "../../picture/picture";
 import type { TakePicture } from "../../picture/picture-menu";
 import type { PanelFrame } from "../../stream/panel-frame";
-import { stream } from "../../stream/stream";
-import { useFeed } from "../../stream/use-feed";
 import type { Subscription } from "../../stream/wire";
-import { useCanvas, useScheme } from "../../ui/use-canvas";
 import styles from "./behaviour.module.css";
-
-/** Words that change more often cannot be read. */
-const WORDS_MS = 200;
 
 /** What a diagnoser says, as a picture and as a sentence. */
 export interface Drawing {
@@ -35,14 +28,8 @@ interface BehaviourPlotProps {
 
 /** The canvas of a drawing that follows the bench, and what it says in words. */
 export function BehaviourPlot({ title, signals, windowMs, columns, draw, picture, children }: BehaviourPlotProps) {
-  const scheme = useScheme();
-  const fontSize = useView((s) => s.fontPx);
-  const visible = usePanelVisible();
-  const { canvas, size } = useCanvas();
   const words = useRef<HTMLParagraphElement>(null);
   const drawing = useRef<Drawing | undefined>(undefined);
-  const dirty = useRef(true);
-  const said = useRef(0);
   useImperativeHandle(
     picture,
     () => () => {
@@ -56,38 +43,24 @@ export function BehaviourPlot({ title, signals, windowMs, columns, draw, picture
     () => ({ mode: "roll", signals, window_ms: windowMs, width: columns }),
     [signals, windowMs, columns],
   );
-  useFeed(subscription, (frame) => {
-    drawing.current = draw(frame);
-    dirty.current = true;
-  });
-
-  useEffect(() => {
-    if (!visible) return;
-    dirty.current = true;
-    return stream.loop.add(() => {
-      const ctx = canvas.current?.getContext("2d");
-      const shown = drawing.current;
-      if (!dirty.current || !ctx || !shown || size.width < 120 || size.height < 100) return;
-      dirty.current = false;
-      ctx.setTransform(size.ratio, 0, 0, size.ratio, 0, 0);
-      ctx.clearRect(0, 0, size.width, size.height);
-      shown.paint(ctx, size, { scheme, fontSize });
-      const now = performance.now();
-      if (now - said.current < WORDS_MS || !words.current) return;
-      said.current = now;
-      words.current.textContent = shown.words;
-    });
-  }, [visible, canvas, size, scheme, fontSize]);
 
   return (
     <>
-      <div className={styles.bar}>
+      <div className={`row ${styles.bar}`}>
         {children}
         <p ref={words} className={styles.words} data-testid="behaviour-words" />
       </div>
-      <div className={styles.plot}>
-        <canvas ref={canvas} className={styles.canvas} role="img" aria-label={title} />
-      </div>
+      <LiveCanvas
+        label={title}
+        subscription={subscription}
+        hear={(frame) => {
+          drawing.current = draw(frame);
+        }}
+        paint={(pen, box, look, tells) => {
+          drawing.current?.paint(pen, box, look);
+          if (tells && words.current && drawing.current) words.current.textContent = drawing.current.words;
+        }}
+      />
     </>
   );
 }

@@ -33,7 +33,7 @@ export function Answer({ question, rule, onEnded }: AnswerProps) {
   };
   return (
     <>
-      <div className={styles.question}>
+      <div className={`column ${styles.question}`}>
         <p className={exercise.text}>
           {hasCome
             ? "If there is a fault, it has come."
@@ -49,7 +49,7 @@ export function Answer({ question, rule, onEnded }: AnswerProps) {
         <p className={exercise.text}>You may change the reference and the controller meanwhile.</p>
         {rule}
       </div>
-      <footer className={styles.commit}>
+      <footer className={`row ${styles.commit}`}>
         <label htmlFor="confidence">
           How sure are you? <strong>{formatPercent(confidence / 100, 0)}</strong>
         </label>
@@ -64,6 +64,7 @@ export function Answer({ question, rule, onEnded }: AnswerProps) {
           onChange={setConfidence}
         />
         <Button
+          variant="filled"
           size="xs"
           loading={busy}
           disabled={said === undefined}

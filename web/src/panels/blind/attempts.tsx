@@ -7,6 +7,7 @@ import { useBench } from "../../stream/bench-store";
 import exercise from "../../ui/exercise.module.css";
 import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { jump } from "../../ui/hover";
+import { TableHead } from "../../ui/table-head";
 import styles from "./blind.module.css";
 import { Telling } from "./telling";
 
@@ -41,15 +42,9 @@ export function Outcome({ answer }: { answer: HiddenAnswer }) {
       </p>
       <Telling answer={answer} />
       {came_tick !== null && came_tick <= head && (
-        <Button size="compact-sm" variant="default" onClick={() => jump.to({ tick: came_tick })}>
-          Show the moment it came
-        </Button>
+        <Button onClick={() => jump.to({ tick: came_tick })}>Show the moment it came</Button>
       )}
-      {answer.healthy && (
-        <Button size="compact-sm" variant="default" onClick={() => showPanel("identify")}>
-          Sweep the device
-        </Button>
-      )}
+      {answer.healthy && <Button onClick={() => showPanel("identify")}>Sweep the device</Button>}
     </div>
   );
 }
@@ -62,14 +57,7 @@ export function Attempts({ answers }: { answers: readonly HiddenAnswer[] }) {
       <caption>
         {formatCount(answers.length, "answer")}, {points(mean)} on average
       </caption>
-      <thead>
-        <tr>
-          <th scope="col">Said</th>
-          <th scope="col">Truth</th>
-          <th scope="col">Sure</th>
-          <th scope="col">Points</th>
-        </tr>
-      </thead>
+      <TableHead names={["Said", "Truth", "Sure", "Points"]} />
       <tbody>
         {answers.map((one) => {
           const known = answersOf(one);

@@ -12,7 +12,6 @@ import { NumberField } from "../../ui/number-field";
 import { Stale } from "../../ui/stale";
 import { Answer } from "./answer";
 import { Attempts, Outcome } from "./attempts";
-import styles from "./blind.module.css";
 
 /** Hidden fault: the server hides a fault; answer with a confidence, then see the truth and the points. */
 export function BlindPanel() {
@@ -38,7 +37,7 @@ export function BlindPanel() {
   const rule = value && <p className={exercise.text}>{value.rule}</p>;
   if (question)
     return (
-      <section className={styles.asked} aria-label="Hidden fault">
+      <section className="view" aria-label="Hidden fault">
         <Stale error={error} since={since} onRetry={again} />
         <Answer key={question.id} question={question} rule={rule} onEnded={again} />
       </section>
@@ -52,10 +51,10 @@ export function BlindPanel() {
     setSeed(seed + 1);
   };
   return (
-    <section className={exercise.panel} aria-label="Hidden fault">
+    <section className={`view ${exercise.panel}`} aria-label="Hidden fault">
       <Stale error={error} since={since} onRetry={again} />
-      <div className={exercise.bar}>
-        <Button size="sm" onClick={hide}>
+      <div className={`row ${exercise.bar}`}>
+        <Button variant="filled" size="sm" onClick={hide}>
           {last ? "Hide another fault" : "Hide a fault"}
         </Button>
         <span className={exercise.field}>

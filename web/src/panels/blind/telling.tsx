@@ -1,6 +1,7 @@
 import type { HiddenAnswer } from "../../api/types";
 import exercise from "../../ui/exercise.module.css";
 import { formatChange, formatSi } from "../../ui/format";
+import { TableHead } from "../../ui/table-head";
 import styles from "./blind.module.css";
 
 type Shown = NonNullable<HiddenAnswer["healthy"]>;
@@ -53,14 +54,7 @@ export function Telling({ answer }: { answer: HiddenAnswer }) {
           : `Frequency response tells it: ${parts.map((part) => SWEPT[part] ?? part).join("; ")}.`}
       </p>
       <table className={styles.moved} aria-label="What a sweep shows">
-        <thead>
-          <tr>
-            <th scope="col">A sweep shows</th>
-            <th scope="col">healthy</th>
-            <th scope="col">now</th>
-            <th scope="col">change</th>
-          </tr>
-        </thead>
+        <TableHead names={["A sweep shows", "healthy", "now", "change"]} />
         <tbody>
           {FIGURES.map(({ key, words, unit }) => {
             const change = faulty[key] / healthy[key] - 1;

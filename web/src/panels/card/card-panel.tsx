@@ -35,18 +35,15 @@ export function CardPanel() {
     label: `${i.title}: ${block(i.family, i.name)?.title ?? i.name.replaceAll("_", " ")}`,
   }));
   return (
-    <section className={styles.card} aria-label={`Block: ${found?.title ?? instance.name}`}>
-      <div className={styles.head}>
+    <section className="view-page" aria-label={`Block: ${found?.title ?? instance.name}`}>
+      <div className={`row ${styles.head}`}>
         <Button
-          size="compact-sm"
-          variant="default"
           leftSection={<IconChevronLeft size={15} />}
           onClick={() => showPanel("schematic")}
         >
           Diagram
         </Button>
         <NativeSelect
-          size="xs"
           aria-label="Block"
           value={instance.id}
           data={options}
@@ -83,7 +80,7 @@ export function CardPanel() {
           }
           action={
             failed && (
-              <Button size="xs" onClick={retry}>
+              <Button variant="filled" size="xs" onClick={retry}>
                 Ask again
               </Button>
             )

@@ -18,7 +18,6 @@ export function EditUnit({ block: { family, name } }: { block: BlockCard }) {
   if (!isOwn && !canCopy) return null;
   return (
     <Button
-      size="compact-sm"
       variant="subtle"
       leftSection={<IconPencil size={14} />}
       onClick={() => (isOwn ? editOwn(name) : void editCopy(name))}

@@ -34,7 +34,7 @@ export function ParameterList({ instance, parameters, document }: ParameterListP
     else void apply({ [path]: value });
   };
 
-  if (shown.length === 0) return <p className={styles.none}>This block has no parameters.</p>;
+  if (shown.length === 0) return <p className="note">This block has no parameters.</p>;
   const count = Object.keys(staged).length;
   return (
     <>
@@ -53,21 +53,18 @@ export function ParameterList({ instance, parameters, document }: ParameterListP
           );
         })}
       </div>
-      <Group gap="sm" className={styles.actions}>
+      <Group gap="sm" mt={12}>
         <Checkbox
-          size="xs"
           label="Collect changes, apply them in one tick"
           checked={collect}
           onChange={(e) => setCollect(e.currentTarget.checked)}
         />
         {count > 0 && (
-          <Button size="compact-sm" onClick={() => apply(staged)}>
+          <Button variant="filled" onClick={() => apply(staged)}>
             Apply {count} in one tick
           </Button>
         )}
-        <Button size="compact-sm" variant="default" onClick={() => showPanel("sets")}>
-          Sets…
-        </Button>
+        <Button onClick={() => showPanel("sets")}>Sets…</Button>
       </Group>
     </>
   );

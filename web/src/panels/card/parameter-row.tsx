@@ -1,4 +1,4 @@
-import { ActionIcon, NativeSelect, Switch, Tooltip } from "@mantine/core";
+import { ActionIcon, Box, NativeSelect, Switch, Tooltip } from "@mantine/core";
 import { IconArrowBackUp, IconLock } from "@tabler/icons-react";
 import type { Parameter } from "../../api/types";
 import { formatShort } from "../../ui/format";
@@ -22,28 +22,27 @@ export function ParameterRow({ parameter, value, staged, onChange }: ParameterRo
   const range = limits(parameter);
   return (
     <div className={styles.parameter} data-staged={staged}>
-      <div className={styles.words}>
-        <span className={styles.label}>
+      <Box className="column" flex="1 1 110px" miw={0}>
+        <Box component="span" className="line" fz="sm" fw={560}>
           {label}
           {!live && (
             <Tooltip label="Fixed while the bench exists: it changes the wiring. Start a new bench to choose it.">
               <IconLock size={12} role="img" aria-label="fixed while running" />
             </Tooltip>
           )}
-        </span>
-        <span className={styles.meaning}>
+        </Box>
+        <span className="remark">
           {meaning}
           {range && ` (${range})`}
         </span>
-      </div>
-      <div className={styles.entry}>
+      </Box>
+      <Box className="line" flex="none">
         {!isDefault && live && parameter.default !== null && type !== "list" && (
           <Tooltip
             label={`Back to the default ${typeof parameter.default === "number" ? formatShort(parameter.default, parameter.unit, 6) : String(parameter.default).replaceAll("_", " ")}`}
           >
             <ActionIcon
               size={22}
-              variant="subtle"
               aria-label={`${label}: back to the default`}
               onClick={() => onChange(parameter.default)}
             >
@@ -53,7 +52,6 @@ export function ParameterRow({ parameter, value, staged, onChange }: ParameterRo
         )}
         {type === "boolean" ? (
           <Switch
-            size="xs"
             aria-label={label}
             checked={value === true}
             disabled={!live}
@@ -61,7 +59,6 @@ export function ParameterRow({ parameter, value, staged, onChange }: ParameterRo
           />
         ) : type === "choice" ? (
           <NativeSelect
-            size="xs"
             w={132}
             aria-label={label}
             disabled={!live}
@@ -83,7 +80,7 @@ export function ParameterRow({ parameter, value, staged, onChange }: ParameterRo
         ) : (
           <code>{String(value)}</code>
         )}
-      </div>
+      </Box>
     </div>
   );
 }

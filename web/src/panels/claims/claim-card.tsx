@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { IconCheck, IconClock, IconX } from "@tabler/icons-react";
 import { useMay } from "../../api/me";
 import type { Claim, ClaimList } from "../../api/types";
@@ -41,7 +41,7 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
       <span className={styles.mark} title={stateWords(claim)}>
         {ICONS[claim.state]}
       </span>
-      <div className={styles.body}>
+      <Box flex={1} miw={0}>
         <div className={styles.head}>
           <h3>{words.name}</h3>
           {claim.state !== "not yet" && <Verdict verdict={claim.verdict} borneOut />}
@@ -69,9 +69,9 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
           </div>
         </dl>
         {said.map((text) => (
-          <p key={text} className={styles.words}>
+          <Box component="p" key={text} m="2px 0">
             {text}
-          </p>
+          </Box>
         ))}
         {readings.length > 0 && <p className={styles.reading}>Drawn: {readings.join("; ")}.</p>}
         {problems.map((text) => (
@@ -83,16 +83,14 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
         {claim.fitted.length > 0 && (
           <p className={styles.reading}>Chosen so that it agrees: {claim.fitted.join(", ")}.</p>
         )}
-        <div className={styles.buttons}>
+        <Box className="row" mt={8}>
           {teaches && claim.knobs.length > 0 && (
-            <Button size="compact-sm" variant="light" aria-expanded={isOpen} onClick={() => onOpen(!isOpen)}>
+            <Button variant="light" aria-expanded={isOpen} onClick={() => onOpen(!isOpen)}>
               Where does it hold?
             </Button>
           )}
           {drawn.length > 0 && (
             <Button
-              size="compact-sm"
-              variant="default"
               title={`Open a scope on ${drawn.join(", ")}`}
               onClick={() => addScope("Printed", [...drawn, ...partnersOf(drawn)], "time")}
             >
@@ -100,9 +98,9 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
             </Button>
           )}
           <SlideButtons claim={claim} list={list} />
-        </div>
+        </Box>
         {isOpen && <ThresholdView claim={claim} />}
-      </div>
+      </Box>
     </li>
   );
 }

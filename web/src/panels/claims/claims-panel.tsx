@@ -1,4 +1,4 @@
-import { Checkbox } from "@mantine/core";
+import { Box, Checkbox } from "@mantine/core";
 import { useState } from "react";
 import type { ClaimList } from "../../api/types";
 import { showPrinted, usePrinted } from "../../bench/printed";
@@ -28,23 +28,24 @@ export function ClaimsPanel() {
       </EmptyState>
     );
   return (
-    <section className={styles.panel} aria-label="Claims" data-over={value.is_over}>
-      <header className={styles.top}>
-        <p className={styles.claim}>{value.claim || value.title}</p>
-        <div className={styles.line}>
+    <section className={`view ${styles.panel}`} aria-label="Claims" data-over={value.is_over}>
+      <Box component="header" flex="none">
+        <Box component="p" m="0 0 6px" fz="md" fw={620}>
+          {value.claim || value.title}
+        </Box>
+        <div className="row">
           {value.is_over && <Verdict verdict={value.verdict} borneOut />}
-          <span className={styles.progress}>
+          <Box component="span" flex="1 1 220px" c="dimmed">
             <Progress list={value} />
-          </span>
+          </Box>
           <Checkbox
-            size="xs"
             label="Printed marks on the scopes"
             checked={isShown}
             onChange={(event) => showPrinted(event.currentTarget.checked)}
           />
         </div>
-      </header>
-      <ul className={styles.list}>
+      </Box>
+      <ul className="column">
         {value.claims.map((claim) => (
           <ClaimCard
             key={claim.metric}

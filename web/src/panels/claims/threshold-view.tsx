@@ -23,9 +23,8 @@ export function ThresholdView({ claim }: { claim: Claim }) {
   const [path, setPath] = useState(claim.knobs[0].path);
   const knob = claim.knobs.find((one) => one.path === path) ?? claim.knobs[0];
   return (
-    <div className={styles.threshold}>
+    <div className={`column ${styles.threshold}`}>
       <NativeSelect
-        size="xs"
         label="Turn"
         value={knob.path}
         data={claim.knobs.map((one) => ({ value: one.path, label: labelOf(one) }))}
@@ -81,11 +80,11 @@ function Turned({ claim, knob }: { claim: Claim; knob: ClaimKnob }) {
     <>
       <div className={styles.choose}>
         {isActive(run) ? (
-          <Button size="compact-sm" variant="default" onClick={() => id && api.cancelThreshold(id).catch(showError)}>
+          <Button onClick={() => id && api.cancelThreshold(id).catch(showError)}>
             Cancel, {formatPercent(run?.progress ?? 0, 0)} done
           </Button>
         ) : (
-          <Button size="compact-sm" onClick={() => void find()}>
+          <Button variant="filled" onClick={() => void find()}>
             Find where it holds
           </Button>
         )}
@@ -127,9 +126,7 @@ function Turned({ claim, knob }: { claim: Claim; knob: ClaimKnob }) {
       />
       {drives && (
         <div className={styles.choose}>
-          <Button size="compact-sm" variant="default" onClick={begin}>
-            Begin the bench again with it
-          </Button>
+          <Button onClick={begin}>Begin the bench again with it</Button>
           <p className={styles.hint}>
             {knob.is_live
               ? "The slider changes the bench as it runs. Earlier samples count too, until a restart."

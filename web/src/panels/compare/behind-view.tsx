@@ -94,7 +94,6 @@ function Sources({ bench }: { bench: Bench }) {
       </ul>
       {behind.length < MOST_BEHIND ? (
         <NativeSelect
-          size="xs"
           label="Add"
           value=""
           data={[
@@ -115,20 +114,17 @@ function Sources({ bench }: { bench: Bench }) {
         <p className={styles.words}>{MOST_BEHIND} are shown, which is the most.</p>
       )}
       <NativeSelect
-        size="xs"
         label="Aligned at"
         value={alignment}
         data={ALIGNMENTS}
         onChange={(e) => void align(e.currentTarget.value as Alignment)}
       />
       <Checkbox
-        size="xs"
         label="Shade the difference from the first"
         checked={shaded}
         onChange={(e) => useBehind.setState({ shaded: e.currentTarget.checked })}
       />
       <Checkbox
-        size="xs"
         label="Draw the difference on an axis of its own"
         checked={difference}
         onChange={(e) => useBehind.setState({ difference: e.currentTarget.checked })}
@@ -165,7 +161,6 @@ function Row({ id, words, shift, dtMs, known, onChange }: RowProps) {
   return (
     <li>
       <TextInput
-        size="xs"
         aria-label={`Name of ${words}`}
         value={name}
         maxLength={80}
@@ -175,13 +170,13 @@ function Row({ id, words, shift, dtMs, known, onChange }: RowProps) {
         onKeyDown={(e) => e.key === "Enter" && e.currentTarget.blur()}
       />
       <small>{shift === 0 ? "same time" : `${shift > 0 ? "+" : "−"}${formatSi(Math.abs(shift) * dtMs, "ms")}`}</small>
-      <Button size="compact-xs" variant="default" onClick={() => openBench(id)}>
+      <Button size="compact-xs" onClick={() => openBench(id)}>
         Show
       </Button>
-      <ActionIcon size="sm" variant="subtle" aria-label={`Take ${words} away`} onClick={() => removeBehind(id)}>
+      <ActionIcon size="sm" aria-label={`Take ${words} away`} onClick={() => removeBehind(id)}>
         <IconX size={14} />
       </ActionIcon>
-      <ActionIcon size="sm" variant="subtle" color="red" aria-label={`Close the bench ${words}`} onClick={close}>
+      <ActionIcon size="sm" color="red" aria-label={`Close the bench ${words}`} onClick={close}>
         <IconTrash size={14} />
       </ActionIcon>
     </li>

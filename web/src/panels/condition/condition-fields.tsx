@@ -24,7 +24,6 @@ export function ConditionFields({ label, none, condition, error, onChange }: Con
   return (
     <>
       <NativeSelect
-        size="xs"
         label={label}
         title={chosen?.meaning}
         value={condition.signal}
@@ -34,7 +33,6 @@ export function ConditionFields({ label, none, condition, error, onChange }: Con
       {condition.signal && (
         <>
           <NativeSelect
-            size="xs"
             label="is"
             value={condition.above ? ">" : "<"}
             data={[
@@ -44,7 +42,6 @@ export function ConditionFields({ label, none, condition, error, onChange }: Con
             onChange={(e) => set({ above: e.currentTarget.value === ">" })}
           />
           <NumberInput
-            size="xs"
             miw={92}
             label="Level"
             suffix={unit && ` ${unit}`}

@@ -1,4 +1,4 @@
-import { Button, Radio } from "@mantine/core";
+import { Box, Button, Radio } from "@mantine/core";
 import { useMemo } from "react";
 import { useShallow } from "zustand/react/shallow";
 import { controllersOf } from "../../api/fits";
@@ -44,14 +44,16 @@ export function ControllersPanel() {
   const driving = Object.values(slots).flatMap((name) => block("control", name)?.inputs.map((port) => port.name) ?? []);
   const outside = list.filter(({ id }) => id === "rate" || id === "reference" || driving.includes(id));
   return (
-    <section className={styles.panel} aria-label="Choice">
+    <section className="view-page" aria-label="Choice">
       {Object.entries(slots).map(([slot, active]) => {
         const taken = overridden(slot, slots, block);
         return (
           <fieldset key={slot} className={styles.slot}>
             <legend>{slotTitle(slot)}</legend>
             <Button
-              className={styles.open}
+              pos="absolute"
+              top={-24}
+              right={0}
               size="compact-xs"
               variant="subtle"
               onClick={() => {
@@ -68,9 +70,9 @@ export function ControllersPanel() {
               onChange={(name) => name !== active && actions.controller(name)}
             >
               {controllersOf(slot, controllers, blocks).map((law) => (
-                <div key={law.name} className={styles.row} data-active={law.name === active}>
-                  <Radio size="sm" value={law.name} label={law.title} description={<Prose text={law.summary} />} />
-                  <div className={styles.told}>
+                <div key={law.name} className={`line ${styles.row}`} data-active={law.name === active}>
+                  <Radio value={law.name} label={law.title} description={<Prose text={law.summary} />} />
+                  <div className={`column ${styles.told}`}>
                     <output ref={live(law.name)} />
                     {`${law.name}.${TRUSTED}` in told && (
                       <output className={styles.doubt} ref={live(`${law.name}.${TRUSTED}`)} />
@@ -80,9 +82,9 @@ export function ControllersPanel() {
               ))}
             </Radio.Group>
             {taken && (
-              <p className={styles.note}>
+              <Box component="p" className="note" m="4px 0 0">
                 Waits: {taken.title} drives this axis as well. Choose another to hand it back.
-              </p>
+              </Box>
             )}
           </fieldset>
         );

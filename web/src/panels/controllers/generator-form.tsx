@@ -38,7 +38,6 @@ export function KindChoice({ instance }: { instance: Instance }) {
   const { blocks } = useCatalog();
   return (
     <NativeSelect
-      size="xs"
       mb={6}
       aria-label={`Kind of ${instance.title.toLowerCase()}`}
       value={instance.name}

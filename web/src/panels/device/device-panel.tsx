@@ -20,7 +20,7 @@ export function DeviceView() {
   if (title === undefined)
     return <EmptyState title="No bench yet">The device of the bench and its model are chosen here.</EmptyState>;
   return (
-    <section className={styles.panel} aria-label="Device">
+    <section className={`view-page ${styles.panel}`} aria-label="Device">
       <h2>Model</h2>
       <PlantChoice />
       <BlockValues id="plant" />
@@ -33,7 +33,7 @@ export function SensorView() {
   const id = useBench((s) => s.bench?.id);
   if (!id) return <EmptyState title="No bench yet">The sensor of the bench is chosen here.</EmptyState>;
   return (
-    <section className={styles.panel} aria-label="Sensor">
+    <section className={`view-page ${styles.panel}`} aria-label="Sensor">
       <SensorChoice />
       <BlockValues id="sensor" />
     </section>
@@ -54,7 +54,7 @@ export function EnvironmentView() {
       ? send({ fault: "stiction", severity: value, profile: { kind: "step" } }, "Friction set")
       : send({ heal: ["stiction"] }, "Friction gone");
   return (
-    <section className={styles.panel} aria-label="Environment">
+    <section className={`view-page ${styles.panel}`} aria-label="Environment">
       <h2>{isFlat ? "Air" : "Around the package"}</h2>
       {(isFlat ? ENVIRONMENT : AROUND_A_PACKAGE).map((knob) => (
         <Knob
@@ -90,7 +90,7 @@ export function BoardView() {
   const dtMs = useBench((s) => s.bench?.dt_ms);
   if (!rate || !dtMs) return <EmptyState title="No bench yet">Rate, drive and guard of the board are here.</EmptyState>;
   return (
-    <section className={styles.panel} aria-label="Board">
+    <section className={`view-page ${styles.panel}`} aria-label="Board">
       <p className={styles.note}>
         {formatSi(rate, "kHz")}, one tick each {formatSi(dtMs, "ms")}.
       </p>

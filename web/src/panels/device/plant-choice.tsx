@@ -8,7 +8,6 @@ import { send } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { formatSi } from "../../ui/format";
 import { Weaknesses } from "../../ui/weaknesses";
-import styles from "./device.module.css";
 
 /** How much of the physics is computed, live, and what a tick of this bench costs with it. */
 export function PlantChoice() {
@@ -51,7 +50,7 @@ export function PlantChoice() {
             return (
               <Radio
                 key={b.name}
-                className={styles.plant}
+                p="4px 0"
                 size="sm"
                 value={b.name}
                 label={b.title}

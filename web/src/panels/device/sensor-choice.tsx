@@ -25,7 +25,6 @@ export function SensorChoice() {
       <div className={styles.line}>
         <NativeSelect
           flex={1}
-          size="xs"
           aria-label="Sensor that feeds the controllers"
           value={kind}
           data={sensors.filter(feeds).map((b) => ({ value: b.name, label: b.title }))}
@@ -59,7 +58,6 @@ export function SensorChoice() {
           {optical.map((b) => (
             <Switch
               key={b.name}
-              size="xs"
               mb={6}
               label={b.title}
               checked={always(b.name)}

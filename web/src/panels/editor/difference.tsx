@@ -46,18 +46,16 @@ export function Difference({ version, source, onBack, onClose }: DifferenceProps
     return () => view.destroy();
   }, [version, source]);
   return (
-    <section className={styles.difference} aria-label="Difference">
+    <section className={`column ${styles.difference}`} aria-label="Difference">
       <header>
         <span>
           From the version of {timeOf(version)} to the text of now
           {version.source === source && ": they are the same"}
         </span>
-        <Button size="compact-sm" onClick={onBack} disabled={version.source === source}>
+        <Button variant="filled" onClick={onBack} disabled={version.source === source}>
           Back to that version
         </Button>
-        <Button size="compact-sm" variant="default" onClick={onClose}>
-          Close
-        </Button>
+        <Button onClick={onClose}>Close</Button>
       </header>
       <div ref={place} className={styles.code} />
     </section>

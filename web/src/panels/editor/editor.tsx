@@ -47,14 +47,13 @@ function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
   }, [checked.now, name, source]);
 
   return (
-    <section className={styles.panel} aria-label="Editor">
-      <div className={styles.bar}>
+    <section className={`column ${styles.panel}`} aria-label="Editor">
+      <div className={`row ${styles.bar}`}>
         <StartFrom list={list} unit={checked.now?.unit ?? undefined} />
         <TextInput
-          size="xs"
           aria-label="Name of the unit"
           placeholder="name"
-          className={styles.name}
+          w="16ch"
           value={name}
           maxLength={32}
           error={name !== "" && !isUnitName(name)}
@@ -62,15 +61,15 @@ function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
         />
         <Versions chosen={chosen} onChoose={choose} />
       </div>
-      <div className={styles.bar}>
+      <div className={`row ${styles.bar}`}>
         <State name={name} source={source} checked={checked} run={run} />
         <Switch
-          size="xs"
           label="Run as I type"
           checked={asYouType}
           onChange={(e) => useDraft.setState({ asYouType: e.currentTarget.checked })}
         />
         <Button
+          variant="filled"
           size="xs"
           loading={run.busy}
           disabled={!checked.now?.unit || !isUnitName(name) || run.isOn}
@@ -109,7 +108,7 @@ function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
             <EmptyState
               title="No unit yet"
               action={
-                <Button size="xs" onClick={() => void editCopy("blank")}>
+                <Button variant="filled" size="xs" onClick={() => void editCopy("blank")}>
                   Start with three lines
                 </Button>
               }

@@ -3,8 +3,8 @@ import { useState } from "react";
 import { api } from "../../api/api";
 import { useAnswer } from "../../api/queries";
 import type { BlockCard, NewRun, Run } from "../../api/types";
-import { showError } from "../../bench/send";
 import { valuesOf } from "../../bench/unit-values";
+import { useBusy } from "../../bench/use-busy";
 import { openPlace } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { metricScale } from "../../ui/metric-name";
@@ -17,36 +17,24 @@ export function Headless({ card, source, ready }: { card: BlockCard; source: str
   const scenario = useBench((s) => s.bench?.scenario_id);
   const [started, setStarted] = useState<{ id: string; source: string } | undefined>(undefined);
   const id = started?.id;
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const { value: run } = useAnswer(
     id === undefined ? undefined : ["run", id],
     () => api.run(id ?? ""),
     (found) => (isOver(found) ? undefined : BUSY_MS),
   );
-  const start = async () => {
-    setBusy(true);
-    try {
+  const start = () =>
+    during(async () => {
       const { id } = await api.startRun(await wanted(card, source));
       setStarted({ id, source });
-    } catch (error) {
-      showError(error);
-    } finally {
-      setBusy(false);
-    }
-  };
+    });
   return (
     <section aria-label="Headless run">
       <h3>Headless run</h3>
       <p className={styles.summary}>
         {scenario} from its start to its end{card.family === "control" && `, ${card.title} drives`}.
       </p>
-      <Button
-        size="compact-sm"
-        variant="default"
-        loading={busy || (run && !isOver(run))}
-        disabled={!ready}
-        onClick={() => void start()}
-      >
+      <Button loading={busy || (run && !isOver(run))} disabled={!ready} onClick={() => void start()}>
         Use in a run
       </Button>
       {run && started?.source !== source && <p className={styles.summary}>These figures are of an earlier text.</p>}
@@ -91,7 +79,7 @@ function Outcome({ run, card }: { run: Run; card: BlockCard }) {
           <dd className={styles.digest}>{digest ?? run.state}</dd>
         </div>
       </dl>
-      <Button size="compact-sm" variant="subtle" onClick={() => openPlace("runs", run.id)}>
+      <Button variant="subtle" onClick={() => openPlace("runs", run.id)}>
         Open under Runs
       </Button>
     </>

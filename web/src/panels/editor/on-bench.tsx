@@ -19,7 +19,7 @@ export function OnBench({ card }: { card: BlockCard }) {
     [signals, card.name],
   );
   return (
-    <div className={styles.row}>
+    <div className={`row ${styles.row}`}>
       {card.family === "control" &&
         (drives ? (
           <span>It drives.</span>
@@ -27,26 +27,16 @@ export function OnBench({ card }: { card: BlockCard }) {
           isThere && (
             <>
               <span>In shadow: it computes, and another controller drives.</span>
-              <Button size="compact-sm" onClick={() => actions.controller(card.name)}>
+              <Button variant="filled" onClick={() => actions.controller(card.name)}>
                 Let it drive
               </Button>
             </>
           )
         ))}
-      {card.family === "faults" && (
-        <Button size="compact-sm" variant="default" onClick={() => showPanel("faults")}>
-          Inject it under Faults
-        </Button>
-      )}
-      {card.family === "sense" && (
-        <Button size="compact-sm" variant="default" onClick={() => showPanel("sensor")}>
-          Choose it under Device › Sensor
-        </Button>
-      )}
+      {card.family === "faults" && <Button onClick={() => showPanel("faults")}>Inject it under Faults</Button>}
+      {card.family === "sense" && <Button onClick={() => showPanel("sensor")}>Choose it under Device › Sensor</Button>}
       {card.family === "reference" && (
         <Button
-          size="compact-sm"
-          variant="default"
           onClick={() => {
             useView.setState({ card: "reference" });
             showPanel("card");
@@ -56,13 +46,7 @@ export function OnBench({ card }: { card: BlockCard }) {
         </Button>
       )}
       {own.length > 0 && (
-        <Button
-          size="compact-sm"
-          variant="default"
-          onClick={() => addScope(card.title, own.slice(0, MOST_TRACES), "time")}
-        >
-          Show its signals
-        </Button>
+        <Button onClick={() => addScope(card.title, own.slice(0, MOST_TRACES), "time")}>Show its signals</Button>
       )}
     </div>
   );

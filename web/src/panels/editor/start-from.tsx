@@ -48,7 +48,6 @@ export function StartFrom({ list, unit }: StartFromProps) {
   return (
     <>
       <NativeSelect
-        size="xs"
         aria-label="Start from"
         value=""
         data={[
@@ -62,11 +61,9 @@ export function StartFrom({ list, unit }: StartFromProps) {
         ]}
         onChange={(e) => e.currentTarget.value && void editCopy(e.currentTarget.value)}
       />
-      <Menu position="bottom-start" shadow="md">
+      <Menu position="bottom-start">
         <Menu.Target>
-          <Button size="xs" variant="default">
-            File
-          </Button>
+          <Button size="xs">File</Button>
         </Menu.Target>
         <Menu.Dropdown>
           <FileButton accept=".py,text/x-python" onChange={(file) => void open(file)}>

@@ -1,3 +1,4 @@
+import { Box } from "@mantine/core";
 import type { BlockCard, CheckedUnit } from "../../api/types";
 import { formatCount, formatNumber, formatShort } from "../../ui/format";
 import { Formula } from "../../ui/formula";
@@ -10,7 +11,9 @@ import styles from "./editor.module.css";
 export function UnitFacts({ unit: { card, operations, hash } }: { unit: CheckedUnit }) {
   return (
     <>
-      <h2 className={styles.title}>{card.title}</h2>
+      <Box component="h2" m="8px 0 4px" fz="lg">
+        {card.title}
+      </Box>
       <p className={styles.summary}>
         <Prose text={card.summary} />
       </p>

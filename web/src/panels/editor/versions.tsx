@@ -20,7 +20,6 @@ export function Versions({ chosen, onChoose }: { chosen: number | undefined; onC
   return (
     <>
       <NativeSelect
-        size="xs"
         aria-label="Version"
         value={chosen ?? ""}
         disabled={versions.length === 0}
@@ -35,7 +34,6 @@ export function Versions({ chosen, onChoose }: { chosen: number | undefined; onC
       />
       <Button
         size="xs"
-        variant="default"
         disabled={!worked}
         title="Takes the place of the text; the text stays as a version"
         onClick={() => worked && beginWith(name, worked.source)}

@@ -15,14 +15,9 @@ export function CopyMenu({ event }: { event: LogEntry }) {
     announce("Command copied.");
   };
   return (
-    <Menu position="bottom-end" shadow="md">
+    <Menu position="bottom-end">
       <Menu.Target>
-        <ActionIcon
-          size="sm"
-          variant="subtle"
-          aria-label={`Copy: ${event.text}`}
-          title="Copy this command for a script"
-        >
+        <ActionIcon size="sm" aria-label={`Copy: ${event.text}`} title="Copy this command for a script">
           <IconCode size={14} />
         </ActionIcon>
       </Menu.Target>

@@ -25,9 +25,8 @@ export function EventsPanel() {
   const [who, setWho] = useState(false);
   if (!bench || !teaches || !(shared || classes || who)) return <Events />;
   return (
-    <div className={styles.panel}>
+    <div className={`view ${styles.panel}`}>
       <SegmentedControl
-        size="xs"
         aria-label="What is listed"
         data={[
           { value: "what", label: "What happened" },
@@ -63,7 +62,7 @@ function Events() {
         .slice(-SHOWN)
         .reverse()
         .map((event) => (
-          <li key={event.seq} className={styles.row}>
+          <li key={event.seq} className={`line ${styles.row}`}>
             <button
               type="button"
               className={styles.event}
@@ -80,7 +79,6 @@ function Events() {
             {canBranch(event) && (
               <ActionIcon
                 size="sm"
-                variant="subtle"
                 aria-label={`Branch without this: ${event.text}`}
                 title="Go on from just before, without this, on a bench of its own"
                 onClick={() => void goOnWithout(event.tick, event.text)}

@@ -1,4 +1,4 @@
-import { Button, Group, NumberInput, SegmentedControl, Stack } from "@mantine/core";
+import { Box, Button, Group, NumberInput, SegmentedControl, Stack } from "@mantine/core";
 import type { BlockCard, Parameter } from "../../api/types";
 import { type SeverityScale, severityText } from "../../bench/severity";
 import { Formula } from "../../ui/formula";
@@ -33,8 +33,10 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
   const factor = scale.percent ? 100 : 1;
   const unit = scale.percent ? "%" : unitText(parameter?.unit ?? "");
   return (
-    <div className={styles.form}>
-      <p className={styles.changes}>Changes the {fault.changes ?? fault.summary}.</p>
+    <Box p="0 12px 12px 27px">
+      <Box component="p" className="note" m="0 0 4px">
+        Changes the {fault.changes ?? fault.summary}.
+      </Box>
       {fault.equations.map((equation) => (
         <Formula key={equation.latex} latex={equation.latex} />
       ))}
@@ -60,7 +62,6 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
           />
           <NumberInput
             w={96}
-            size="xs"
             aria-label={`Severity of ${fault.title}, exact`}
             suffix={` ${unit}`}
             step={scale.step}
@@ -83,24 +84,20 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
           </div>
         )}
         <SegmentedControl
-          size="xs"
           fullWidth
           aria-label="How it comes"
           value={draft.profile}
           data={["step", "ramp", "intermittent"]}
           onChange={(profile) => set({ profile: profile as FaultDraft["profile"] })}
         />
-        {draft.profile === "ramp" && (
-          <NumberInput size="xs" label="Over" suffix=" ms" min={0.01} {...number("durationMs")} />
-        )}
+        {draft.profile === "ramp" && <NumberInput label="Over" suffix=" ms" min={0.01} {...number("durationMs")} />}
         {draft.profile === "intermittent" && (
           <Group grow gap="sm">
-            <NumberInput size="xs" label="Every" suffix=" ms" min={0.01} {...number("periodMs")} />
-            <NumberInput size="xs" label="On for" suffix=" %" min={1} max={100} {...number("duty", 100)} />
+            <NumberInput label="Every" suffix=" ms" min={0.01} {...number("periodMs")} />
+            <NumberInput label="On for" suffix=" %" min={1} max={100} {...number("duty", 100)} />
           </Group>
         )}
         <SegmentedControl
-          size="xs"
           fullWidth
           aria-label="When it comes"
           value={draft.moment}
@@ -111,9 +108,7 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
           ]}
           onChange={(moment) => set({ moment: moment as FaultDraft["moment"] })}
         />
-        {draft.moment === "at" && (
-          <NumberInput size="xs" label="At device time" suffix=" ms" min={0} {...number("atMs")} />
-        )}
+        {draft.moment === "at" && <NumberInput label="At device time" suffix=" ms" min={0} {...number("atMs")} />}
         {draft.moment === "when" && (
           <div className={styles.when}>
             <ConditionFields
@@ -124,11 +119,11 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
             />
           </div>
         )}
-        <Button size="xs" onClick={onInject}>
+        <Button variant="filled" size="xs" onClick={onInject}>
           {draft.moment === "now" ? "Inject" : "Let it wait for its moment"}{" "}
           {draftSeverity(draft, scale, parameter?.unit ?? "")}
         </Button>
       </Stack>
-    </div>
+    </Box>
   );
 }

@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { IconChevronRight } from "@tabler/icons-react";
 import { useState } from "react";
 import type { ActiveFault, BlockCard } from "../../api/types";
@@ -41,28 +41,21 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
 
   return (
     <li className={styles.fault} data-active={active !== undefined}>
-      <div className={styles.row}>
-        <button type="button" className={styles.name} aria-expanded={open} onClick={onToggle}>
+      <div className={`row ${styles.row}`}>
+        <button type="button" className={`line ${styles.name}`} aria-expanded={open} onClick={onToggle}>
           <IconChevronRight size={14} className={styles.chevron} aria-hidden="true" />
           <span>{fault.title}</span>
         </button>
         {active ? (
-          <span className={styles.now}>
+          <Box component="span" className="line" flex="none">
             <b className={styles.acting}>
               {severityText(active.severity, scale, unit)}
               {active.since_tick !== undefined && <small> since {formatMoment(active.since_tick * dtMs)}</small>}
             </b>
-            <Button
-              size="compact-sm"
-              variant="default"
-              onClick={() => send({ heal: [fault.name] }, `${fault.title} healed`)}
-            >
-              Heal
-            </Button>
-          </span>
+            <Button onClick={() => send({ heal: [fault.name] }, `${fault.title} healed`)}>Heal</Button>
+          </Box>
         ) : (
           <Button
-            size="compact-sm"
             variant="light"
             onClick={inject}
             aria-label={`Inject ${draftSeverity(draft, scale, unit)}: ${fault.title}`}
@@ -96,5 +89,11 @@ function Chosen({ fault, active }: { fault: BlockCard; active: ActiveFault }) {
       const value = values[p.name];
       return `${parameterTitle(p).toLowerCase()}: ${typeof value === "number" ? formatShort(value, p.unit) : String(value)}`;
     });
-  return words.length > 0 && <p className={styles.chosen}>{words.join(", ")}</p>;
+  return (
+    words.length > 0 && (
+      <Box component="p" className="wrong" p="0 8px 6px 27px">
+        {words.join(", ")}
+      </Box>
+    )
+  );
 }

@@ -23,7 +23,7 @@ export function FaultsPanel() {
         title={failed ? "The server did not send the catalogue" : "Loading the faults"}
         action={
           failed && (
-            <Button size="xs" onClick={retry}>
+            <Button variant="filled" size="xs" onClick={retry}>
               Ask again
             </Button>
           )
@@ -34,10 +34,10 @@ export function FaultsPanel() {
     );
   const acting = active?.filter((f) => f.severity !== 0) ?? [];
   return (
-    <section className={styles.panel} aria-label="Faults">
+    <section className="view" aria-label="Faults">
       <div className={styles.top}>
         <span>{acting.length === 0 ? "The device is healthy" : formatCount(acting.length, "active fault")}</span>
-        <Button size="compact-sm" variant="default" disabled={acting.length === 0} onClick={actions.healAll}>
+        <Button disabled={acting.length === 0} onClick={actions.healAll}>
           Heal all
         </Button>
       </div>

@@ -26,7 +26,7 @@ export function BankForm({ card, on }: { card: GameCard; on: boolean }) {
       />
     ));
   return (
-    <div className={styles.form}>
+    <div className={`column ${styles.form}`}>
       <h3>What the bank assumes</h3>
       {rows(card.hand_in.filter(({ name }) => card.live.includes(name)))}
       <h3>A sixth hypothesis</h3>

@@ -21,10 +21,9 @@ export function FaultForm({ kinds, on }: { kinds: readonly GameKind[]; on: boole
   const severity = typeof values.severity === "number" ? values.severity : FIRST;
   const limit = (end: number) => formatShort(end * factor, unit);
   return (
-    <div className={styles.form}>
-      <div className={exercise.bar}>
+    <div className={`column ${styles.form}`}>
+      <div className={`row ${exercise.bar}`}>
         <NativeSelect
-          size="xs"
           aria-label="Fault"
           value={kind.name}
           data={kinds.map(({ name, title }) => ({ value: name, label: title }))}
@@ -46,15 +45,11 @@ export function FaultForm({ kinds, on }: { kinds: readonly GameKind[]; on: boole
         </small>
       </div>
       {on && (
-        <div className={exercise.bar}>
-          <Button
-            size="xs"
-            variant="default"
-            onClick={() => void send({ fault: kind.name, severity }, `Injected ${kind.title}`)}
-          >
+        <div className={`row ${exercise.bar}`}>
+          <Button size="xs" onClick={() => void send({ fault: kind.name, severity }, `Injected ${kind.title}`)}>
             Try it on the bench
           </Button>
-          <Button size="xs" variant="default" disabled={!acts} onClick={() => void send({ heal: "all" }, "Healed")}>
+          <Button size="xs" disabled={!acts} onClick={() => void send({ heal: "all" }, "Healed")}>
             Heal
           </Button>
         </div>

@@ -6,6 +6,7 @@ import type { GameCard, GameLine, GamePlay, HandedIn } from "../../api/types";
 import { useClasses } from "../../api/use-classes";
 import exercise from "../../ui/exercise.module.css";
 import { formatCount, formatNumber, formatShort } from "../../ui/format";
+import { TableHead } from "../../ui/table-head";
 import { parameterTitle } from "../card/parameter-title";
 import { shownIn } from "./fault-form";
 import styles from "./games.module.css";
@@ -29,9 +30,8 @@ export function GameTable({ card, play }: { card: GameCard; play: GamePlay }) {
   return (
     <>
       {all.length > 0 && (
-        <div className={exercise.bar}>
+        <div className={`row ${exercise.bar}`}>
           <NativeSelect
-            size="xs"
             aria-label="Table of"
             value={chosen}
             data={[
@@ -42,7 +42,6 @@ export function GameTable({ card, play }: { card: GameCard; play: GamePlay }) {
           />
           {group && (
             <Checkbox
-              size="xs"
               label="With what was handed in"
               checked={tells}
               onChange={(e) => setTells(e.currentTarget.checked)}
@@ -56,15 +55,7 @@ export function GameTable({ card, play }: { card: GameCard; play: GamePlay }) {
             {card.title}, seed {play.seed}: {formatCount(lines.length, "attempt")}
             {!group && !isAlone(lines) && play.left > 0 && "; what others set is shown when your game is over"}
           </caption>
-          <thead>
-            <tr>
-              <th scope="col">Place</th>
-              <th scope="col">Who</th>
-              <th scope="col">Points</th>
-              {isTold && <th scope="col">Handed in</th>}
-              <th scope="col">When</th>
-            </tr>
-          </thead>
+          <TableHead names={["Place", "Who", "Points", isTold && "Handed in", "When"]} />
           <tbody>
             {lines.map((line, place) => (
               <tr key={line.id} className={line.mine ? styles.mine : undefined}>

@@ -45,11 +45,10 @@ export function GamesPanel() {
   const card = cards.value?.find(({ id }) => id === game);
   const on = playing !== undefined && playing.game === game && playing.seed === seed;
   return (
-    <section className={exercise.panel} aria-label="Games">
+    <section className={`view ${exercise.panel}`} aria-label="Games">
       <Stale error={error ?? cards.error} since={since} onRetry={again} />
-      <div className={exercise.bar}>
+      <div className={`row ${exercise.bar}`}>
         <NativeSelect
-          size="xs"
           aria-label="Game"
           value={game}
           data={(cards.value ?? []).map(({ id, title }) => ({ value: id, label: title }))}
@@ -100,7 +99,7 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
   return (
     <>
       <p className={exercise.text}>{card.task}</p>
-      <div className={exercise.bar}>
+      <div className={`row ${exercise.bar}`}>
         <Button
           size="sm"
           variant={on || over ? "default" : "filled"}
@@ -117,8 +116,9 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
         )}
       </div>
       {isBank ? <BankForm card={card} on={on} /> : <FaultForm kinds={play.kinds ?? []} on={on} />}
-      <div className={exercise.bar}>
+      <div className={`row ${exercise.bar}`}>
         <Button
+          variant="filled"
           size="sm"
           loading={busy === "judge"}
           disabled={busy === "begin" || over}
@@ -130,12 +130,12 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
           {over ? "No attempt left at this seed." : `${formatCount(play.left, "attempt")} left`}
         </small>
         {over && (
-          <Button size="sm" onClick={() => chooseGame(card.id, seed + 1)}>
+          <Button variant="filled" size="sm" onClick={() => chooseGame(card.id, seed + 1)}>
             Next seed
           </Button>
         )}
         {!over && play.attempts.length > 0 && (
-          <Button size="compact-sm" variant="subtle" disabled={busy !== undefined} onClick={reveal}>
+          <Button variant="subtle" disabled={busy !== undefined} onClick={reveal}>
             Show what is hidden
           </Button>
         )}

@@ -1,4 +1,4 @@
-import { Button, NativeSelect } from "@mantine/core";
+import { Box, Button, NativeSelect } from "@mantine/core";
 import { IconPlus } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../../api/api";
@@ -7,7 +7,7 @@ import { useMay } from "../../api/me";
 import { useAsked } from "../../api/queries";
 import { useCatalog } from "../../api/use-catalog";
 import { openVariant } from "../../bench/open-bench";
-import { showError } from "../../bench/send";
+import { useBusy } from "../../bench/use-busy";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { AliasPlot } from "./alias-plot";
@@ -26,7 +26,7 @@ export function HypothesesPanel() {
   const banks = Object.entries((parameters?.diagnosers ?? {}) as Banks).filter(([, { hypotheses }]) => hypotheses);
   const [wanted, setWanted] = useState<string | undefined>(undefined);
   const [drafts, setDrafts] = useState<Record<string, Hypothesis[]>>({});
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const teaches = useMay("teach");
   const [id, bank] = banks.find(([name]) => name === wanted) ?? banks[0] ?? [];
   const key = `${bench} ${id}`;
@@ -45,26 +45,21 @@ export function HypothesesPanel() {
 
   const changed = JSON.stringify(list) !== JSON.stringify(bank.hypotheses);
   const begin = (set: Record<string, unknown>, said: string) => {
-    setBusy(true);
-    openVariant(set, said)
-      .catch(showError)
-      .finally(() => setBusy(false));
+    void during(() => openVariant(set, said));
   };
   const kinds = blocks.filter(
     (b) => b.family === "diagnose" && fits(b, []) && b.parameters.some((p) => p.name === "hypotheses"),
   );
   return (
-    <section className={styles.panel} aria-label="Hypotheses">
-      <div className={styles.bar}>
+    <section className="view-page" aria-label="Hypotheses">
+      <Box className="row" pb={8}>
         <NativeSelect
-          size="xs"
           aria-label="Bank"
           value={id}
           data={banks.map(([name]) => ({ value: name, label: name.replaceAll("_", " ") }))}
           onChange={(e) => setWanted(e.currentTarget.value)}
         />
         <Button
-          size="compact-sm"
           variant="light"
           leftSection={<IconPlus size={14} />}
           disabled={list.length >= MOST}
@@ -74,8 +69,6 @@ export function HypothesesPanel() {
         </Button>
         {changed && (
           <Button
-            size="compact-sm"
-            variant="default"
             onClick={() => {
               const { [key]: _, ...rest } = drafts;
               setDrafts(rest);
@@ -86,7 +79,7 @@ export function HypothesesPanel() {
         )}
         {teaches && (
           <Button
-            size="compact-sm"
+            variant="filled"
             loading={busy}
             disabled={!changed || wrong !== undefined}
             onClick={() => begin({ [`diagnosers.${id}.hypotheses`]: list }, "The bench restarts with the new list.")}
@@ -96,7 +89,6 @@ export function HypothesesPanel() {
         )}
         {teaches && (
           <NativeSelect
-            size="xs"
             aria-label="Let another method race on the same list"
             value=""
             disabled={busy || wrong !== undefined}
@@ -116,7 +108,7 @@ export function HypothesesPanel() {
             }}
           />
         )}
-      </div>
+      </Box>
       {wrong && (
         <p role="alert" className={styles.wrong}>
           {wrong}
@@ -125,7 +117,9 @@ export function HypothesesPanel() {
       <div className={styles.halves}>
         <HypothesisTable list={list} onChange={(next) => setDrafts({ ...drafts, [key]: next })} />
         <div>
-          <h2 className={styles.heading}>Which of them coincide under this drive?</h2>
+          <Box component="h2" m="4px 0">
+            Which of them coincide under this drive?
+          </Box>
           {refused && (
             <p role="alert" className={styles.wrong}>
               {refused.body.message}. {refused.body.hint}

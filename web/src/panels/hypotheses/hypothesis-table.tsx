@@ -1,6 +1,7 @@
 import { ActionIcon } from "@mantine/core";
 import { IconX } from "@tabler/icons-react";
 import { NumberField } from "../../ui/number-field";
+import { TableHead } from "../../ui/table-head";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 import { roundTo } from "../../ui/unit-scale";
 import { useScheme } from "../../ui/use-canvas";
@@ -14,23 +15,13 @@ export function HypothesisTable({ list, onChange }: { list: Hypothesis[]; onChan
   return (
     <div className={styles.scroll}>
       <table className={styles.table}>
-        <thead>
-          <tr>
-            <th scope="col">Hypothesis</th>
-            {FACTORS.map((factor) => (
-              <th key={factor} scope="col">
-                {factor}
-              </th>
-            ))}
-            <th />
-          </tr>
-        </thead>
+        <TableHead names={["Hypothesis", ...FACTORS, ""]} />
         <tbody>
           {list.map((hypothesis, i) => (
             // biome-ignore lint/suspicious/noArrayIndexKey: a hypothesis is known by its place, its name can change
             <tr key={i}>
               <th scope="row">
-                <span className={styles.name}>
+                <span className={`line ${styles.name}`}>
                   <i style={{ background: traceColour(hypothesisStyle(i), scheme) }} />
                   <input
                     aria-label={`Name of hypothesis ${i + 1}`}
@@ -56,7 +47,6 @@ export function HypothesisTable({ list, onChange }: { list: Hypothesis[]; onChan
               <td>
                 <ActionIcon
                   size={26}
-                  variant="subtle"
                   disabled={list.length <= LEAST}
                   aria-label={`Leave out ${hypothesis.name}`}
                   onClick={() => onChange(list.filter((_, j) => j !== i))}

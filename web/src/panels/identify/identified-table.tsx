@@ -1,5 +1,6 @@
 import type { Identification } from "../../api/types";
 import { formatChange, formatSpread, formatTick } from "../../ui/format";
+import { TableHead } from "../../ui/table-head";
 import styles from "./identify.module.css";
 
 type Found = Identification["found"];
@@ -36,13 +37,7 @@ const ROWS: { label: string; value: Key; error: Key; nominal: string; unit: stri
 export function IdentifiedTable({ result }: { result: Identification }) {
   return (
     <table className={styles.table}>
-      <thead>
-        <tr>
-          <th scope="col">At {formatTick(result.tick)}</th>
-          <th scope="col">Measured ± standard error</th>
-          <th scope="col">From nominal</th>
-        </tr>
-      </thead>
+      <TableHead names={[`At ${formatTick(result.tick)}`, "Measured ± standard error", "From nominal"]} />
       <tbody>
         {ROWS.map(({ label, value, error, nominal, unit }) => {
           const found = Number(result.found[value]);

@@ -1,8 +1,8 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../../api/api";
 import type { Identification } from "../../api/types";
-import { showError } from "../../bench/send";
+import { useBusy } from "../../bench/use-busy";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { NumberField } from "../../ui/number-field";
@@ -23,27 +23,21 @@ export function IdentifyPanel() {
   const id = useBench((s) => s.bench?.id);
   const [how, setHow] = useState(START);
   const [result, setResult] = useState<Identification | undefined>(undefined);
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   if (!id) return <EmptyState title="No bench yet">A sweep measures the device of a bench.</EmptyState>;
 
-  const sweep = async () => {
-    setBusy(true);
-    try {
+  const sweep = () =>
+    during(async () => {
       setResult(await api.identify(id, { ...how, start_hz: null, stop_hz: null }));
-    } catch (error) {
-      showError(error);
-    } finally {
-      setBusy(false);
-    }
-  };
+    });
   const button = (
-    <Button size="xs" loading={busy} onClick={sweep}>
+    <Button variant="filled" size="xs" loading={busy} onClick={sweep}>
       {result ? "Sweep again" : "Sweep the device"}
     </Button>
   );
   return (
-    <section className={styles.panel} aria-label="Frequency response">
-      <div className={styles.bar}>
+    <Box component="section" className="view" p="8px 12px" aria-label="Frequency response">
+      <Box className="row" pb={8}>
         {button}
         {FIELDS.map(({ name, ...field }) => (
           <span key={name} className={styles.field}>
@@ -51,7 +45,7 @@ export function IdentifyPanel() {
             <NumberField {...field} value={how[name]} onCommit={(value) => setHow({ ...how, [name]: value })} />
           </span>
         ))}
-      </div>
+      </Box>
       {result ? (
         <div className={styles.result}>
           <div className={styles.bode}>
@@ -65,6 +59,6 @@ export function IdentifyPanel() {
           mass, a damper and a spring are fitted to what the sensor sees.
         </EmptyState>
       )}
-    </section>
+    </Box>
   );
 }

@@ -1,4 +1,4 @@
-import { Button, NativeSelect } from "@mantine/core";
+import { Box, Button, NativeSelect } from "@mantine/core";
 import { useRef, useState } from "react";
 import { useCatalog } from "../../api/use-catalog";
 import { send } from "../../bench/send";
@@ -38,24 +38,18 @@ export function LabsPanel() {
     if (now && now.id === bench) await send({ kind: "reset", values: kept(labsOf(now, id, block)) }, "Counting afresh");
   };
   return (
-    <section className={styles.panel} aria-label="Noise and memory">
-      <div className={styles.bar}>
+    <section className="view-page" aria-label="Noise and memory">
+      <Box className="row" pb={8}>
         <NativeSelect
-          size="xs"
           aria-label="Diagnoser"
           value={id}
           data={ids.map((name) => ({ value: name, label: name.replaceAll("_", " ") }))}
           onChange={(e) => setWanted(e.currentTarget.value)}
         />
-        <Button
-          size="compact-sm"
-          variant="default"
-          title="Restart at tick 0; the settings here are kept"
-          onClick={() => void countAfresh()}
-        >
+        <Button title="Restart at tick 0; the settings here are kept" onClick={() => void countAfresh()}>
           Count afresh
         </Button>
-      </div>
+      </Box>
       <Outcome id={id} />
       <div className={styles.labs}>
         {labs.map((lab) => (

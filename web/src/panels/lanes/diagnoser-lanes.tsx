@@ -70,11 +70,11 @@ export function DiagnoserLanes({ id, names, withTruth, time, onWindow }: Diagnos
   return (
     <section
       ref={element}
-      className={styles.lanes}
+      className={`column ${styles.lanes}`}
       style={{ "--least": `${leastHeight(names.length, fontSize)}px` } as React.CSSProperties}
       aria-label={`Diagnosis by ${id}`}
     >
-      <div className={styles.toolbar}>
+      <div className={`line ${styles.toolbar}`}>
         {withTruth && <LanesHeadline id={id} names={names} switches={switches} />}
         <LaneTools time={time} onWindow={onWindow} take={() => shown.current && lanesPicture(shown.current, id)} />
       </div>

@@ -1,7 +1,7 @@
+import { Box } from "@mantine/core";
 import type { Score } from "../../api/types";
 import { useBench } from "../../stream/bench-store";
 import { formatCount, formatMoment, formatNumber, formatSi, formatTick } from "../../ui/format";
-import styles from "./lanes.module.css";
 
 /** How often a diagnoser left the right verdict while the device stayed as it was: when last, and for how long. */
 export function FalseSwitches({ score }: { score: Score }) {
@@ -18,9 +18,9 @@ export function FalseSwitches({ score }: { score: Score }) {
     <span title={last && ["The right verdict was left though nothing changed:", ...told].join("\n")}>
       {formatNumber(count, 0)}
       {last && (
-        <small className={styles.last}>
+        <Box component="small" ml={6}>
           last {at(last.tick)}, {formatCount(last.samples, "sample")}
-        </small>
+        </Box>
       )}
     </span>
   );

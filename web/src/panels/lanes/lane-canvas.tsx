@@ -1,6 +1,5 @@
-import { useEffect, useMemo, useRef } from "react";
-import { usePanelVisible } from "../../api/panel-visible";
-import { useView } from "../../bench/view-store";
+import { useCallback, useEffect, useMemo, useRef } from "react";
+import { useLivePaint } from "../../picture/live-canvas";
 import type { Box, Look, Pen } from "../../picture/pen";
 import { useBench } from "../../stream/bench-store";
 import type { PanelFrame } from "../../stream/panel-frame";
@@ -8,7 +7,7 @@ import { scopeConfig } from "../../stream/scope-config";
 import { stream } from "../../stream/stream";
 import { useFeed } from "../../stream/use-feed";
 import { hover } from "../../ui/hover";
-import { useCanvas, useScheme } from "../../ui/use-canvas";
+import { useCanvas } from "../../ui/use-canvas";
 import { listenForGestures } from "../scope/scope-gestures";
 import { scopeSubscription } from "../scope/use-time-view";
 import styles from "./lanes.module.css";
@@ -39,18 +38,25 @@ interface LaneCanvasProps {
 /** Signals over time on a canvas that shares its window with others: pans, zooms, and says what was clicked. */
 export function LaneCanvas({ label, legend, signals, time, left, right, paint, onPick }: LaneCanvasProps) {
   const dtMs = useBench((s) => s.bench?.dt_ms);
-  const visible = usePanelVisible();
-  const scheme = useScheme();
-  const fontSize = useView((s) => s.fontPx);
   const over = useRef<HTMLDivElement>(null);
   const frame = useRef<PanelFrame | undefined>(undefined);
   const shown = useRef({ start: 0, end: 1 });
-  const dirty = useRef(true);
   const pick = useRef(onPick);
   pick.current = onPick;
   const whole = useRef(time.whole);
   whole.current = time.whole;
-  const { canvas, size } = useCanvas();
+  const place = useCanvas();
+  const { canvas, size } = place;
+  const paintShown = useCallback(
+    (pen: Pen, box: Box, look: Look) => {
+      if (!frame.current) return;
+      const { start, end } = shown.current;
+      const inSight = hover.tick !== undefined && hover.tick >= start && hover.tick < end ? hover.tick : undefined;
+      paint(pen, box, { frame: frame.current, span: shown.current, hover: inSight }, look);
+    },
+    [paint],
+  );
+  const dirty = useLivePaint(place, paintShown);
   const { windowMs, view } = time;
 
   const subscription = useMemo(() => {
@@ -76,7 +82,7 @@ export function LaneCanvas({ label, legend, signals, time, left, right, paint, o
     return () => {
       for (const stop of stops) stop();
     };
-  }, [time]);
+  }, [time, dirty]);
 
   useEffect(() => {
     if (!over.current) return;
@@ -86,21 +92,6 @@ export function LaneCanvas({ label, legend, signals, time, left, right, paint, o
       () => shown.current,
     );
   }, [time]);
-
-  useEffect(() => {
-    if (!visible) return;
-    dirty.current = true;
-    return stream.loop.add(() => {
-      const ctx = canvas.current?.getContext("2d");
-      if (!dirty.current || !ctx || !frame.current || size.width < 80) return;
-      dirty.current = false;
-      ctx.setTransform(size.ratio, 0, 0, size.ratio, 0, 0);
-      ctx.clearRect(0, 0, size.width, size.height);
-      const { start, end } = shown.current;
-      const inSight = hover.tick !== undefined && hover.tick >= start && hover.tick < end ? hover.tick : undefined;
-      paint(ctx, size, { frame: frame.current, span: shown.current, hover: inSight }, { scheme, fontSize });
-    });
-  }, [visible, canvas, size, paint, scheme, fontSize]);
 
   const point = (offset: number | undefined) => {
     const width = over.current?.clientWidth ?? 1;

@@ -15,7 +15,6 @@ export function LaneTools({ time, onWindow, take }: LaneToolsProps) {
   return (
     <>
       <NativeSelect
-        size="xs"
         w={96}
         aria-label="Time window"
         value={String(time.windowMs)}

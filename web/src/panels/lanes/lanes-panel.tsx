@@ -1,4 +1,4 @@
-import { NativeSelect } from "@mantine/core";
+import { Box, NativeSelect } from "@mantine/core";
 import { useMemo, useRef, useState } from "react";
 import type { TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
@@ -6,7 +6,6 @@ import { EmptyState } from "../../ui/empty-state";
 import { contestants } from "./contestants";
 import { DiagnoserLanes } from "./diagnoser-lanes";
 import { LaneTools } from "./lane-tools";
-import styles from "./lanes.module.css";
 import { OfferDiagnoser } from "./offer-diagnoser";
 import { Race } from "./race";
 import { useLaneTime } from "./use-lane-time";
@@ -45,11 +44,10 @@ export function LanesPanel() {
   // a bank whose truth is hidden has lanes too, but for that
   const one = all.length === 1 && (all[0].truth || blind) ? all[0] : all.find((c) => c.id === wanted && c.truth);
   return (
-    <div className={styles.panel}>
+    <div className="view">
       {all.length > 1 && (
-        <div className={styles.choice}>
+        <Box className="row" flex="none" p="6px 8px 4px 12px">
           <NativeSelect
-            size="xs"
             aria-label="Diagnosers shown"
             value={one?.id ?? ALL}
             data={[
@@ -60,9 +58,11 @@ export function LanesPanel() {
             ]}
             onChange={(e) => setWanted(e.currentTarget.value)}
           />
-          <span className={styles.advice}>Click a sample to see why</span>
+          <Box component="span" className="remark" flex="1 1 140px">
+            Click a sample to see why
+          </Box>
           {!one && <LaneTools time={time} onWindow={setWindowMs} take={() => picture.current?.()} />}
-        </div>
+        </Box>
       )}
       {one ? (
         <DiagnoserLanes id={one.id} names={one.names} withTruth={one.truth} time={time} onWindow={setWindowMs} />

@@ -4,7 +4,7 @@ import { fits } from "../../api/fits";
 import { useMay } from "../../api/me";
 import { useCatalog } from "../../api/use-catalog";
 import { openVariant } from "../../bench/open-bench";
-import { showError } from "../../bench/send";
+import { useBusy } from "../../bench/use-busy";
 import { useBench } from "../../stream/bench-store";
 
 const USUAL = "mmae";
@@ -15,7 +15,7 @@ export function OfferDiagnoser() {
   const replay = useBench((s) => s.bench?.replay_of);
   const { blocks } = useCatalog();
   const [wanted, setWanted] = useState(USUAL);
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const teaches = useMay("teach");
   const banks = blocks.filter(
     (b) => b.family === "diagnose" && fits(b, axes) && b.parameters.some((p) => p.name === "hypotheses"),
@@ -23,21 +23,19 @@ export function OfferDiagnoser() {
   const bank = banks.find((b) => b.name === wanted) ?? banks[0];
   if (!bank || replay || !teaches) return null; // the past cannot be changed
   const begin = () => {
-    setBusy(true);
-    openVariant({ [`diagnosers.${bank.name}`]: { kind: bank.name } }, `The bench restarts with ${bank.title}.`)
-      .catch(showError)
-      .finally(() => setBusy(false));
+    void during(() =>
+      openVariant({ [`diagnosers.${bank.name}`]: { kind: bank.name } }, `The bench restarts with ${bank.title}.`),
+    );
   };
   return (
     <>
       <NativeSelect
-        size="xs"
         aria-label="Diagnoser to add"
         value={bank.name}
         data={banks.map((b) => ({ value: b.name, label: b.title }))}
         onChange={(e) => setWanted(e.currentTarget.value)}
       />
-      <Button size="xs" loading={busy} onClick={begin}>
+      <Button variant="filled" size="xs" loading={busy} onClick={begin}>
         Restart with it
       </Button>
     </>

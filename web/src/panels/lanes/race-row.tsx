@@ -45,7 +45,7 @@ export function RaceRow({ contestant, time, switches, place, onPainted }: RaceRo
   );
   return (
     <section className={styles.row} aria-label={`Diagnosis by ${id}`}>
-      <div className={styles.who}>
+      <div className={`column ${styles.who}`}>
         <button
           type="button"
           className={styles.name}

@@ -61,7 +61,7 @@ export function Race({ contestants, time, picture }: RaceProps) {
     <div className={styles.race} style={{ "--row": `${fontSize * 6.6}px` } as React.CSSProperties}>
       {first && (
         <div className={styles.head}>
-          <span className={styles.truthName}>
+          <span className={`column ${styles.truthName}`}>
             <i>{unit}</i>
             truth
           </span>

@@ -28,10 +28,9 @@ export function LocusPanel() {
   const masses = useMemo(() => (axes?.includes("partner_x") ? [MASS, PARTNER] : [MASS]), [axes]);
   if (!axes) return <EmptyState title="No bench yet">The path of the mass appears with the bench.</EmptyState>;
   return (
-    <section className={styles.panel} aria-label="Motion">
-      <div className={styles.bar}>
+    <section className={`view ${styles.panel}`} aria-label="Motion">
+      <div className={`row ${styles.bar}`}>
         <NativeSelect
-          size="xs"
           w={84}
           aria-label="Length of the path"
           value={String(windowMs)}
@@ -39,7 +38,6 @@ export function LocusPanel() {
           onChange={(e) => setWindowMs(Number(e.currentTarget.value))}
         />
         <SegmentedControl
-          size="xs"
           aria-label="Scale of y"
           value={stretched ? "own" : "same"}
           data={[

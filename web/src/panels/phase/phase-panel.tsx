@@ -38,18 +38,11 @@ export function PhasePanel() {
   const fits = mapFits(x, y);
   const flat = plant !== "planar" && plant !== "slaved_lateral";
   return (
-    <section className={styles.panel} aria-label="Phase plane">
-      <div className={styles.bar}>
+    <section className={`view ${styles.panel}`} aria-label="Phase plane">
+      <div className={`row ${styles.bar}`}>
+        <NativeSelect aria-label="Across" value={x} data={names} onChange={(e) => setX(e.currentTarget.value)} />
+        <NativeSelect aria-label="Up" value={y} data={names} onChange={(e) => setY(e.currentTarget.value)} />
         <NativeSelect
-          size="xs"
-          aria-label="Across"
-          value={x}
-          data={names}
-          onChange={(e) => setX(e.currentTarget.value)}
-        />
-        <NativeSelect size="xs" aria-label="Up" value={y} data={names} onChange={(e) => setY(e.currentTarget.value)} />
-        <NativeSelect
-          size="xs"
           w={84}
           aria-label="Length of the trail"
           value={String(windowMs)}

@@ -5,6 +5,7 @@ import type { Comparison, Recording } from "../../api/types";
 import { showError } from "../../bench/send";
 import { formatCount, formatNumber, formatShort, formatSi } from "../../ui/format";
 import shared from "../../ui/row-list.module.css";
+import { TableHead } from "../../ui/table-head";
 import styles from "./recordings.module.css";
 
 const SHOWN = 60;
@@ -33,7 +34,6 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
       <div className={shared.form}>
         <b>{first.name} with</b>
         <NativeSelect
-          size="xs"
           label="Other recording"
           value={second}
           data={candidates.map((one) => ({
@@ -43,7 +43,6 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
           onChange={(e) => setSecond(e.currentTarget.value)}
         />
         <NumberInput
-          size="xs"
           label="Tolerance"
           title="Share of the largest value of each signal"
           suffix=" %"
@@ -53,7 +52,6 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
           onChange={(n) => setPercent(Number(n) || 0)}
         />
         <SegmentedControl
-          size="xs"
           aria-label="Align by"
           value={align}
           data={[
@@ -62,7 +60,7 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
           ]}
           onChange={(value) => setAlign(value as "tick" | "start")}
         />
-        <Button size="xs" disabled={!second} onClick={compare}>
+        <Button variant="filled" size="xs" disabled={!second} onClick={compare}>
           Compare
         </Button>
         <CloseButton size="sm" aria-label="Close the comparison" onClick={onClose} />
@@ -77,16 +75,7 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
               `; ${found.only_in_first.length + found.only_in_second.length} are in one recording alone`}
           </p>
           <table className={styles.table}>
-            <thead>
-              <tr>
-                <th scope="col">signal</th>
-                <th scope="col">largest difference</th>
-                <th scope="col">at tick</th>
-                <th scope="col">rms</th>
-                <th scope="col">tolerance</th>
-                <th scope="col">verdict</th>
-              </tr>
-            </thead>
+            <TableHead names={["signal", "largest difference", "at tick", "rms", "tolerance", "verdict"]} />
             <tbody>
               {rows.slice(0, SHOWN).map((row) => (
                 <tr key={row.signal} data-ok={row.ok}>

@@ -45,14 +45,12 @@ export function RecordForm({ onChanged }: { onChanged(): void }) {
       }}
     >
       <TextInput
-        size="xs"
         label="Name"
         placeholder={title}
         value={draft.name}
         onChange={(e) => set({ name: e.currentTarget.value })}
       />
       <NumberInput
-        size="xs"
         label="Of the past"
         suffix=" ms"
         min={0}
@@ -61,7 +59,6 @@ export function RecordForm({ onChanged }: { onChanged(): void }) {
         onChange={(n) => set({ pastMs: Number(n) || 0 })}
       />
       <NumberInput
-        size="xs"
         label="Length"
         placeholder="until stopped"
         suffix=" ms"
@@ -77,11 +74,23 @@ export function RecordForm({ onChanged }: { onChanged(): void }) {
         error={hasLevel ? undefined : "Say at what value"}
         onChange={(when) => set({ when })}
       />
-      <Button type="submit" size="xs" disabled={!hasLevel} leftSection={<IconPlayerRecordFilled size={14} />}>
+      <Button
+        variant="filled"
+        type="submit"
+        size="xs"
+        disabled={!hasLevel}
+        leftSection={<IconPlayerRecordFilled size={14} />}
+      >
         {draft.when.signal ? "Arm" : "Record"}
       </Button>
       {underWay.length > 0 && (
-        <Button size="xs" color="alarm" leftSection={<IconPlayerStopFilled size={14} />} onClick={stop}>
+        <Button
+          variant="filled"
+          size="xs"
+          color="alarm"
+          leftSection={<IconPlayerStopFilled size={14} />}
+          onClick={stop}
+        >
           Stop {recording.length > 0 ? "recording" : "waiting"}
         </Button>
       )}

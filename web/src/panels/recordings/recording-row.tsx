@@ -1,11 +1,11 @@
 import { ActionIcon, Button } from "@mantine/core";
 import { IconPlayerPlay, IconTrash } from "@tabler/icons-react";
-import { useState } from "react";
 import { api } from "../../api/api";
 import { useMay } from "../../api/me";
 import type { Recording } from "../../api/types";
 import { openReplay } from "../../bench/open-bench";
 import { showError } from "../../bench/send";
+import { useBusy } from "../../bench/use-busy";
 import { Downloads, TRACE_FORMATS } from "../../ui/downloads";
 import { formatCount, formatMoment, formatSi } from "../../ui/format";
 import rows from "../../ui/row-list.module.css";
@@ -28,15 +28,11 @@ interface RecordingRowProps {
 
 /** One recording: what it is, and what can be done with it. */
 export function RecordingRow({ recording, isHere, onCompare, onChanged }: RecordingRowProps) {
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const teaches = useMay("teach");
   const { id, name, state, ticks, dt_ms, start_tick, condition, created, bytes, reason, signals } = recording;
   const open = state === "armed" || state === "recording";
-  const play = async () => {
-    setBusy(true);
-    await openReplay(id).catch(showError);
-    setBusy(false);
-  };
+  const play = () => during(() => openReplay(id));
   const remove = () => {
     if (window.confirm(`Delete the recording ${name} of ${formatSi(ticks * dt_ms, "ms")} for good?`))
       api.removeRecording(id).then(onChanged, showError);
@@ -66,7 +62,7 @@ export function RecordingRow({ recording, isHere, onCompare, onChanged }: Record
         </span>
       </div>
       {!open && (
-        <div className={rows.do}>
+        <div className={`row ${rows.do}`}>
           <Downloads href={(format) => `./api/v1/recordings/${id}/trace?format=${format}`} formats={TRACE_FORMATS} />
           {teaches && (
             <Button
@@ -81,12 +77,12 @@ export function RecordingRow({ recording, isHere, onCompare, onChanged }: Record
             </Button>
           )}
           {teaches && (
-            <Button size="compact-xs" variant="default" onClick={onCompare} aria-label={`Compare ${name} with another`}>
+            <Button size="compact-xs" onClick={onCompare} aria-label={`Compare ${name} with another`}>
               Compare
             </Button>
           )}
           {teaches && (
-            <ActionIcon size={22} variant="subtle" aria-label={`Delete ${name}`} onClick={remove}>
+            <ActionIcon size={22} aria-label={`Delete ${name}`} onClick={remove}>
               <IconTrash size={14} />
             </ActionIcon>
           )}

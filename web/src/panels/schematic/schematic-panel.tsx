@@ -37,7 +37,6 @@ export function SchematicPanel() {
   const isFlat = axes.length === 0;
   const choice = (
     <NativeSelect
-      size="xs"
       className={styles.choice}
       aria-label="Drawing"
       value={instance ? wanted : LOOP}
@@ -53,19 +52,19 @@ export function SchematicPanel() {
   );
   if (instance && card)
     return (
-      <section className={styles.panel} aria-label={`Inside: ${card.title}`}>
+      <section className={`view ${styles.panel}`} aria-label={`Inside: ${card.title}`}>
         <InsideDrawing key={`${instance.id} ${instance.name}`} instance={instance} block={card} />
-        <footer className={styles.foot}>{choice}</footer>
+        <footer className={`row ${styles.foot}`}>{choice}</footer>
       </section>
     );
   return (
-    <section className={styles.panel} aria-label="Diagram">
+    <section className={`view ${styles.panel}`} aria-label="Diagram">
       {isFlat ? (
         <ResonatorLoop controller={controller} diagnosers={diagnosers} structure={structure} />
       ) : (
         <AxesLoop axes={axes} slots={slots} />
       )}
-      <footer className={styles.foot}>
+      <footer className={`row ${styles.foot}`}>
         <p className={styles.device}>
           {rate === undefined ? "" : formatShort(rate, "kHz")}
           {isFlat && structure.figure && ` · drawn as figure ${structure.figure}`}

@@ -4,7 +4,7 @@ import { type RefObject, useEffect, useRef } from "react";
 import { usePanelVisible } from "../../api/panel-visible";
 import { useCatalog } from "../../api/use-catalog";
 import { type Change, comparisons, dismissChange } from "../../bench/change";
-import { showError } from "../../bench/send";
+import { showing } from "../../bench/send";
 import { fileStem } from "../../picture/picture";
 import { useBench } from "../../stream/bench-store";
 import { formatMoment } from "../../ui/format";
@@ -39,17 +39,13 @@ export function BeforeAfter({ change, isHidden, figures, traces, plot }: BeforeA
   const compared = figures && !isHidden ? comparedOf(traces, figures, change.tick) : [];
   const words = changeWords(change, useBench.getState().bench);
   const canSlide = compared.length > 0;
-  const slide = async () => {
+  const slide = showing(async () => {
     const shown = plot.current?.picture();
     const { bench } = useBench.getState();
     if (!shown || !bench) return;
-    try {
-      const svg = changeSlide(words, change.tick, compared, shown, bench);
-      saveFile(`${fileStem(`${bench.scenario_id || "bench"}-${words}`)}-slide.png`, await pngOf(svg, SLIDE_RATIO));
-    } catch (error) {
-      showError(error);
-    }
-  };
+    const svg = changeSlide(words, change.tick, compared, shown, bench);
+    saveFile(`${fileStem(`${bench.scenario_id || "bench"}-${words}`)}-slide.png`, await pngOf(svg, SLIDE_RATIO));
+  });
   useSlideKey(canSlide, box, compared[0]?.strength ?? 0, slide);
   return (
     <section ref={box} className={styles.change} aria-label="Before and after">
@@ -58,17 +54,11 @@ export function BeforeAfter({ change, isHidden, figures, traces, plot }: BeforeA
       </p>
       {isHidden ? <p className={styles.figures}>{HIDDEN}</p> : <ComparedList compared={compared} />}
       {canSlide && (
-        <Button size="compact-xs" variant="default" title="This picture as one slide, 16:9 (S)" onClick={slide}>
+        <Button size="compact-xs" title="This picture as one slide, 16:9 (S)" onClick={slide}>
           Slide
         </Button>
       )}
-      <ActionIcon
-        size={22}
-        variant="subtle"
-        aria-label="Dismiss"
-        title="Dismiss the comparison"
-        onClick={dismissChange}
-      >
+      <ActionIcon size={22} aria-label="Dismiss" title="Dismiss the comparison" onClick={dismissChange}>
         <IconX size={14} />
       </ActionIcon>
     </section>

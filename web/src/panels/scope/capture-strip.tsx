@@ -27,7 +27,12 @@ export function CaptureStrip({ captures: list, standing, dtMs, onStand, onBrowse
   ];
   return (
     // biome-ignore lint/a11y/useSemanticElements: a fieldset would draw a frame of its own
-    <div className={styles.captures} role="group" aria-label="Captures" data-standing={standing !== undefined}>
+    <div
+      className={`line ${styles.captures}`}
+      role="group"
+      aria-label="Captures"
+      data-standing={standing !== undefined}
+    >
       {ways.map(({ name, key, Icon, by, isEnd }) => (
         <ActionIcon
           key={name}

@@ -10,7 +10,7 @@ export function PresetButtons({ onChoose }: { onChoose(signals: string[]): void 
   return (
     <Group gap={6} justify="center">
       {presets.map(({ title, signals }) => (
-        <Button key={title} size="compact-xs" variant="default" onClick={() => onChoose(signals)}>
+        <Button key={title} size="compact-xs" onClick={() => onChoose(signals)}>
           {title}
         </Button>
       ))}

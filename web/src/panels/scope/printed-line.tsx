@@ -8,13 +8,8 @@ export function PrintedLine({ marks }: { marks: PrintedMark[] }) {
   const isShown = usePrinted((s) => s.isShown);
   const said = [...new Set(marks.map((mark) => `“${mark.words}” (${placeIn(mark)})`))];
   return (
-    <div className={styles.printed}>
-      <Checkbox
-        size="xs"
-        label="Printed"
-        checked={isShown}
-        onChange={(event) => showPrinted(event.currentTarget.checked)}
-      />
+    <div className={`line ${styles.printed}`}>
+      <Checkbox label="Printed" checked={isShown} onChange={(event) => showPrinted(event.currentTarget.checked)} />
       {isShown && <p title={said.join("\n")}>{said.join("; ")}</p>}
     </div>
   );

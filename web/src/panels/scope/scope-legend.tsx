@@ -79,7 +79,7 @@ function LegendEntry({ trace, index, hidden, plot, onRemove }: LegendEntryProps)
   }, [trace, index, hidden, plot]);
   const told = useNarrator((s) => s.chosen?.signals.includes(trace.name) ?? false);
   return (
-    <li className={styles.trace} data-hidden={hidden} data-told={told}>
+    <li className={`line ${styles.trace}`} data-hidden={hidden} data-told={told}>
       <TraceSwatch colour={trace.colour} dash={trace.dash} />
       <SignalName name={trace.name} />
       <span className={styles.value} ref={value} />

@@ -1,3 +1,4 @@
+import { Box } from "@mantine/core";
 import "uplot/dist/uPlot.min.css";
 import { useCallback, useEffect, useMemo, useRef, useState } from "react";
 import { behindText, useBehind } from "../../bench/behind";
@@ -136,7 +137,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
   if (dtMs === undefined)
     return <EmptyState title="No bench yet">The scope fills as soon as a bench is connected.</EmptyState>;
   return (
-    <section className={styles.scope} aria-label={`Scope: ${traces.map((t) => t.name).join(", ") || "empty"}`}>
+    <section className="view" aria-label={`Scope: ${traces.map((t) => t.name).join(", ") || "empty"}`}>
       <RearmContext value={rearm}>
         <ScopeToolbar
           config={config}
@@ -172,7 +173,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
       ) : (
         <>
           {change && <BeforeAfter change={change} isHidden={isHidden} figures={figures} traces={traces} plot={plot} />}
-          <div className={styles.stage}>
+          <Box pos="relative" flex="1 0 90px" m="0 4px 2px">
             {/* biome-ignore lint/a11y/useSemanticElements: a live plot has no element of its own */}
             <div
               ref={host}
@@ -195,7 +196,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
                 onRest={() => onChange({ ...kept, cursors })}
               />
             )}
-          </div>
+          </Box>
           {captures && (
             <CaptureStrip captures={captures} standing={capture} dtMs={dtMs} onStand={stand} onBrowse={browse} />
           )}

@@ -20,9 +20,9 @@ interface ScopeToolbarProps {
 /** What a scope shows and how: signals, roll or trigger, window, live. */
 export function ScopeToolbar({ config, onChange, past, onLive, trigger, exporter, children }: ScopeToolbarProps) {
   return (
-    <div className={styles.toolbar}>
-      <div className={styles.signals}>{children}</div>
-      <div className={styles.tools}>
+    <div className={`line ${styles.toolbar}`}>
+      <div className={`line ${styles.signals}`}>{children}</div>
+      <div className={`line ${styles.tools}`}>
         {config.mode === "triggered" && (
           <TriggerMenu
             trigger={config.trigger}
@@ -42,7 +42,6 @@ export function ScopeToolbar({ config, onChange, past, onLive, trigger, exporter
           <span>Trigger</span>
         </button>
         <NativeSelect
-          size="xs"
           aria-label="Time window"
           w={86}
           value={String(config.windowMs)}

@@ -30,14 +30,13 @@ export function SignalPicker({ chosen, onChange, isLog, onLog }: SignalPickerPro
     <Popover position="bottom-start" width={360} trapFocus>
       <Popover.Target>
         <Tooltip label="Add or remove signals">
-          <ActionIcon size={24} variant="subtle" aria-label="Choose signals">
+          <ActionIcon size={24} aria-label="Choose signals">
             <IconPlus size={15} />
           </ActionIcon>
         </Tooltip>
       </Popover.Target>
       <Popover.Dropdown>
         <TextInput
-          size="xs"
           placeholder="Search signals"
           aria-label="Search signals"
           value={query}
@@ -45,7 +44,6 @@ export function SignalPicker({ chosen, onChange, isLog, onLog }: SignalPickerPro
           mb="sm"
         />
         <Checkbox
-          size="xs"
           mb="sm"
           label="Logarithmic scale, of magnitudes"
           checked={isLog}
@@ -60,7 +58,6 @@ export function SignalPicker({ chosen, onChange, isLog, onLog }: SignalPickerPro
               {list.map((signal) => (
                 <Checkbox
                   key={signal.name}
-                  size="xs"
                   checked={chosen.includes(signal.name)}
                   label={`${signal.name.slice(block.length + 1)}${unitText(signal.unit) ? ` · ${unitText(signal.unit)}` : ""}`}
                   description={signal.meaning}

@@ -38,7 +38,7 @@ export function TriggerMenu({ trigger, state, onChange }: TriggerMenuProps) {
   return (
     <Popover position="bottom-end" width={280}>
       <Popover.Target>
-        <Button size="compact-xs" variant="default" h={26}>
+        <Button size="compact-xs" h={26}>
           {state === "triggered" ? "● " : state === "waiting" ? "○ waiting " : ""}
           {SIGNS[trigger.edge]} {formatShort(trigger.level, signalUnit)}
           {isWindow && ` to ${formatShort(trigger.upper ?? trigger.level, signalUnit)}`}
@@ -47,14 +47,12 @@ export function TriggerMenu({ trigger, state, onChange }: TriggerMenuProps) {
       <Popover.Dropdown>
         <Stack gap="sm">
           <NativeSelect
-            size="xs"
             label="Signal"
             value={trigger.signal}
             data={signalGroups(signals)}
             onChange={(e) => set({ signal: e.currentTarget.value })}
           />
           <NativeSelect
-            size="xs"
             label="When it"
             value={trigger.edge}
             data={[
@@ -68,7 +66,6 @@ export function TriggerMenu({ trigger, state, onChange }: TriggerMenuProps) {
           />
           <Group grow gap="sm">
             <NumberInput
-              size="xs"
               label={isWindow ? "From" : "Level"}
               max={isWindow ? (trigger.upper ?? undefined) : undefined}
               suffix={unit ? ` ${unit}` : ""}
@@ -78,7 +75,6 @@ export function TriggerMenu({ trigger, state, onChange }: TriggerMenuProps) {
             />
             {isWindow && (
               <NumberInput
-                size="xs"
                 label="To"
                 suffix={unit ? ` ${unit}` : ""}
                 value={trigger.upper ?? trigger.level}
@@ -87,7 +83,6 @@ export function TriggerMenu({ trigger, state, onChange }: TriggerMenuProps) {
               />
             )}
             <NumberInput
-              size="xs"
               label="Hysteresis"
               suffix={unit ? ` ${unit}` : ""}
               min={0}
@@ -97,7 +92,6 @@ export function TriggerMenu({ trigger, state, onChange }: TriggerMenuProps) {
             />
           </Group>
           <NumberInput
-            size="xs"
             label="Shown before the edge"
             suffix=" %"
             min={0}
@@ -108,7 +102,6 @@ export function TriggerMenu({ trigger, state, onChange }: TriggerMenuProps) {
             onChange={(v) => typeof v === "number" && set({ position: v / 100 })}
           />
           <SegmentedControl
-            size="xs"
             fullWidth
             aria-label="Sweep"
             value={trigger.sweep}

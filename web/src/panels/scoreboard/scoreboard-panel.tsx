@@ -3,6 +3,7 @@ import { useBench } from "../../stream/bench-store";
 import { Confusion } from "../../ui/confusion";
 import { EmptyState } from "../../ui/empty-state";
 import { formatNumber, formatPercent, formatSi } from "../../ui/format";
+import { TableHead } from "../../ui/table-head";
 import { meanDelay } from "../lanes/delays";
 import { FalseSwitches } from "../lanes/false-switches";
 import { START_UP } from "../lanes/lanes-headline";
@@ -24,17 +25,9 @@ export function ScoreboardPanel() {
     );
   return (
     // biome-ignore lint/a11y/noNoninteractiveTabindex: a region that scrolls is reached by the keyboard
-    <section className={styles.panel} aria-label="Scoreboard" tabIndex={0}>
+    <section className="view-page" aria-label="Scoreboard" tabIndex={0}>
       <table className={styles.table}>
-        <thead>
-          <tr>
-            <th scope="col">Diagnoser</th>
-            <th scope="col">Correct</th>
-            <th scope="col">Mean delay</th>
-            <th scope="col">Not found</th>
-            <th scope="col">False switches</th>
-          </tr>
-        </thead>
+        <TableHead names={["Diagnoser", "Correct", "Mean delay", "Not found", "False switches"]} />
         <tbody>
           {entries.map(([id, score]) => {
             const missed = score.delays.filter((d) => d === null).length;

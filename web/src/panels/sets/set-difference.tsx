@@ -6,6 +6,7 @@ import type { ParameterSet } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { useBench } from "../../stream/bench-store";
 import { formatCount } from "../../ui/format";
+import { TableHead } from "../../ui/table-head";
 import { useInstances } from "../card/instances";
 import { namedPath, valueText } from "./named-path";
 import styles from "./sets.module.css";
@@ -35,7 +36,6 @@ export function SetDifference({ first, others, onClose }: SetDifferenceProps) {
     <div className={styles.difference}>
       <div className={styles.head}>
         <NativeSelect
-          size="xs"
           label={`Compare ${first.name} with`}
           value={other}
           data={[{ value: BENCH, label: "the bench now" }, ...options]}
@@ -52,13 +52,7 @@ export function SetDifference({ first, others, onClose }: SetDifferenceProps) {
               {formatCount(answer.rows.length, "value")} {answer.rows.length === 1 ? "differs" : "differ"},{" "}
               {answer.same} {answer.same === 1 ? "is" : "are"} the same
             </caption>
-            <thead>
-              <tr>
-                <th scope="col">Parameter</th>
-                <th scope="col">{first.name}</th>
-                <th scope="col">{second}</th>
-              </tr>
-            </thead>
+            <TableHead names={["Parameter", first.name, second]} />
             <tbody>
               {answer.rows.map((row) => {
                 const { block: title, parameter, unit } = namedPath(row.path, list, block);

@@ -5,7 +5,7 @@ import { api } from "../../api/api";
 import { useMay } from "../../api/me";
 import type { ParameterSet } from "../../api/types";
 import { announce } from "../../bench/announce";
-import { send, showError } from "../../bench/send";
+import { send, showError, showing } from "../../bench/send";
 import { tellUndoable } from "../../bench/tell";
 import { formatCount } from "../../ui/format";
 import rows from "../../ui/row-list.module.css";
@@ -21,17 +21,13 @@ interface SetRowProps {
 export function SetRow({ set, bench, onCompare, onChanged }: SetRowProps) {
   const [name, setName] = useState<string | undefined>(undefined);
   const teaches = useMay("teach");
-  const apply = async () => {
-    try {
-      const { result, left_out } = await api.applyParameterSet(bench, set.id);
-      const rest = left_out.length > 0 ? `; ${formatCount(left_out.length, "value")} of it are not on this bench` : "";
-      if (!result) announce(`The bench has the values of ${set.name} already${rest}.`);
-      const said = result ? `${set.name} is on the bench${rest}` : `The bench has these values already${rest}`;
-      tellUndoable(said, result ? () => send({ kind: "undo" }, `Undone: ${set.name}`) : undefined);
-    } catch (error) {
-      showError(error);
-    }
-  };
+  const apply = showing(async () => {
+    const { result, left_out } = await api.applyParameterSet(bench, set.id);
+    const rest = left_out.length > 0 ? `; ${formatCount(left_out.length, "value")} of it are not on this bench` : "";
+    if (!result) announce(`The bench has the values of ${set.name} already${rest}.`);
+    const said = result ? `${set.name} is on the bench${rest}` : `The bench has these values already${rest}`;
+    tellUndoable(said, result ? () => send({ kind: "undo" }, `Undone: ${set.name}`) : undefined);
+  });
   const rename = async () => {
     const next = name?.trim();
     setName(undefined);
@@ -54,7 +50,6 @@ export function SetRow({ set, bench, onCompare, onChanged }: SetRowProps) {
       ) : (
         <TextInput
           className={rows.what}
-          size="xs"
           aria-label={`New name of ${set.name}`}
           autoFocus
           maxLength={100}
@@ -64,19 +59,19 @@ export function SetRow({ set, bench, onCompare, onChanged }: SetRowProps) {
           onKeyDown={(e) => e.key === "Enter" && rename()}
         />
       )}
-      <div className={rows.do}>
-        <Button size="compact-xs" onClick={apply} aria-label={`Put ${set.name} on the bench`}>
+      <div className={`row ${rows.do}`}>
+        <Button variant="filled" size="compact-xs" onClick={apply} aria-label={`Put ${set.name} on the bench`}>
           Put on the bench
         </Button>
-        <Button size="compact-xs" variant="default" onClick={onCompare} aria-label={`Compare ${set.name}`}>
+        <Button size="compact-xs" onClick={onCompare} aria-label={`Compare ${set.name}`}>
           Compare
         </Button>
         {teaches && (
           <>
-            <ActionIcon size={24} variant="subtle" aria-label={`Rename ${set.name}`} onClick={() => setName(set.name)}>
+            <ActionIcon size={24} aria-label={`Rename ${set.name}`} onClick={() => setName(set.name)}>
               <IconPencil size={14} />
             </ActionIcon>
-            <ActionIcon size={24} variant="subtle" aria-label={`Delete ${set.name}`} onClick={remove}>
+            <ActionIcon size={24} aria-label={`Delete ${set.name}`} onClick={remove}>
               <IconTrash size={14} />
             </ActionIcon>
           </>

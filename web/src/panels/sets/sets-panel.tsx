@@ -4,7 +4,7 @@ import { api } from "../../api/api";
 import { useMay, useWatches } from "../../api/me";
 import { usePanelVisible } from "../../api/panel-visible";
 import { useAnswer } from "../../api/queries";
-import { showError } from "../../bench/send";
+import { showing } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import rows from "../../ui/row-list.module.css";
@@ -29,15 +29,11 @@ function Sets() {
   const teaches = useMay("teach");
   const [chosen, setChosen] = useState<string | undefined>(undefined);
   const comparing = sets?.find((one) => one.id === chosen);
-  const keep = async () => {
-    try {
-      await api.saveParameterSet(bench, name.trim());
-      setName("");
-      again();
-    } catch (refusal) {
-      showError(refusal);
-    }
-  };
+  const keep = showing(async () => {
+    await api.saveParameterSet(bench, name.trim());
+    setName("");
+    again();
+  });
   return (
     <section className={rows.panel} aria-label="Sets">
       {teaches && (
@@ -49,14 +45,13 @@ function Sets() {
           }}
         >
           <TextInput
-            size="xs"
             label="Keep the values of now as"
             placeholder="soft PID, lecture 3"
             maxLength={100}
             value={name}
             onChange={(e) => setName(e.currentTarget.value)}
           />
-          <Button type="submit" size="xs" disabled={!name.trim()}>
+          <Button variant="filled" type="submit" size="xs" disabled={!name.trim()}>
             Keep
           </Button>
         </form>

@@ -28,11 +28,9 @@ export function HandedIn({ ids, onAdd }: HandedInProps) {
   return (
     <>
       {!blind && (
-        <Menu position="bottom-start" shadow="md" onOpen={again}>
+        <Menu position="bottom-start" onOpen={again}>
           <Menu.Target>
-            <Button size="compact-sm" variant="default">
-              Add a recording…
-            </Button>
+            <Button>Add a recording…</Button>
           </Menu.Target>
           <Menu.Dropdown>
             {left.length > 0 ? (

@@ -6,6 +6,7 @@ import { sheets } from "../../api/sheets";
 import type { SheetCard } from "../../api/types";
 import { showError } from "../../bench/send";
 import { sheetWords } from "../../bench/sheet-words";
+import { useBusy } from "../../bench/use-busy";
 import { formatCount, formatShort } from "../../ui/format";
 import { beginSheet } from "./begin";
 import styles from "./sheet.module.css";
@@ -14,26 +15,20 @@ import styles from "./sheet.module.css";
 export function SheetList({ cards, onChanged }: { cards: SheetCard[]; onChanged(): void }) {
   const teaches = useMay("teach");
   const drives = useMay("drive");
-  const [busy, setBusy] = useState("");
-  const begin = async (id: string) => {
-    setBusy(id);
-    try {
+  const [busy, during] = useBusy<string>();
+  const begin = (id: string) =>
+    during(async () => {
       await beginSheet(id);
       onChanged();
-    } catch (error) {
-      showError(error);
-    } finally {
-      setBusy("");
-    }
-  };
+    }, id);
   const remove = async ({ id, title }: SheetCard) => {
     if (!window.confirm(`Delete ${title}? Its answers are deleted too.`)) return;
     await sheets.remove(id).then(onChanged, showError);
   };
   return (
-    <section className={styles.sheet} aria-label="Lab sheets">
+    <section className={`view ${styles.sheet}`} aria-label="Lab sheets">
       {!teaches && <p className={styles.quiet}>A sheet begins with a bench of its own, in place of yours.</p>}
-      <ul className={styles.cards}>
+      <ul className={`column ${styles.cards}`}>
         {cards.map((card) => (
           <li key={card.id}>
             <div>
@@ -86,7 +81,7 @@ function OpenOwn({ onOpened }: { onOpened(): void }) {
     <div className={styles.own}>
       <FileButton accept=".md,text/markdown" onChange={open} inputProps={{ "aria-label": "Sheet file" }}>
         {(props) => (
-          <Button {...props} size="xs" variant="default">
+          <Button {...props} size="xs">
             Open a sheet of your own…
           </Button>
         )}

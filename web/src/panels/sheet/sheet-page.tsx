@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { useEffect, useRef } from "react";
 import { useMay } from "../../api/me";
 import { queryClient, useAnswer } from "../../api/queries";
@@ -44,7 +44,7 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
     again();
   };
   return (
-    <section className={styles.sheet} aria-label="Lab sheet">
+    <section className={`view ${styles.sheet}`} aria-label="Lab sheet">
       <header className={styles.head}>
         <h2>{value.title}</h2>
         <p>
@@ -54,10 +54,8 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
           · {value.minutes} minutes
         </p>
         <div className={styles.buttons}>
-          <Button size="compact-sm" variant="default" onClick={onLeave}>
-            All sheets
-          </Button>
-          <Button component="a" size="compact-sm" variant="default" href={sheets.report(id)} target="_blank">
+          <Button onClick={onLeave}>All sheets</Button>
+          <Button component="a" href={sheets.report(id)} target="_blank">
             Hand in
           </Button>
           {value.begun && (
@@ -67,7 +65,7 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
             />
           )}
           {teaches && (
-            <Button size="compact-sm" variant="subtle" onClick={() => void startOver().catch(showError)}>
+            <Button variant="subtle" onClick={() => void startOver().catch(showError)}>
               Start over…
             </Button>
           )}
@@ -77,19 +75,23 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
       {!value.bench && !value.done && (
         <div className={styles.gone} role="status">
           The bench of this sheet was closed. Your answers are kept.{" "}
-          <Button size="compact-sm" onClick={() => void beginSheet(id).then(again, showError)}>
+          <Button variant="filled" onClick={() => void beginSheet(id).then(again, showError)}>
             Make it again
           </Button>
         </div>
       )}
       <SheetText text={value.intro} />
-      <ol className={styles.sections}>
+      <ol className={`column ${styles.sections}`}>
         {value.sections.map((section, i) => (
           // biome-ignore lint/suspicious/noArrayIndexKey: the sections of a sheet stay in their order
           <Section key={i} section={section} actions={actions} />
         ))}
       </ol>
-      {value.done && <p className={styles.finished}>All steps are done. Hand in gives you the sheet to print.</p>}
+      {value.done && (
+        <Box component="p" fw={560}>
+          All steps are done. Hand in gives you the sheet to print.
+        </Box>
+      )}
     </section>
   );
 }

@@ -1,4 +1,4 @@
-import { Button, Radio, TextInput } from "@mantine/core";
+import { Box, Button, Radio, TextInput } from "@mantine/core";
 import { type FormEvent, useState } from "react";
 import { ApiError } from "../../api/client";
 import type { SheetStep } from "../../api/types";
@@ -27,7 +27,11 @@ export function StepView({ step, isOpen, actions }: StepProps) {
   const { id, rule, earned, points, hints = [], next_hint_costs: hintCosts, answers = [] } = step;
   return (
     <div className={styles.step} data-open={isOpen}>
-      {step.question && <p className={styles.question}>{step.question}</p>}
+      {step.question && (
+        <Box component="p" fw={560}>
+          {step.question}
+        </Box>
+      )}
       {(step.conditions ?? []).length > 0 && <Conditions step={step} isOpen={isOpen} />}
       {answers.length > 0 && (
         <ul className={styles.answers} aria-label="Answers">
@@ -36,7 +40,11 @@ export function StepView({ step, isOpen, actions }: StepProps) {
             <li key={i} data-right={given.points === null ? undefined : (given.points ?? 0) > 0}>
               <b>{given.text}</b>
               {given.reason === null ? " – committed; judged after the run" : ` – ${given.reason}`}
-              {given.points !== null && <span className={styles.gain}>{signed(given.points)}</span>}
+              {given.points !== null && (
+                <Box component="span" ml={6} fw={600}>
+                  {signed(given.points)}
+                </Box>
+              )}
             </li>
           ))}
         </ul>
@@ -62,17 +70,17 @@ export function StepView({ step, isOpen, actions }: StepProps) {
       {isOpen && (
         <div className={styles.buttons}>
           {step.kind === "blind" && !isHiding && (
-            <Button size="compact-sm" onClick={() => actions.hide(id)}>
+            <Button variant="filled" onClick={() => actions.hide(id)}>
               Hide a fault
             </Button>
           )}
           {hintCosts != null && (
-            <Button size="compact-sm" variant="default" onClick={() => actions.hint(id)}>
+            <Button onClick={() => actions.hint(id)}>
               {hintCosts > 0 ? `Hint, costs ${formatShort(hintCosts, "")}` : "Hint, free"}
             </Button>
           )}
           {step.can_go_on && (
-            <Button size="compact-sm" variant="subtle" onClick={() => actions.close(id)}>
+            <Button variant="subtle" onClick={() => actions.close(id)}>
               Skip this question
             </Button>
           )}
@@ -86,7 +94,7 @@ export function StepView({ step, isOpen, actions }: StepProps) {
 function Conditions({ step, isOpen }: { step: SheetStep; isOpen: boolean }) {
   return (
     <>
-      <ul className={styles.conditions} aria-label="What is checked">
+      <ul className={`column ${styles.conditions}`} aria-label="What is checked">
         {(step.conditions ?? []).map(({ label, now, wanted, holds }) => (
           <li key={label} data-holds={holds}>
             <span aria-hidden="true">{holds ? "✓" : "○"}</span>
@@ -104,7 +112,7 @@ function Conditions({ step, isOpen }: { step: SheetStep; isOpen: boolean }) {
         ))}
       </ul>
       {isOpen && (
-        <div className={styles.held}>
+        <div className={`line ${styles.held}`}>
           <progress aria-label="Held" max={1} value={step.held_share} />
           <span>{step.held}</span>
         </div>
@@ -133,7 +141,7 @@ function AnswerForm({ step, actions }: { step: SheetStep; actions: StepActions }
   const says = step.kind === "prediction" ? "Commit the prediction" : "Answer";
   const unit = unitText(step.unit ?? "");
   return (
-    <form className={styles.form} onSubmit={(event) => void take(event)}>
+    <form className={`column ${styles.form}`} onSubmit={(event) => void take(event)}>
       {options.length > 0 ? (
         <Radio.Group
           label={step.question}
@@ -142,7 +150,7 @@ function AnswerForm({ step, actions }: { step: SheetStep; actions: StepActions }
           onChange={setText}
           error={wrong || undefined}
         >
-          <div className={styles.options}>
+          <div className={`column ${styles.options}`}>
             {options.map(([id, words]) => (
               <Radio key={id} value={id} label={words} />
             ))}
@@ -159,7 +167,7 @@ function AnswerForm({ step, actions }: { step: SheetStep; actions: StepActions }
           onChange={(e) => setText(e.currentTarget.value)}
         />
       )}
-      <Button size="sm" type="submit" loading={busy} disabled={text.trim() === ""}>
+      <Button variant="filled" size="sm" type="submit" loading={busy} disabled={text.trim() === ""}>
         {says}
       </Button>
     </form>

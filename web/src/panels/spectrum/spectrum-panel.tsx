@@ -21,24 +21,21 @@ export function SpectrumPanel() {
   const usual = signals.find((s) => s.name === "sensor.displacement" || s.name === "sensor.x.displacement");
   const signal = wanted ?? usual?.name ?? signals[0].name;
   return (
-    <section className={styles.panel} aria-label="Spectrum">
-      <div className={styles.bar}>
+    <section className={`view ${styles.panel}`} aria-label="Spectrum">
+      <div className={`row ${styles.bar}`}>
         <NativeSelect
-          size="xs"
           aria-label="Signal"
           value={signal}
           data={signals.map((s) => ({ value: s.name, label: s.name.replaceAll("_", " ").replace(".", " · ") }))}
           onChange={(e) => setSignal(e.currentTarget.value)}
         />
         <NativeSelect
-          size="xs"
           aria-label="Length of the record"
           value={String(ticks)}
           data={tickItems()}
           onChange={(e) => setTicks(Number(e.currentTarget.value))}
         />
         <NativeSelect
-          size="xs"
           aria-label="Band"
           value={String(share)}
           data={bandItems(dtMs)}

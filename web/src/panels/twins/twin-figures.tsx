@@ -4,6 +4,7 @@ import { useBench } from "../../stream/bench-store";
 import { useFeed } from "../../stream/use-feed";
 import { formatSi } from "../../ui/format";
 import { TRACE_COLOURS } from "../../ui/palette";
+import { TableHead } from "../../ui/table-head";
 import { useScheme } from "../../ui/use-canvas";
 import type { Board, Compared } from "./boards";
 import { type TrackingFigures, trackingFigures } from "./tracking-figures";
@@ -64,18 +65,9 @@ export function TwinFigures({ boards, compared }: { boards: Board[]; compared: C
         <caption>
           Against {compared.against}, over the last {formatSi(ticks * dtMs, "ms")}
         </caption>
-        <thead>
-          <tr>
-            <th scope="col">Board</th>
-            <th scope="col">rms error</th>
-            <th scope="col">Peak error</th>
-            {compared.efforts.map(({ title }) => (
-              <th key={title} scope="col">
-                rms {title}
-              </th>
-            ))}
-          </tr>
-        </thead>
+        <TableHead
+          names={["Board", "rms error", "Peak error", ...compared.efforts.map(({ title }) => `rms ${title}`)]}
+        />
         <tbody>
           {boards.map(({ name, prefix, chosen, slot }, i) => (
             <tr key={prefix}>

@@ -5,7 +5,7 @@ import { useShallow } from "zustand/react/shallow";
 import { controllersOf } from "../../api/fits";
 import { useCatalog } from "../../api/use-catalog";
 import { openVariant } from "../../bench/open-bench";
-import { showError } from "../../bench/send";
+import { useBusy } from "../../bench/use-busy";
 import { useBench } from "../../stream/bench-store";
 import { slotTitle } from "../controllers/slots";
 import { twinsOf } from "./boards";
@@ -28,15 +28,14 @@ export function TwinsForm({ chosen }: { chosen: string[] }) {
   const [kinds, setKinds] = useState(
     chosen.length ? chosen : WORTH_SEEING.filter((name) => controllers.includes(name) && !drives(name)).slice(0, 2),
   );
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const begin = (twins: string[]) => {
-    setBusy(true);
-    openVariant(
-      { twins: twinsOf(twins, (name) => (slotOf(name) === last ? undefined : slotOf(name))) },
-      twins.length ? "The bench restarts with its twins." : "The twins were removed.",
-    )
-      .catch(showError)
-      .finally(() => setBusy(false));
+    void during(() =>
+      openVariant(
+        { twins: twinsOf(twins, (name) => (slotOf(name) === last ? undefined : slotOf(name))) },
+        twins.length ? "The bench restarts with its twins." : "The twins were removed.",
+      ),
+    );
   };
   const itemsOf = (slot: string) =>
     controllersOf(slot, controllers, blocks).map(({ name, title }) => ({ value: name, label: title }));
@@ -44,12 +43,11 @@ export function TwinsForm({ chosen }: { chosen: string[] }) {
   const options =
     names.length > 1 ? names.map((slot) => ({ group: slotTitle(slot), items: itemsOf(slot) })) : names.flatMap(itemsOf);
   return (
-    <div className={styles.form}>
+    <div className={`row ${styles.form}`}>
       {kinds.map((kind, i) => (
         // biome-ignore lint/suspicious/noArrayIndexKey: a twin is known by its place until it has its name
         <span key={i} className={styles.choice}>
           <NativeSelect
-            size="xs"
             aria-label={`Controller of twin ${i + 1}`}
             value={kind}
             data={options}
@@ -59,7 +57,6 @@ export function TwinsForm({ chosen }: { chosen: string[] }) {
             }}
           />
           <Button
-            size="compact-sm"
             variant="subtle"
             aria-label={`Leave out twin ${i + 1}`}
             onClick={() => setKinds(kinds.filter((_, j) => j !== i))}
@@ -70,7 +67,6 @@ export function TwinsForm({ chosen }: { chosen: string[] }) {
       ))}
       {kinds.length < MOST && (
         <Button
-          size="compact-sm"
           variant="light"
           leftSection={<IconPlus size={14} />}
           disabled={controllers.length === 0}
@@ -82,7 +78,7 @@ export function TwinsForm({ chosen }: { chosen: string[] }) {
         </Button>
       )}
       <Button
-        size="compact-sm"
+        variant="filled"
         loading={busy}
         disabled={kinds.length === 0 && chosen.length === 0}
         onClick={() => begin(kinds)}

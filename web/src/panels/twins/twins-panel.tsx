@@ -59,8 +59,8 @@ export function TwinsPanel() {
     );
   const take = () => shown.current && stripsPicture(shown.current, strips, "Twins", boards);
   return (
-    <section className={styles.panel} aria-label="Twins">
-      <div className={styles.bar}>
+    <section className={`view ${styles.panel}`} aria-label="Twins">
+      <div className={`row ${styles.bar}`}>
         {form}
         <LaneTools time={time} onWindow={setWindowMs} take={take} />
       </div>

@@ -26,8 +26,8 @@ export function FramePlan({ faulted, moving }: FramePlanProps) {
   }));
   return (
     <>
-      <path ref={drive} className={styles.driveFrame} d={DRIVE} />
-      <path ref={sense} className={styles.senseFrame} d={SENSE} />
+      <path ref={drive} fill="#cc79a7" d={DRIVE} />
+      <path ref={sense} fill="#009e73" d={SENSE} />
       <rect
         ref={plate}
         className={styles.plate}

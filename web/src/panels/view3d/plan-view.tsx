@@ -52,7 +52,7 @@ export function PlanView({ because }: { because: string }) {
     : FRAME_BOX;
   const said = acting.map(({ title }) => title).join(", ");
   return (
-    <figure className={styles.plan}>
+    <figure className={`view ${styles.plan}`}>
       <svg viewBox={box.join(" ")} role="img" aria-label={`The device from above${said && `, with ${said}`}`}>
         {isFlat ? (
           drawing && <DevicePlan drawing={drawing} faulted={faulted} moving={moving} />

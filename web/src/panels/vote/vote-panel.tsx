@@ -34,7 +34,6 @@ function Teachers() {
   if (!groups || !all) return null;
   const who = groups.length > 0 && (
     <NativeSelect
-      size="xs"
       label="Who votes"
       value={group}
       data={[
@@ -46,12 +45,12 @@ function Teachers() {
   );
   if (!vote)
     return (
-      <div className={styles.panel}>
+      <div className={`view ${styles.panel}`}>
         <Ask group={group} who={who} run={run} />
       </div>
     );
   return (
-    <div className={styles.panel}>
+    <div className={`view ${styles.panel}`}>
       <Running key={vote.id} vote={vote} students={groups.find(({ id }) => id === group)?.students} run={run} />
       {who}
     </div>
@@ -90,7 +89,6 @@ function Ask({ group, who, run }: { group: string; who: ReactNode; run(what: Pro
       <div className={styles.pair}>
         {who}
         <NativeSelect
-          size="xs"
           label="Answers"
           value={of}
           data={[
@@ -105,7 +103,6 @@ function Ask({ group, who, run }: { group: string; who: ReactNode; run(what: Pro
       </div>
       {of === "" && (
         <Textarea
-          size="xs"
           autosize
           minRows={2}
           label="One answer in each line"
@@ -114,12 +111,17 @@ function Ask({ group, who, run }: { group: string; who: ReactNode; run(what: Pro
         />
       )}
       {body.when && (
-        <p className={styles.note}>
+        <p className="note">
           Each answer has a moment, too: {formatShort(body.when.from_ms, "ms")} to{" "}
           {formatShort(body.when.until_ms, "ms")} of device time.
         </p>
       )}
-      <Button disabled={!text.trim() || answers.length < 2} onClick={() => run(votes.open(body))}>
+      <Button
+        variant="filled"
+        size="sm"
+        disabled={!text.trim() || answers.length < 2}
+        onClick={() => run(votes.open(body))}
+      >
         Open the vote
       </Button>
     </>
@@ -151,13 +153,17 @@ function Running({ vote, students, run }: RunningProps) {
           : `${voted} of ${students ?? "?"} have voted${state === "open" ? "" : "; closed"}`}
       </p>
       <div className={styles.actions}>
-        {!results && <Button onClick={() => run(votes.reveal(id))}>Reveal</Button>}
+        {!results && (
+          <Button variant="filled" size="sm" onClick={() => run(votes.reveal(id))}>
+            Reveal
+          </Button>
+        )}
         {state === "open" && vote.class_id !== null && (
-          <Button variant="default" onClick={() => run(votes.close(id))}>
+          <Button size="sm" onClick={() => run(votes.close(id))}>
             Close
           </Button>
         )}
-        <Button variant="subtle" onClick={() => run(votes.remove(id))}>
+        <Button size="sm" variant="subtle" onClick={() => run(votes.remove(id))}>
           {results ? "Another question" : "Take it back"}
         </Button>
       </div>
@@ -166,7 +172,6 @@ function Running({ vote, students, run }: RunningProps) {
           <li key={name} data-right={results !== null && right === question.answers[i]}>
             {inRoom ? (
               <NumberInput
-                size="xs"
                 label={name}
                 min={0}
                 max={10_000}
@@ -191,7 +196,7 @@ function Running({ vote, students, run }: RunningProps) {
         ))}
       </ul>
       {results && question.diagnoser && (
-        <p className={styles.note}>The bars lie over the lanes, with a mark at each moment that was guessed.</p>
+        <p className="note">The bars lie over the lanes, with a mark at each moment that was guessed.</p>
       )}
     </>
   );

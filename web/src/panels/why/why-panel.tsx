@@ -1,4 +1,4 @@
-import { ActionIcon, Button, NativeSelect } from "@mantine/core";
+import { ActionIcon, Box, Button, NativeSelect } from "@mantine/core";
 import { IconChevronLeft, IconChevronRight } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../../api/api";
@@ -43,7 +43,7 @@ export function WhyPanel() {
   );
   const ids = Object.entries(diagnosers ?? {}).flatMap(([id, { names }]) => (names.length ? [id] : []));
   const latest = (
-    <Button size="xs" disabled={ids.length === 0} onClick={askLatest}>
+    <Button variant="filled" size="xs" disabled={ids.length === 0} onClick={askLatest}>
       Explain the latest sample
     </Button>
   );
@@ -57,17 +57,16 @@ export function WhyPanel() {
     );
 
   return (
-    <section className={styles.panel} aria-label="Why">
+    <section className="view-page" aria-label="Why">
       {account && !refusal && <WhyVerdict diagnoser={sample.diagnoser} account={account} turn={turn} />}
-      <div className={styles.bar}>
+      <Box className="row" pb={8}>
         <NativeSelect
-          size="xs"
           aria-label="Diagnoser"
           value={sample.diagnoser}
           data={ids.map((id) => ({ value: id, label: id.replaceAll("_", " ") }))}
           onChange={(e) => pickSample(e.currentTarget.value, sample.tick)}
         />
-        <span className={styles.step}>
+        <Box component="span" className="line" flex="0 1 auto" miw={0}>
           <ActionIcon
             variant="default"
             size={28}
@@ -93,12 +92,10 @@ export function WhyPanel() {
           >
             <IconChevronRight size={16} />
           </ActionIcon>
-        </span>
+        </Box>
         {account && !refusal && <span className={styles.time}>{formatClock(account.time_ms)} s</span>}
-        <Button size="compact-sm" variant="default" onClick={askLatest}>
-          Latest
-        </Button>
-      </div>
+        <Button onClick={askLatest}>Latest</Button>
+      </Box>
       {refusal && (
         <EmptyState title={inWords(refusal.body, sample.tick)} action={latest}>
           {refusal.body.hint || "Choose another sample, or another diagnoser."}
@@ -127,9 +124,9 @@ function Explained({ account, waiting }: { account: Account; waiting: boolean })
   return (
     <div className={styles.explained} data-waiting={waiting}>
       <ModelTable account={account} chosen={chosen} onChoose={(i) => setName(account.models[i].name)} />
-      <h2 className={styles.heading}>
+      <Box component="h2" m="12px 0 4px">
         {model.name} at this sample, in µm and ms{account.gain_units.length > 2 && ", the rate in deg/s"}
-      </h2>
+      </Box>
       {density && posterior ? (
         <ol className={styles.steps}>
           <li>
@@ -154,10 +151,10 @@ function Explained({ account, waiting }: { account: Account; waiting: boolean })
           )}
         </ol>
       ) : (
-        <p className={styles.note}>
+        <Box component="p" c="dimmed">
           The filters learnt nothing from this sample: its residual is zero, and the record does not give its
           covariance.
-        </p>
+        </Box>
       )}
     </div>
   );

@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import type { Account, Turn } from "../../api/types";
 import { pickSample } from "../../bench/why";
 import { jump } from "../../ui/hover";
@@ -21,18 +21,17 @@ export function WhyVerdict({ diagnoser, account, turn }: WhyVerdictProps) {
   return (
     <>
       <p className={styles.sentence}>{whySentence(account, turn, account.tick)}</p>
-      <p className={styles.turn}>
+      <Box component="p" className="row" m="4px 0 8px" c="dimmed">
         <span>σ is the miss that its own filter expects. {turn && turnWords(turn, account.tick)}</span>
         <Button
           className={styles.wrapping}
-          size="compact-sm"
           variant="light"
           disabled={at === null || at === account.tick}
           onClick={() => at !== null && goThere(at)}
         >
           The sample where it turned
         </Button>
-      </p>
+      </Box>
     </>
   );
 }

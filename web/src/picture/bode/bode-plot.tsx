@@ -26,7 +26,7 @@ export function BodePlot({ label, shown }: { label: string; shown: BodeShown }) 
     paint: (pen: Pen, box: Box, look: Look) => paintBode(pen, box, shown, look),
   });
   return (
-    <div className={styles.plot}>
+    <div className={`column ${styles.plot}`}>
       <Legend entries={bodeEntries(shown, scheme)}>
         <li className={styles.reading}>
           {read !== undefined &&

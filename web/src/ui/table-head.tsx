@@ -1,0 +1,24 @@
+/** The names of the columns of a table; a pair says besides what a column means, and what is false is left out. */
+export function TableHead({
+  names,
+}: {
+  names: readonly (string | false | readonly [name: string, meaning: string])[];
+}) {
+  return (
+    <thead>
+      <tr>
+        {names.map((one) => {
+          if (one === false) return null;
+          const [name, meaning] = typeof one === "string" ? [one] : one;
+          return name ? (
+            <th key={name} scope="col" title={meaning}>
+              {name}
+            </th>
+          ) : (
+            <td key={name} />
+          );
+        })}
+      </tr>
+    </thead>
+  );
+}
