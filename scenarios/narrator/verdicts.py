@@ -106,11 +106,12 @@ class Verdicts:
         signals = [f"{self._name}.probability.{self._models[at]}" for at in (new, old)]
         missed = self._misses(samples, new, old, numbers, signals)
         turned = f"{self._whose} {self._words[new]} ({format_percent(probability)})"
-        text = f"At {moment(tick * self._dt_ms)} {missed}{turned}."
+        text = f"At {moment(tick * self._dt_ms)} {turned}."
         _, true, changed = truth
         is_false, start = true is not None and true != new, self._since
         if true is not None:
             text, start = f"{text} {self._judged(new, true, changed, numbers)}", min(start, changed or start)
+        text += missed
         return Sentence(
             tick=tick,
             kind="false_verdict" if is_false else "verdict",
@@ -134,8 +135,8 @@ class Verdicts:
             else:
                 size = numbers[f"{which}_normalised"] = float(np.sqrt(np.mean(values)))
                 said.append(f"{figure(size, '')} times what noise explains")
-        words = f"the {self._words[new]} model misses the measurement by {said[0]}"
-        return f"{words}, the {self._words[old]} one by {said[1]}: "
+        words = f" The {self._words[new]} model misses the measurement by {said[0]}"
+        return f"{words}, the {self._words[old]} one by {said[1]}."
 
     def _judged(self, new: int, true: int, changed: int | None, numbers: dict[str, float]) -> str:
         """Say whether a verdict is right, and how long after the change."""

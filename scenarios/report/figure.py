@@ -167,19 +167,37 @@ def _in_step(result: Result) -> Chart | None:
 
 def _rate(result: Result) -> Chart:
     """Show the true rate and what is read, on the bench and on its twins."""
-    spec = result.board.spec
-    shown = [(f"{spec.active}.rate", "read"), ("rate.rate", "true")]
+    shown = [("rate.rate", "true")]
     shown += [
         (f"{name}:{twin.active}.rate", f"read, {name.replace('_', ' ')}")
         for name, twin in result.scenario.twins.items()
     ]
-    lines = [_trace(result, name, said) for name, said in shown if name in _names(result)]
+    lines = [_read(result), *(_trace(result, name, said) for name, said in shown if name in _names(result))]
     settled = [value for one in lines for value in one.y[len(one.y) // 4 :] if math.isfinite(value)]
     span = (min(settled), max(settled)) if settled else (0.0, 0.0)  # what the start makes of it is cut off
     air = 0.08 * (span[1] - span[0]) or 1.0
     ends = span[0] - air, span[1] + air
     lines = [replace(one, y=np.clip(one.y, *ends).tolist()) for one in lines]
     return Chart(_title(result), Axis(TIME, "ms"), Axis("rate", "deg/s"), lines, marks(result))
+
+
+def _read(result: Result) -> Series:
+    """Return the rate that was read: of each controller while it drove, as far as its signal was kept."""
+    name, until = result.board.spec.active, math.inf
+    spans: list[tuple[str, int, float]] = []
+    for entry in reversed(result.board.log):
+        if entry.kind == "switch" and entry.new == name:
+            spans.append((name, entry.tick, until))
+            name, until = str(entry.old), entry.tick
+    spans.append((name, 0, until))
+    x, y = list[float](), list[float]()
+    for driver, since, end in reversed(spans):
+        if (signal_name := f"{driver}.rate") in _names(result):
+            one = _trace(result, signal_name, "read")
+            points = [at for at, ms in enumerate(one.x) if since <= round(ms / result.board.dt_ms) < end]
+            x += [one.x[at] for at in points]
+            y += [one.y[at] for at in points]
+    return Series("read", x, y, look=signal("rate", 0))
 
 
 def _lanes(result: Result) -> Chart | None:

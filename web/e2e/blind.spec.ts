@@ -11,7 +11,7 @@ const readable = (page: Page) =>
   page.locator("body").evaluate((body) => {
     const panels = Array.from(body.querySelectorAll(".dv-content-container, header, [role=status], [role=alert]"));
     // the question itself names the answers; games say the same of every bench
-    const own = "section[aria-label='Blind diagnosis'], section[aria-label='Games']";
+    const own = "section[aria-label='Hidden fault'], section[aria-label='Games']";
     return panels
       .filter((panel) => panel.querySelector(own) === null)
       .flatMap((panel) => [panel, ...Array.from(panel.querySelectorAll("*"))])
@@ -55,7 +55,7 @@ const TELLING = [
 
 const HIDDEN = "A fault is hidden here, or none";
 
-const panelOf = (page: Page) => page.getByRole("region", { name: "Blind diagnosis" });
+const panelOf = (page: Page) => page.getByRole("region", { name: "Hidden fault" });
 
 /** Commit an answer at the highest confidence. */
 async function answer(page: Page, hypothesis: string): Promise<void> {

@@ -89,7 +89,7 @@ test("a gyroscope has its loops and its tilt, and its fault is injected, found a
   await expect(says).toHaveText("healthy");
 
   await front(page, "Controller");
-  const panel = page.getByRole("region", { name: "Controllers" });
+  const panel = page.getByRole("region", { name: "Choice" });
   await panel.getByRole("radio", { name: "Whole-angle read-out" }).click();
   await expect(panel.getByText("Waits: Whole-angle read-out")).toBeVisible();
   await panel.getByLabel("Kind of angular rate").selectOption("sine");

@@ -19,7 +19,7 @@ test("an injected fault is found and explained, the delay is printed, and healin
   await expect(lanes.getByText(/^\d+\ssamples · [1-9]\d{0,2}(\.\d+)?\s(µs|ms)$/)).toBeVisible();
 
   await page.getByRole("button", { name: "Explain the newest sample" }).click();
-  const why = page.getByRole("region", { name: "Why this sample" });
+  const why = page.getByRole("region", { name: "Why" });
   await expect(why.getByText(/^Mass \+5\s% (wins|stays ahead)/)).toBeVisible();
   await expect(why.getByRole("row")).toHaveCount(7);
   await why.getByRole("button", { name: "The sample where it turned" }).click();

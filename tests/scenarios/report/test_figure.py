@@ -100,3 +100,12 @@ def test_words_are_written_as_they_are() -> None:
 def test_a_figure_is_the_same_each_time() -> None:
     first, second = (picture_file(figure(run(get("ch3-stvsc-mass")))) for _ in range(2))
     assert first == second and len(first) < 8000
+
+
+def test_the_rate_that_is_read_is_that_of_the_controller_that_drove() -> None:
+    read, true = figure(run(get("gyro-first-look"))).series
+    at = dict(zip((round(ms) for ms in read.x), read.y, strict=False))
+    assert (read.name, true.name) == ("read", "true")
+    assert next(y for ms, y in at.items() if ms > 350) == pytest.approx(100.0, abs=3.0)
+    assert next(y for ms, y in at.items() if ms > 500) == pytest.approx(76.0, abs=2.0)
+    assert read.y[-1] == pytest.approx(100.0, abs=3.0)

@@ -76,7 +76,7 @@ test("four faults of a gyroscope are injected, found and healed from the page", 
 
   // why, in numbers: two residuals for each hypothesis, weighed together
   await page.getByRole("region", { name: "Diagnosis by bank" }).locator("canvas").click({ force: true });
-  const why = page.getByRole("region", { name: "Why this sample" });
+  const why = page.getByRole("region", { name: "Why" });
   await expect(why.getByRole("columnheader", { name: "Residual along x, y" })).toBeVisible();
   await expect(why.getByRole("row", { name: /^healthy.*m.*m.*%/ })).toBeVisible();
   await expect(why.getByText("the winner raised by the least evidence")).toBeVisible();

@@ -60,7 +60,7 @@ test("parameter sets, recordings and their comparison fit every screen", async (
     .getByRole("region", { name: /^Block/ })
     .getByRole("button", { name: "Sets…" })
     .click();
-  const sets = page.getByRole("region", { name: "Parameter sets" });
+  const sets = page.getByRole("region", { name: "Sets" });
   await sets.getByRole("textbox", { name: "Keep the values of now as" }).fill("as it came");
   await sets.getByRole("button", { name: "Keep", exact: true }).click();
   await sets.getByRole("button", { name: "Compare as it came" }).click();

@@ -3,6 +3,7 @@ import { useMediaQuery } from "@mantine/hooks";
 import { useCallback, useEffect, useState } from "react";
 import { ApiError } from "../api/client";
 import { may, useMe } from "../api/me";
+import { resumeLecture, useLecture } from "../bench/lecture";
 import { benchInAddress, inAddress, openBench, showBench } from "../bench/open-bench";
 import { setPage, showAddress, useView } from "../bench/view-store";
 import { View3dHost } from "../panels/view3d/view3d-host";
@@ -34,6 +35,7 @@ import { ReplayBar } from "./replay-bar";
 import { Search } from "./search/search";
 import { ShareSheet } from "./share-sheet";
 import { Strip } from "./strip";
+import strip from "./strip.module.css";
 import { useKeys } from "./use-keys";
 import { useReadingSize } from "./use-reading-size";
 import { VoteCard } from "./vote-card";
@@ -55,6 +57,7 @@ export function App() {
   const Page = page === "nowhere" ? Nowhere : PAGES[page].component;
   const [failure, setFailure] = useState<Failure | undefined>(undefined);
   const present = useView((s) => s.present);
+  const lectures = useLecture((s) => s.lecture !== undefined);
   useKeys();
   useReadingSize(phone);
 
@@ -75,6 +78,8 @@ export function App() {
     if (called && useMe.getState().me?.role === "student")
       follow().catch((error: unknown) => setFailure(explain(error)));
   }, [called]);
+
+  useEffect(() => void resumeLecture(), []);
 
   useEffect(() => {
     start();
@@ -118,7 +123,13 @@ export function App() {
       )}
       {onBench && <BenchTitle />}
       {!failure && !phone && onBench && <Strip />}
-      {!failure && <LectureStrip />}
+      {!failure && lectures && (phone || !onBench) && (
+        <footer className={strip.strip}>
+          <div className={strip.row}>
+            <LectureStrip />
+          </div>
+        </footer>
+      )}
       <KeySheet />
       <NewBench />
       <MineSheet />

@@ -124,7 +124,7 @@ function Line({
 }) {
   return (
     // Announced by the page's live regions, not here a second time.
-    <section className={styles.banner} data-tone={tone} aria-label="Notice">
+    <section className={styles.banner} data-tone={tone} data-brief={tone === "warn"} aria-label="Notice">
       <strong>{title}</strong>
       <span>{text}</span>
       <div className={styles.actions}>{children}</div>

@@ -74,7 +74,7 @@ function ofAxes({ controllers }: Shown): Hint[] {
   return [
     {
       id: "rate",
-      text: "change the angular rate under Controller, and watch the estimate follow",
+      text: "change the angular rate under Controller",
       isDone: (event) => sets(event, "rate") && byHand(event),
     },
     ...(controllers.length > 1

@@ -58,7 +58,7 @@ it("stops the bench and runs it", async () => {
 
 it.each([
   ["Faults", "Faults"],
-  ["Controller", "Controllers"],
+  ["Controller", "Choice"],
 ])("opens %s below the scope, and has the lanes back at a second press", async (word, region) => {
   connect(bench);
   const { user } = mount(<Phone />);

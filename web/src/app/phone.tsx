@@ -116,10 +116,10 @@ function Asked({ panel, view }: { panel: PanelName; view: ViewName }) {
 /** Why a sample was judged as it was, below the lanes it was chosen in. */
 function Why() {
   return (
-    <section ref={(place) => place?.scrollIntoView({ block: "nearest" })} className={styles.why} aria-label="Why">
+    <div ref={(place) => place?.scrollIntoView({ block: "start" })} className={styles.why}>
       <Close what="Why" onClose={() => useView.setState({ sample: undefined })} />
       <PanelBody view="why" params={{}} setParams={() => undefined} />
-    </section>
+    </div>
   );
 }
 

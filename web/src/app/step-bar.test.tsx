@@ -74,3 +74,19 @@ it("tells what was found after which delay, and what was said before", async () 
     "nothing to find",
   ]);
 });
+
+it("looks for no finding where the controller changes", async () => {
+  const truth = logEntry({
+    seq: 1,
+    tick: 0,
+    kind: "truth_changed",
+    text: "kalman: the truth is healthy",
+    new: "healthy",
+  });
+  const { said } = await show({}, [
+    truth,
+    logEntry({ seq: 2, tick: 100, kind: "switch", actor: "scenario", command: { switch: "pid" } as never }),
+    injected("damping", 2),
+  ]);
+  expect(said).toEqual(["not found", "done", "nothing to find"].map((one) => expect.stringContaining(one)));
+});

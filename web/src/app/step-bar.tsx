@@ -4,7 +4,7 @@ import { useMemo } from "react";
 import { useMay } from "../api/me";
 import type { Bench } from "../api/types";
 import { actions } from "../bench/actions";
-import { hypothesisWords } from "../bench/hypothesis-words";
+import { diagnoserWords, hypothesisWords } from "../bench/hypothesis-words";
 import { type BenchStep, hasEnded, useSteps } from "../bench/steps";
 import { conditionWords } from "../panels/condition/condition";
 import { type TruthSwitch, truthSwitches } from "../panels/lanes/delays";
@@ -101,10 +101,10 @@ export function useScored(): Scored[] {
 /** The findings of each diagnoser at each step; of no diagnoser, the steps alone. A click begins a step again. */
 export function Findings({ scored }: { scored: Scored[] }) {
   const steps = useSteps();
+  const diagnosers = useBench((s) => s.bench?.diagnosers);
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   const repeats = useRepeats(steps);
   const several = scored.length > 1;
-  const nothing = scored.length > 0 ? "nothing to find" : "done";
   return (
     <ol className={rest.findings} aria-label={scored.length > 0 ? "Findings at each step" : "All steps"}>
       {steps.map((step, i) => {
@@ -113,8 +113,9 @@ export function Findings({ scored }: { scored: Scored[] }) {
           const change = step.done
             ? all.findLast(({ tick }) => tick >= (step.tick ?? Infinity) && tick < end)
             : undefined;
-          return change ? [`${several ? `${id.replaceAll("_", " ")} ` : ""}${foundWords(change, dtMs)}`] : [];
+          return change ? [`${several ? `${diagnoserWords(id, diagnosers)} ` : ""}${foundWords(change, dtMs)}`] : [];
         });
+        const nothing = scored.length > 0 && step.isFault ? "nothing to find" : "done";
         const words = step.done ? found.join("; ") || nothing : "to come";
         return (
           <li key={`${step.tick} ${step.when}`}>

@@ -9,6 +9,7 @@ import { useView } from "../bench/view-store";
 import { NarratorPanel } from "../panels/narrator/narrator-panel";
 import { useBench } from "../stream/bench-store";
 import { Caption } from "./caption";
+import { LectureStrip } from "./lecture/lecture-strip";
 import rest from "./rest.module.css";
 import { Findings, StepBar, useScored } from "./step-bar";
 import styles from "./strip.module.css";
@@ -18,7 +19,7 @@ import { HintList, TryThis } from "./try-this";
 import { type TickedHints, useHints } from "./use-hints";
 
 /**
- * The row under the panels: the next hint or step, the newest sentence of the narrator, and the timeline. The rest opens
+ * The row under the panels: the next hint or step or the cue of a lecture, the newest sentence of the narrator, and the timeline. The rest opens
  * over the panels. An audience sees the sentence alone.
  */
 export function Strip() {
@@ -31,10 +32,11 @@ export function Strip() {
   const ticked = useHints();
   const tips = hasSteps || lectures || noted || !drives ? undefined : ticked;
   const narrates = useNarrator((s) => s.on);
-  if (present && !narrates) return null;
+  if (present && !narrates && !lectures) return null;
   return (
     <footer className={styles.strip}>
       <div className={styles.row}>
+        <LectureStrip />
         {!present && hasSteps && <StepBar />}
         {!present && tips && <TryThis tips={tips} />}
         <Caption intro={tips?.intro} />
@@ -59,7 +61,7 @@ function Rest({ tips, hasSteps }: { tips: TickedHints | undefined; hasSteps: boo
       </Popover.Target>
       <Popover.Dropdown
         className={rest.rest}
-        onClick={({ target }) => (target as Element).closest("button") && setOpened(false)}
+        onClick={({ target }) => (target as Element).closest("button:not([aria-haspopup])") && setOpened(false)}
       >
         {tips && <HintList tips={tips} />}
         {hasSteps && <Findings scored={scored} />}

@@ -19,7 +19,9 @@ export function TryThis({ tips }: { tips: TickedHints }) {
   return (
     <section className={styles.lead} aria-label="Try this">
       <p className={styles.words}>
-        <strong>Try this{at >= 0 && hints.length > 1 ? ` (${at + 1} of ${hints.length})` : ""}:</strong>{" "}
+        <strong>
+          {at < 0 ? "All tried." : `Try this${hints.length > 1 ? ` (${at + 1} of ${hints.length})` : ""}:`}
+        </strong>{" "}
         {hints[at]?.text}
       </p>
       {tips.guided && <Guided {...tips.guided} />}

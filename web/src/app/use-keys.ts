@@ -4,6 +4,7 @@ import { useView } from "../bench/view-store";
 import { useScheme } from "../ui/use-canvas";
 import { keymap } from "./keymap";
 import { followFullScreen, setPresent } from "./present";
+import { isSearching } from "./search/search";
 import { themeSwitch } from "./theme";
 
 const TYPING =
@@ -46,7 +47,7 @@ export function useKeys(): void {
 
   useEffect(() => {
     const listen = (event: KeyboardEvent) => {
-      if (event.defaultPrevented || event.altKey) return;
+      if (event.defaultPrevented || event.altKey || isSearching()) return;
       const target = event.target as HTMLElement;
       if (target.closest(TYPING)) return;
       if (event.key === " " && target.closest("button, a, summary, [role=button], [role=tab]")) return;

@@ -26,6 +26,11 @@ it("says what a hypothesis changes, in percent or in the unit of what it adds", 
 });
 
 it("keeps a name of words, and that of one that changes nothing or is not known", () => {
-  const names = ["healthy", "k+5", "soft"];
+  const names = ["healthy", "q+5", "soft", "k2.5g"];
   expect(names.map((name) => hypothesisWords(name, DIAGNOSERS))).toEqual(names);
+});
+
+it("spells out an abbreviation of another bench, as in a vote", () => {
+  expect(hypothesisWords("k+5", DIAGNOSERS)).toBe("stiffness +5\u00a0%");
+  expect(hypothesisWords("b-30", {})).toBe("damping −30\u00a0%");
 });

@@ -11,6 +11,9 @@ const NOUNS: Partial<Record<string, string>> = {
   second_stiffness: "stiffness along y",
 };
 
+/** Of the device, as hypotheses are named by them. */
+const LETTERS: Record<string, string> = { m: "mass", k: "stiffness", b: "damping" };
+
 let known: { diagnosers: Diagnosers; words: Map<string, string> } | undefined;
 
 /** Abbreviations have a number in them; a name of words is somebody's choice, and stays. */
@@ -18,9 +21,15 @@ const ABBREVIATION = /\d/;
 
 /** A hypothesis in words: "m+5" reads "mass +5 %"; one that says nothing of the device keeps its name. */
 export function hypothesisWords(name: string, diagnosers = useBench.getState().bench?.diagnosers): string {
-  if (!diagnosers) return name;
+  if (!diagnosers) return spelledOut(name);
   if (known?.diagnosers !== diagnosers) known = { diagnosers, words: wordsOf(diagnosers) };
-  return known.words.get(name) ?? name;
+  return known.words.get(name) ?? spelledOut(name);
+}
+
+/** The abbreviation of a bench elsewhere, as in a vote of another bench. */
+function spelledOut(name: string): string {
+  const [, noun, percent] = /^([mkb])([+-]\d+)$/.exec(name) ?? [];
+  return noun ? `${LETTERS[noun]} ${formatChange(Number(percent), "%", 0)}` : name;
 }
 
 /** A diagnoser by the title of its block, and by its own name where it has one. */

@@ -29,6 +29,9 @@ interface LectureStore {
 
 const NONE = { lecture: undefined, at: 0, tick: 0, began: 0, stage: undefined, before: undefined, busy: false };
 
+/** Address of the notes of a lecture alone, for a phone or another machine. */
+export const notesOf = (id: string): string => `./?notes=${encodeURIComponent(id)}`;
+
 /** The lecture that runs on this page. */
 export const useLecture = create<LectureStore>(() => NONE);
 

@@ -13,6 +13,8 @@ export interface BenchStep {
   /** The condition that is awaited. */
   when: string | undefined;
   done: boolean;
+  /** A fault begins or ends, which diagnosers are to notice. */
+  isFault: boolean;
   /** It is of the scenario, so that it comes again after a reset. */
   ofScenario: boolean;
 }
@@ -26,7 +28,7 @@ interface Act {
 }
 
 const SCENARIO = "scenario";
-const START: BenchStep = { words: "start", tick: 0, when: undefined, done: true, ofScenario: true };
+const START: BenchStep = { words: "start", tick: 0, when: undefined, done: true, isFault: false, ofScenario: true };
 
 const NONE: never[] = [];
 
@@ -94,6 +96,7 @@ function stepOf(acts: Act[]): BenchStep {
     tick,
     when,
     done,
+    isFault: acts.some(({ command }) => "fault" in command || "heal" in command),
     ofScenario: acts.every(({ actor }) => actor === SCENARIO),
   };
 }

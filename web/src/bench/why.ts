@@ -1,12 +1,22 @@
 import { useBench } from "../stream/bench-store";
 import { stream } from "../stream/stream";
-import { showBeside } from "./dock";
+import { panelWith, showBeside, showPanel } from "./dock";
 import { useView } from "./view-store";
 
-/** Ask why a diagnoser believed what it did at a sample; the panel that answers opens beside the lanes. */
+/** Below this width lanes have no room for a neighbour, px. */
+const LANES_PX = 800;
+
+/** Beside the lanes, or among the faults below them where the lanes are narrow. */
+function showWhy(): void {
+  const lanes = panelWith("lanes");
+  if (lanes && lanes.api.width < LANES_PX && !panelWith("why") && panelWith("faults")) showPanel("why", "faults");
+  else showBeside("why", "lanes");
+}
+
+/** Ask why a diagnoser believed what it did at a sample; the panel that answers opens beside or below the lanes. */
 export function pickSample(diagnoser: string, tick: number): void {
   useView.setState({ sample: { diagnoser, tick: Math.max(0, tick) } });
-  showBeside("why", "lanes");
+  showWhy();
 }
 
 /** Ask it of the newest sample, of the diagnoser that was asked last or else the first. */
@@ -15,7 +25,7 @@ export function askLatest(): void {
   const asked = useView.getState().sample?.diagnoser;
   const diagnoser = asked !== undefined && weighing.includes(asked) ? asked : weighing[0];
   if (diagnoser !== undefined) pickSample(diagnoser, stream.client.head.tick - 1);
-  else showBeside("why", "lanes");
+  else showWhy();
 }
 
 /** The diagnosers of the bench that choose between hypotheses. */

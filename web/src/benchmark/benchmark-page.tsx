@@ -3,6 +3,7 @@ import { useState } from "react";
 import { api } from "../api/api";
 import { useAnswer } from "../api/queries";
 import type { Benchmark } from "../api/types";
+import { useCatalog } from "../api/use-catalog";
 import { PageHead } from "../bench/page-head";
 import { LineChart } from "../picture/line-chart";
 import { EmptyState } from "../ui/empty-state";
@@ -50,20 +51,23 @@ export function BenchmarkPage() {
 function Track({ track, benchmark }: { track: Benchmark["results"][number]; benchmark: Benchmark }) {
   const [units, setUnits] = useState(track.rows.slice(0, DRAWN).map((row) => row.unit));
   const drawn = track.rows.filter((row) => units.includes(row.unit));
+  const { blocks } = useCatalog();
+  const named = (unit: string) =>
+    blocks.find(({ family, name }) => family === "diagnose" && name === unit)?.title ?? unit.replaceAll("_", " ");
   const out = benchmark.left_out.filter((one) => one.track === track.id);
   return (
     <>
       <section className={styles.card} aria-label={track.title}>
         <h2>{track.question}</h2>
         <p>{track.note}</p>
-        <ResultsTable rows={track.rows} costs={benchmark.costs} label={`Results of ${track.title}`} />
+        <ResultsTable named={named} rows={track.rows} costs={benchmark.costs} label={`Results of ${track.title}`} />
         <p>
           {formatNumber(benchmark.cases, 0)} cases from public seeds; thresholds give one false alarm in{" "}
           {formatNumber(benchmark.false_alarm_samples, 0)} healthy samples on average. Ranked by log score, then by
           Brier score. Diagnosers without probabilities have no rank.
-          {out.map((one) => ` ${one.unit} is not scored: it ${one.reason}.`)} <code>{benchmark.command}</code> computes
-          the table again, to the bit; the times are those of the machine that computed it, with their ratio to the
-          Kalman bank.
+          {out.map((one) => ` ${named(one.unit)} is not scored: it ${one.reason}.`)} <code>{benchmark.command}</code>{" "}
+          computes the table again, to the bit; the times are those of the machine that computed it, with their ratio to
+          the Kalman bank.
         </p>
       </section>
       <section className={styles.card} aria-label="Curves">
@@ -71,7 +75,7 @@ function Track({ track, benchmark }: { track: Benchmark["results"][number]; benc
           size="xs"
           label="Diagnosers drawn"
           value={units}
-          data={track.rows.map((row) => row.unit)}
+          data={track.rows.map(({ unit }) => ({ value: unit, label: named(unit) }))}
           onChange={setUnits}
           maw={640}
         />
@@ -82,14 +86,14 @@ function Track({ track, benchmark }: { track: Benchmark["results"][number]; benc
             yLabel="share that was right"
             xRange={SHARE}
             yRange={SHARE}
-            lines={reliabilityLines(drawn)}
+            lines={reliabilityLines(drawn, named)}
           />
           <LineChart
             title="Faults found"
             xLabel="samples since the fault"
             yLabel="share found by then"
             yRange={SHARE}
-            lines={delayLines(drawn, benchmark.within_samples)}
+            lines={delayLines(drawn, benchmark.within_samples, named)}
           />
         </div>
       </section>

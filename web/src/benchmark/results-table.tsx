@@ -59,13 +59,15 @@ const COST =
   "Time per sample, and its ratio to the Kalman bank in the same run, on the machine that computed the table.";
 
 interface Results {
+  /** The title of a diagnoser. */
+  named(unit: string): string;
   rows: readonly BenchmarkRow[];
   costs: Benchmark["costs"];
   label: string;
 }
 
 /** The diagnosers of a track, best first, with the half width of the 95 % intervals. */
-export function ResultsTable({ rows, costs, label }: Results) {
+export function ResultsTable({ named, rows, costs, label }: Results) {
   return (
     // biome-ignore lint/a11y/noNoninteractiveTabindex: a region that scrolls is reached by the keyboard
     <section className={styles.scroll} aria-label={label} tabIndex={0}>
@@ -89,7 +91,9 @@ export function ResultsTable({ rows, costs, label }: Results) {
           {rows.map((row, i) => (
             <tr key={row.unit}>
               <td>{row.log_score ? formatNumber(i + 1, 0) : "–"}</td>
-              <th scope="row">{row.unit}</th>
+              <th scope="row" title={row.unit}>
+                {named(row.unit)}
+              </th>
               {COLUMNS.map((column) => (
                 <td key={column.title}>{column.say(row)}</td>
               ))}

@@ -71,3 +71,11 @@ it("shows words of the text and a verdict of its own under the figure", () => {
   const own = entry("control.effort_ratio", 1.8, { published: "almost 80 % stronger", verdict: "ours" });
   expect(table(own)[1][0]).toBe("effort ratiopublished: almost 80\u00a0% strongerours");
 });
+
+it("has words for an expectation that was kept without them", () => {
+  const kept = {
+    ...entry("control.rms_error_um", 0.01, { expected: ">= 0.001 and <= 0.02" }),
+    expected_words: undefined,
+  };
+  expect(table(kept as never)[1][1]).toBe("≥\u00a00.001\u00a0µm and ≤\u00a00.02\u00a0µm");
+});

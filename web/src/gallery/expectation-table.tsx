@@ -1,5 +1,6 @@
 import { useState } from "react";
 import type { GalleryCard } from "../api/types";
+import { formatShort } from "../ui/format";
 import { metricScale } from "../ui/metric-name";
 import { Verdict } from "../ui/verdict";
 import styles from "./gallery.module.css";
@@ -25,6 +26,17 @@ function remarks(entry: Entry): string[] {
     ...(entry.reason ? [`not compared with the open loop: ${entry.reason}`] : []),
   ];
 }
+
+/** An expectation of a run that was kept before they had words: its numbers with their unit, and the signs of print. */
+function readable({ metric, expected }: Entry): string {
+  const numbers = [...expected.matchAll(NUMBER)].map(([text]) => numberIn(text));
+  const { unit, shown } = metricScale(metric, numbers);
+  const said = expected.replaceAll(NUMBER, (text) => formatShort(shown(numberIn(text)), unit));
+  return said.replaceAll(">= ", "≥\u00a0").replaceAll("<= ", "≤\u00a0");
+}
+
+const NUMBER = /[-−]?\d[\d.]*(?:e[+-]?\d+)?/g;
+const numberIn = (text: string) => Number(text.replace("−", "-"));
 
 /** Figure by figure what is expected, what was measured, and what the open loop gives; the first few until all are asked for. */
 export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
@@ -53,6 +65,7 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
         <tbody>
           {rows.map((entry) => {
             const { name, say } = metricScale(entry.metric, []);
+            const expected = entry.expected_words ?? readable(entry);
             return (
               <tr key={entry.metric} title={[entry.metric, ...remarks(entry)].join(": ")}>
                 <th scope="row">
@@ -73,7 +86,7 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
                   )}
                   {all && remarks(entry).map((text) => <small key={text}>{text}</small>)}
                 </th>
-                <td>{entry.expected_words ?? entry.expected}</td>
+                <td>{expected}</td>
                 <td className={styles.measured} data-ok={entry.ok}>
                   {say(entry.measured)}
                   {entry.ok === false && " ✗"}

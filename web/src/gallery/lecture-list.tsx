@@ -2,7 +2,7 @@ import { Button } from "@mantine/core";
 import { IconPlayerPlay } from "@tabler/icons-react";
 import { lectures } from "../api/lectures";
 import { useAsked } from "../api/queries";
-import { startLecture } from "../bench/lecture";
+import { notesOf, startLecture } from "../bench/lecture";
 import { formatCount, formatShort } from "../ui/format";
 import styles from "./gallery.module.css";
 
@@ -30,6 +30,15 @@ export function LectureList() {
               onClick={() => void startLecture(id)}
             >
               Start, {formatShort(minutes, "min")}
+            </Button>
+            <Button
+              component="a"
+              href={notesOf(id)}
+              size="compact-sm"
+              variant="subtle"
+              aria-label={`Notes of ${title}`}
+            >
+              Notes
             </Button>
             <small>{formatCount(cues, "cue")}</small>
           </li>

@@ -42,8 +42,9 @@ export const eventsWithin = ({ marks, span }: Pick<EventAxis, "marks" | "span">)
   marks.events.filter((e) => e.tick >= span.start && e.tick <= span.end && eventTone(e) !== "quiet");
 
 /**
- * Events as lines over a plot, faults as bands along its top. Above a line stands what the event says, or its number
- * where that has no room; where events are only numbered, numbers without room join into a range.
+ * Events as lines over a plot, faults as bands along its top. Above a line are the words of the event, after the line or
+ * before it; where neither has room, they cover those of the next event. Events without words have numbers, which join into a range
+ * where they have no room.
  */
 export function markEvents(
   pen: Pen,
@@ -66,7 +67,7 @@ export function markEvents(
   const events = eventsWithin({ marks, span });
   const labels: { left: number; right: number; text: string; colour: string; event: LogEntry; at: number }[] = [];
   const width = (text: string) => pen.measureText(text).width;
-  events.forEach((event, i) => {
+  for (const [i, event] of events.entries()) {
     const at = x(event.tick);
     const tone = eventTone(event);
     const colour = tone === "alarm" ? ink.alarm : tone === "found" ? ink.accent : ink.event;
@@ -76,17 +77,24 @@ export function markEvents(
     const last = labels.at(-1);
     if (last && at < last.right) {
       if (!say) labels[labels.length - 1] = { ...last, ...about(last.at, `${last.event.seq}–${event.seq}`) };
-      return;
+      continue;
     }
     const next = events.slice(i + 1).find(({ tick }) => x(tick) > at + NEAR);
-    const words = say?.(event);
-    const hasRoom = words && width(words) < (next ? x(next.tick) : right) - at - 6;
-    const placed = hasRoom ? { left: at - 1, right: at + width(words) + 6, text: words } : about(at, String(event.seq));
-    labels.push({ ...placed, colour, event, at });
-  });
+    const free: [number, number] = [last?.right ?? left, next ? x(next.tick) - 6 : right];
+    const placed = say ? beside(at, say(event), free) : about(at, String(event.seq));
+    if (placed) labels.push({ ...placed, colour, event, at });
+  }
   for (const { text, left, colour } of labels) {
     pen.fillStyle = colour;
     pen.fillText(text, left, top - fontSize / 2 - 5);
+  }
+
+  function beside(at: number, text: string, [from, to]: [number, number]) {
+    const long = width(text);
+    const after = { left: at - 1, right: at + long + 6, text };
+    if (at + long <= to) return after;
+    if (at - long - 4 >= from) return { left: at - long - 4, right: at + 4, text };
+    return at + long <= right ? after : undefined;
   }
 
   function about(at: number, text: string) {

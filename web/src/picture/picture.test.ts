@@ -60,7 +60,18 @@ it("says an event in words, also when another follows at the same place", () => 
         markEvents(pen, axisOf, axisOf.field({ width, height }, LOOK), LOOK, ({ text }) => text),
     }),
   );
-  expect(found).toEqual(["A < B", "fault 1", "3", "fault 4"]);
+  expect(found).toEqual(["A < B", "fault 1", "fault 3", "fault 4"]);
+});
+
+it("says an event at the right edge before its line, and never by a number", () => {
+  const axisOf = axis(event(1, 960), event(2, 975));
+  const found = texts(
+    drawn({
+      paint: (pen, { width, height }) =>
+        markEvents(pen, axisOf, axisOf.field({ width, height }, LOOK), LOOK, ({ text }) => text),
+    }),
+  );
+  expect(found).toEqual(["A < B", "fault 1"]);
 });
 
 it("joins the numbers of events that lie close, and does not list without end", () => {

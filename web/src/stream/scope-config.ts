@@ -25,15 +25,28 @@ export const DEFAULT_TRIGGER: Trigger = {
 };
 
 /** Stands for the controller that drives, in the names of signals. */
-const ACTIVE = "@active.";
+const ACTIVE = /^@active(?=\.)/;
+
+/** Of the controllers that drove, a scope shows the newest. */
+const MOST_DRIVEN = 3;
+
+/** A signal by its name on a bench; that of the controller that drives for each of some controllers, the newest first. */
+export function namedFor(signal: string, controllers: readonly string[]): string[] {
+  if (!ACTIVE.test(signal)) return [signal];
+  return [...new Set(controllers)].slice(0, MOST_DRIVEN).map((controller) => signal.replace(ACTIVE, controller));
+}
 
 /**
- * A scope as it is on a bench: the controller that drives by its name, the trigger on a signal that there is.
+ * A scope as it is on a bench: the controllers that drive or drove by name, the trigger on a signal that there is.
  *
  * A switch of the controller so changes what a scope shows.
  */
-export function onBench(config: ScopeConfig, signals: readonly { name: string }[], controller: string): ScopeConfig {
-  const named = config.signals.map((name) => (name.startsWith(ACTIVE) ? name.replace(/^@active/, controller) : name));
+export function onBench(
+  config: ScopeConfig,
+  signals: readonly { name: string }[],
+  controllers: readonly string[],
+): ScopeConfig {
+  const named = config.signals.flatMap((name) => namedFor(name, controllers));
   const known = signals.some((s) => s.name === config.trigger.signal) || named.length === 0;
   return { ...config, signals: named, trigger: known ? config.trigger : { ...config.trigger, signal: named[0] } };
 }

@@ -16,11 +16,10 @@ export function EquationIndex() {
   const [errataOnly, setErrataOnly] = useState(false);
   const entries = useMemo(() => entriesOf(blocks), [blocks]);
   const families = useMemo(() => found(entries, asked, errataOnly), [entries, asked, errataOnly]);
-  const shown = useDeferredValue(families, []); // hundreds are typeset: the page answers meanwhile
   const listed = families.flatMap((family) => family.entries);
   const errata = listed.filter(({ equation }) => equation.printed).length;
   const section = useRef<HTMLElement>(null);
-  const isFilled = shown.length > 0;
+  const isFilled = listed.length > 0;
   useEffect(() => {
     if (isFilled && useView.getState().item) section.current?.scrollIntoView();
   }, [isFilled]);
@@ -50,19 +49,24 @@ export function EquationIndex() {
           onChange={(e) => setErrataOnly(e.currentTarget.checked)}
         />
       </header>
-      {shown.map((family) => (
-        <section key={family.name} aria-label={family.name}>
-          <h3 className={styles.family}>{family.name}</h3>
-          <ul className={styles.list}>
-            {family.entries.map((entry) => (
-              <Row key={entry.blocks.join() + entry.equation.label + entry.equation.latex} entry={entry} />
-            ))}
-          </ul>
-        </section>
-      ))}
+      {isFilled && <Families families={families} />}
       {blocks.length > 0 && listed.length === 0 && <p className={styles.none}>No equation has all these words.</p>}
     </section>
   );
+}
+
+/** The first family at once; hundreds of equations are typeset, and the page answers meanwhile. */
+function Families({ families }: { families: ReturnType<typeof found> }) {
+  return useDeferredValue(families, families.slice(0, 1)).map((family) => (
+    <section key={family.name} aria-label={family.name}>
+      <h3 className={styles.family}>{family.name}</h3>
+      <ul className={styles.list}>
+        {family.entries.map((entry) => (
+          <Row key={entry.blocks.join() + entry.equation.label + entry.equation.latex} entry={entry} />
+        ))}
+      </ul>
+    </section>
+  ));
 }
 
 const Row = memo(function Row({ entry: { blocks, equation } }: { entry: Entry }) {

@@ -26,16 +26,20 @@ export function BenchMenu() {
   const drives = useMay("drive");
   const teaches = useMay("teach");
   const [benches, setBenches] = useState<Bench[]>([]);
-  const now = stale ? staleWords(stale) : slow ? "display lagging, simulation on time" : `${watchers} watching`;
+  const [name, rest] = (title ?? "No bench").split(/: (.*)/);
+  const news = stale ? staleWords(stale) : slow ? "display lagging" : rate ? rest : "connecting";
   const load = () => api.benches().then(setBenches, showError);
 
   return (
     <Menu width={340} position="bottom-start" shadow="md" onOpen={load}>
       <Menu.Target>
-        <UnstyledButton className={styles.bench} title={`${title ?? "No bench"}: change bench`}>
-          <span>{title ?? "No bench"} </span>
+        <UnstyledButton
+          className={styles.bench}
+          title={`${title ?? "No bench"}, ${formatShort(rate ?? 0, "kHz")} board, ${watchers} watching. ${slow ? "The display lags, the simulation is on time. " : ""}Change bench.`}
+        >
+          <span data-lines={news ? 1 : 2}>{name} </span>
           <small data-slow={slow}>
-            {rate ? `${formatShort(rate, "kHz")} board · ${now}` : stale ? "not connected" : "connecting"}
+            {news}
             <IconChevronDown size={12} style={{ verticalAlign: -2 }} />
           </small>
         </UnstyledButton>

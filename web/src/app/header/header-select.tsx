@@ -1,5 +1,5 @@
 import { Select } from "@mantine/core";
-import { useRef } from "react";
+import { type CSSProperties, useRef } from "react";
 import { useMay } from "../../api/me";
 import { WATCHING } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
@@ -37,7 +37,7 @@ export function HeaderSelect({ label, value, choices, locked, onChoose }: Header
       ref={input}
       className={styles.choice}
       size="xs"
-      flex={`0 1 ${(shown?.title.length ?? 8) + 6}ch`}
+      style={{ "--letters": (shown?.title.length ?? 8) + 6 } as CSSProperties}
       label={label}
       title={locked ?? shown?.title}
       allowDeselect={false}

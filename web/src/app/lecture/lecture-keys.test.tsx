@@ -97,8 +97,8 @@ it("keeps the notes off the page until they are asked for", async () => {
   begin();
   const { user } = mount(<Page />);
   expect(screen.queryByRole("region", { name: "Notes of the speaker" })).not.toBeInTheDocument();
-  await user.click(screen.getByRole("button", { name: "Show the notes here, on the projector too" }));
-  expect(screen.getByRole("region", { name: "Notes of the speaker" })).toBeVisible();
+  await user.click(screen.getByRole("button", { name: "Notes" }));
+  expect(await screen.findByRole("region", { name: "Notes of the speaker" })).toBeVisible();
 });
 
 it("opens the notes in a window by I", async () => {
@@ -117,10 +117,23 @@ it("shows the notes in their window, and runs a key that is pressed there", asyn
       <Presenter />
     </>,
   );
-  expect(await screen.findByRole("heading", { level: 1 })).toHaveTextContent(
-    `${AT + 1} of ${lecture.script.length} ${lecture.script[AT].title}`,
-  );
+  const name = `${AT + 1} of ${lecture.script.length} ${lecture.script[AT].title}`;
+  expect(await screen.findByRole("heading", { level: 1, name })).toBeVisible();
   expect(screen.getByRole("region", { name: "Notes of the speaker" })).toBeVisible();
   await user.keyboard("r");
   await vi.waitFor(() => expect(board.commands).toEqual([{ kind: "start" }]));
+});
+
+it("has the notes of any lecture by themselves, as for a phone", async () => {
+  window.history.replaceState(null, "", `./?notes=${lecture.id}`);
+  server.on("GET", "/lectures/:id", lecture);
+  const { user } = mount(<Presenter />);
+  const title = await screen.findByRole("heading", { level: 1 });
+  expect(title).toHaveTextContent(`1 of ${lecture.script.length} ${lecture.script[0].title}`);
+  await user.click(screen.getByRole("button", { name: "Next" }));
+  expect(title).toHaveTextContent(`2 of ${lecture.script.length}`);
+  await user.click(screen.getByRole("button", { name: "Back" }));
+  await user.click(screen.getByRole("button", { name: "Back" }));
+  expect(title).toHaveTextContent("1 of");
+  window.history.replaceState(null, "", "./");
 });

@@ -1,17 +1,8 @@
-import { ActionIcon, Button, Menu } from "@mantine/core";
-import {
-  IconChartBar,
-  IconChevronLeft,
-  IconChevronRight,
-  IconExternalLink,
-  IconList,
-  IconNotes,
-  IconNotesOff,
-  IconX,
-} from "@tabler/icons-react";
-import { useEffect, useRef, useState } from "react";
+import { ActionIcon, Button, Menu, Popover } from "@mantine/core";
+import { IconChevronLeft, IconChevronRight, IconExternalLink, IconList, IconNotes, IconX } from "@tabler/icons-react";
+import { useEffect, useRef } from "react";
 import { useDock } from "../../bench/dock";
-import { cueBefore, goTo, nextCue, resumeLecture, useLecture } from "../../bench/lecture";
+import { cueBefore, goTo, nextCue, useLecture } from "../../bench/lecture";
 import { setPage, useView } from "../../bench/view-store";
 import { askCue } from "../../bench/vote";
 import { useBench } from "../../stream/bench-store";
@@ -21,7 +12,7 @@ import { LectureClock, Notes } from "./notes";
 import { openPresenter, usePresenter } from "./presenter";
 import { showCue } from "./show-cue";
 
-/** The cues of a lecture along the bottom of the page. The notes have a window of their own; here they are shown on request. */
+/** The cues of a lecture in the strip under the panels. The notes have a window of their own; here they open on request. */
 export function LectureStrip() {
   const lecture = useLecture((s) => s.lecture);
   const at = useLecture((s) => s.at);
@@ -35,9 +26,7 @@ export function LectureStrip() {
   );
   const dock = useDock((s) => s.dock);
   const place = useRef<HTMLElement>(null);
-  const [notes, setNotes] = useState(false);
   usePresenter();
-  useEffect(() => void resumeLecture(), []);
   useEffect(() => {
     if (lecture && at >= 0 && diagnoses !== undefined && dock && page === "bench")
       showCue(lecture.script, { at, tick }, diagnoses, present);
@@ -58,93 +47,84 @@ export function LectureStrip() {
       </section>
     );
   return (
-    <section ref={place} className={styles.strip} aria-label="Lecture" aria-busy={busy} tabIndex={-1}>
-      <div className={styles.bar}>
-        <ActionIcon
-          size={34}
-          variant="default"
-          aria-label="Cue before (Page Up, ←)"
-          title="Cue before (Page Up, ←)"
-          disabled={at === 0}
-          onClick={cueBefore}
-        >
-          <IconChevronLeft size={19} />
-        </ActionIcon>
-        <Button
-          size="compact-md"
-          rightSection={<IconChevronRight size={17} />}
-          disabled={at === lecture.script.length - 1}
-          title="Next cue (Space, Page Down, →)"
-          onClick={nextCue}
-        >
-          Next
+    <section ref={place} className={styles.lecture} aria-label="Lecture" aria-busy={busy} tabIndex={-1}>
+      <ActionIcon
+        size={28}
+        variant="default"
+        aria-label="Cue before (Page Up, ←)"
+        title="Cue before (Page Up, ←)"
+        disabled={at === 0}
+        onClick={cueBefore}
+      >
+        <IconChevronLeft size={17} />
+      </ActionIcon>
+      <Button
+        size="compact-sm"
+        rightSection={<IconChevronRight size={15} />}
+        disabled={at === lecture.script.length - 1}
+        title="Next cue (Space, Page Down, →)"
+        onClick={nextCue}
+      >
+        Next
+      </Button>
+      <p className={styles.where} title={cue.title}>
+        <span>{count}</span>
+        <strong>{cue.title}</strong>
+      </p>
+      {cue.vote && (
+        <Button size="compact-sm" variant="light" title="Open the vote of this cue (A)" onClick={() => void askCue()}>
+          Ask by a vote
         </Button>
-        <Menu width={380} position="top-start" shadow="md">
-          <Menu.Target>
-            <ActionIcon size={34} variant="subtle" aria-label="All cues" title="All cues">
-              <IconList size={19} />
-            </ActionIcon>
-          </Menu.Target>
-          <Menu.Dropdown>
-            <Menu.Label>{lecture.title}</Menu.Label>
-            {lecture.script.map(({ title }, i) => (
-              <Menu.Item key={title} aria-current={i === at} fw={i === at ? 650 : undefined} onClick={() => goTo(i)}>
-                {i + 1} {title}
-              </Menu.Item>
-            ))}
-          </Menu.Dropdown>
-        </Menu>
-        <p className={styles.where}>
-          <span>{count}</span>
-          <strong>{cue.title}</strong>
-        </p>
-        {cue.vote && (
-          <Button
-            size="compact-md"
-            variant="light"
-            leftSection={<IconChartBar size={17} />}
-            title="Open the vote of this cue (A)"
-            onClick={() => void askCue()}
-          >
-            Ask by a vote
-          </Button>
-        )}
-        <LectureClock />
-        <span className={styles.tools}>
-          <Button
-            size="compact-md"
-            variant="light"
-            leftSection={<IconExternalLink size={17} />}
-            title="Notes of the speaker in a window of their own, for a second screen (I)"
-            onClick={openPresenter}
-          >
-            Notes in a window
-          </Button>
-          <ActionIcon
-            size={34}
-            variant="subtle"
-            aria-label={notes ? "Hide the notes" : "Show the notes here, on the projector too"}
-            title={notes ? "Hide the notes" : "Show the notes here, on the projector too"}
-            aria-expanded={notes}
-            onClick={() => setNotes(!notes)}
-          >
-            {notes ? <IconNotesOff size={19} /> : <IconNotes size={19} />}
-          </ActionIcon>
-          <Button size="compact-md" variant="subtle" leftSection={<IconX size={16} />} onClick={() => void leave()}>
-            Leave
-          </Button>
-        </span>
-      </div>
+      )}
       {page !== "bench" && (
         <Button size="compact-sm" variant="light" onClick={() => setPage("bench")}>
           Back to the bench
         </Button>
       )}
-      {notes && <Notes cue={cue} next={lecture.script[at + 1]?.title} />}
-      <p className={styles.keys}>
-        Space, → or a clicker: next cue; ← back. R runs and pauses. {cue.vote && "A opens the vote, X reveals it. "}W
-        asks why. I opens the notes. P hides all buttons.
-      </p>
+      <Menu width={380} position="top-start" shadow="md">
+        <Menu.Target>
+          <ActionIcon size={28} variant="subtle" aria-label="All cues" title="All cues">
+            <IconList size={17} />
+          </ActionIcon>
+        </Menu.Target>
+        <Menu.Dropdown>
+          <Menu.Label>{lecture.title}</Menu.Label>
+          {lecture.script.map(({ title }, i) => (
+            <Menu.Item key={title} aria-current={i === at} fw={i === at ? 650 : undefined} onClick={() => goTo(i)}>
+              {i + 1} {title}
+            </Menu.Item>
+          ))}
+        </Menu.Dropdown>
+      </Menu>
+      <Popover width="min(720px, 94vw)" position="top-start" shadow="md">
+        <Popover.Target>
+          <ActionIcon size={28} variant="subtle" aria-label="Notes" title="Notes of the speaker, on the projector too">
+            <IconNotes size={17} />
+          </ActionIcon>
+        </Popover.Target>
+        <Popover.Dropdown>
+          <Button
+            size="compact-sm"
+            variant="light"
+            leftSection={<IconExternalLink size={15} />}
+            title="Notes of the speaker in a window of their own, for a second screen (I)"
+            onClick={openPresenter}
+          >
+            Notes in a window
+          </Button>
+          <Notes cue={cue} next={lecture.script[at + 1]?.title} />
+          <LectureClock />
+        </Popover.Dropdown>
+      </Popover>
+      <ActionIcon
+        size={28}
+        variant="subtle"
+        aria-label="Leave the lecture"
+        title="Leave the lecture"
+        onClick={() => void leave()}
+      >
+        <IconX size={17} />
+      </ActionIcon>
     </section>
   );
 }

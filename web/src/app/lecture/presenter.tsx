@@ -1,7 +1,11 @@
 import { Button } from "@mantine/core";
-import { useEffect, useState } from "react";
-import type { Cue } from "../../api/types";
+import { type ReactNode, useEffect, useState } from "react";
+import { lectures } from "../../api/lectures";
+import { useAsked } from "../../api/queries";
+import type { Cue, Lecture } from "../../api/types";
 import { plannedTo, useLecture } from "../../bench/lecture";
+import { EmptyState } from "../../ui/empty-state";
+import { useTitle } from "../../ui/use-title";
 import styles from "./lecture.module.css";
 import { LECTURE_KEYS } from "./lecture-keys";
 import { ClockFace, Notes, useMinutesSince } from "./notes";
@@ -26,11 +30,16 @@ type Message = Told | Asked;
 
 const isAsked = (message: Message): message is Asked => !("place" in message);
 
+/** What follows the lecture of another window, in the place of the id of a lecture. */
+const RUNNING = "1";
+
+const notesAsked = (): string => new URLSearchParams(window.location.search).get(PARAMETER) || RUNNING;
+
 /** Whether this window is that of the speaker. */
-export const isPresenter = (): boolean => new URLSearchParams(window.location.search).get(PARAMETER) === "1";
+export const isPresenter = (): boolean => new URLSearchParams(window.location.search).has(PARAMETER);
 
 export const openPresenter = () =>
-  void window.open(`./?${PARAMETER}=1`, "combbench-notes", "popup,width=720,height=620");
+  void window.open(`./?${PARAMETER}=${RUNNING}`, "combbench-notes", "popup,width=720,height=620");
 
 /** Send the place of the lecture to the window of the speaker, if there is one, and run the keys that are pressed there. */
 export function usePresenter(): void {
@@ -54,8 +63,9 @@ export function usePresenter(): void {
   }, [runs]);
 }
 
-function told(): Told {
-  const { lecture, at, began } = useLecture.getState();
+const told = (): Told => toldOf(useLecture.getState());
+
+function toldOf({ lecture, at, began }: { lecture: Lecture | undefined; at: number; began: number }): Told {
   const script = lecture?.script ?? [];
   return {
     cue: script[at],
@@ -67,13 +77,18 @@ function told(): Told {
   };
 }
 
-/** The window of the speaker: the notes in large letters, on a screen that the audience does not see. */
+/** The notes in large letters: of the lecture that runs in another window, or of a lecture by itself, as on a phone. */
 export function Presenter() {
+  const [asked] = useState(notesAsked);
+  useTitle("Notes of the speaker");
+  return asked === RUNNING ? <Following /> : <Alone id={asked} />;
+}
+
+/** The window of the speaker, on a screen that the audience does not see. */
+function Following() {
   const [now, setNow] = useState<Told | undefined>(undefined);
   const [channel] = useState(() => new BroadcastChannel(CHANNEL));
-  const used = useMinutesSince(now?.began ?? 0);
   useEffect(() => {
-    document.title = "Notes of the speaker";
     channel.onmessage = ({ data }: MessageEvent<Message>) => !isAsked(data) && setNow(data);
     const press = (event: KeyboardEvent) => {
       const { key, target } = event;
@@ -91,22 +106,11 @@ export function Presenter() {
     return (
       <main className={styles.presenter}>
         <h1>No lecture runs</h1>
-        <p>Begin one in the window of the bench; the notes appear here.</p>
+        <p>Begin one in the window of the bench; the notes appear here. Gallery has the notes of every lecture.</p>
       </main>
     );
   return (
-    <main className={styles.presenter}>
-      <h1>
-        <span>{now.place}</span> {now.cue.title}
-      </h1>
-      <ClockFace used={used} planned={now.planned} whole={now.whole} />
-      <Notes cue={now.cue} next={now.next} />
-      <p className={styles.bar}>
-        <Button variant="default" onClick={() => channel.postMessage({ key: "PageUp" })}>
-          Back
-        </Button>
-        <Button onClick={() => channel.postMessage({ key: "PageDown" })}>Next</Button>
-      </p>
+    <Page now={now} turn={(by) => channel.postMessage({ key: by > 0 ? "PageDown" : "PageUp" })}>
       <p className={styles.keys}>
         {LECTURE_KEYS.map(({ shown, does }) => (
           <span key={shown}>
@@ -114,6 +118,47 @@ export function Presenter() {
           </span>
         ))}
       </p>
+    </Page>
+  );
+}
+
+/** The notes of a lecture that runs elsewhere or not at all; they turn by their own buttons. */
+function Alone({ id }: { id: string }) {
+  const { answer: lecture, refusal } = useAsked(["lecture", id], () => lectures.get(id));
+  const [at, setAt] = useState(0);
+  const [began] = useState(Date.now);
+  if (refusal) return <EmptyState title="No notes">{refusal.message}</EmptyState>;
+  if (!lecture) return null;
+  const turn = (by: number) => setAt(Math.max(0, Math.min(lecture.script.length - 1, at + by)));
+  return (
+    <Page now={toldOf({ lecture, at, began })} turn={turn}>
+      <p className={styles.keys}>These notes turn by hand; the bench does not follow.</p>
+    </Page>
+  );
+}
+
+interface PageProps {
+  now: Told;
+  turn(by: 1 | -1): void;
+  children: ReactNode;
+}
+
+function Page({ now, turn, children }: PageProps) {
+  const used = useMinutesSince(now.began);
+  return (
+    <main className={styles.presenter}>
+      <h1>
+        <span>{now.place}</span> {now.cue?.title}
+      </h1>
+      <ClockFace used={used} planned={now.planned} whole={now.whole} />
+      {now.cue && <Notes cue={now.cue} next={now.next} />}
+      <p className={styles.bar}>
+        <Button variant="default" onClick={() => turn(-1)}>
+          Back
+        </Button>
+        <Button onClick={() => turn(1)}>Next</Button>
+      </p>
+      {children}
     </main>
   );
 }

@@ -1,4 +1,4 @@
-import { act, screen, within } from "@testing-library/react";
+import { act, fireEvent, screen, within } from "@testing-library/react";
 import { beforeEach, expect, it } from "vitest";
 import { useView } from "../../bench/view-store";
 import { server } from "../../testing/fake-server";
@@ -79,4 +79,11 @@ it("opens a view of a panel, from another page as well", async () => {
 it("says when nothing has all words", async () => {
   await open("no such thing at all");
   expect(await screen.findByText("Nothing has all these words.")).toBeVisible();
+});
+
+it("takes letters that are typed before it has the keyboard, which are no keys of the page then", async () => {
+  await open();
+  fireEvent.keyDown(document.body, { key: "n" });
+  expect(screen.getByRole("textbox", { name: "Search" })).toHaveValue("n");
+  expect(useView.getState().dialog).toBe("none");
 });

@@ -23,7 +23,7 @@ export function useEntries(): Entry[] {
   const instances = useInstances();
   const { blocks, block } = useCatalog();
   const { value: scenarios } = useAnswer(["scenarios"], api.scenarios);
-  const { value: catalogue } = useAnswer(["devices"], api.deviceCatalogue);
+  const { value: catalogue } = useAnswer(["device catalogue"], api.deviceCatalogue);
   const equations = useMemo(() => entriesOf(blocks), [blocks]);
   const bench = axes && { axes };
   const places = (Object.keys(PAGES) as PageName[]).filter((page) => isOffered(page, role));

@@ -22,7 +22,7 @@ beforeEach(() => {
   server.on("DELETE", "/benches/:id/blind");
 });
 
-const panel = () => within(screen.getByRole("region", { name: "Blind diagnosis" }));
+const panel = () => within(screen.getByRole("region", { name: "Hidden fault" }));
 const plain = (element: Element) => element.textContent?.replace(/\s/g, " ");
 
 it("hides the fault of a seed, the next time that of the next", async () => {
@@ -138,7 +138,7 @@ it("begins with the button that hides a fault, and keeps confidence and Commit b
   const board = connect(free);
   mount(<BlindPanel />);
   expect(panel().getAllByRole("button")[0]).toHaveAccessibleName("Hide a fault");
-  expect(screen.getByRole("region", { name: "Blind diagnosis" }).firstElementChild).toContainElement(
+  expect(screen.getByRole("region", { name: "Hidden fault" }).firstElementChild).toContainElement(
     panel().getByRole("button", { name: "Hide a fault" }),
   );
   board.hello(hidden);

@@ -14,7 +14,7 @@ import { Answer } from "./answer";
 import { Attempts, Outcome } from "./attempts";
 import styles from "./blind.module.css";
 
-/** Blind diagnosis: the server hides a fault; answer with a confidence, then see the truth and the points. */
+/** Hidden fault: the server hides a fault; answer with a confidence, then see the truth and the points. */
 export function BlindPanel() {
   const bench = useBench((s) => s.bench?.id);
   const question = useBench((s) => s.bench?.blind) ?? undefined;
@@ -38,7 +38,7 @@ export function BlindPanel() {
   const rule = value && <p className={exercise.text}>{value.rule}</p>;
   if (question)
     return (
-      <section className={styles.asked} aria-label="Blind diagnosis">
+      <section className={styles.asked} aria-label="Hidden fault">
         <Stale error={error} since={since} onRetry={again} />
         <Answer key={question.id} question={question} rule={rule} onEnded={again} />
       </section>
@@ -52,7 +52,7 @@ export function BlindPanel() {
     setSeed(seed + 1);
   };
   return (
-    <section className={exercise.panel} aria-label="Blind diagnosis">
+    <section className={exercise.panel} aria-label="Hidden fault">
       <Stale error={error} since={since} onRetry={again} />
       <div className={exercise.bar}>
         <Button size="sm" onClick={hide}>

@@ -1,6 +1,8 @@
 import { Button, NativeSelect } from "@mantine/core";
+import { IconChevronLeft } from "@tabler/icons-react";
 import { useMay } from "../../api/me";
 import { useCatalog } from "../../api/use-catalog";
+import { showPanel } from "../../bench/dock";
 import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
@@ -34,13 +36,23 @@ export function CardPanel() {
   }));
   return (
     <section className={styles.card} aria-label={`Block: ${found?.title ?? instance.name}`}>
-      <NativeSelect
-        size="xs"
-        aria-label="Block"
-        value={instance.id}
-        data={options}
-        onChange={(e) => useView.setState({ card: e.currentTarget.value })}
-      />
+      <div className={styles.head}>
+        <Button
+          size="compact-sm"
+          variant="default"
+          leftSection={<IconChevronLeft size={15} />}
+          onClick={() => showPanel("schematic")}
+        >
+          Diagram
+        </Button>
+        <NativeSelect
+          size="xs"
+          aria-label="Block"
+          value={instance.id}
+          data={options}
+          onChange={(e) => useView.setState({ card: e.currentTarget.value })}
+        />
+      </div>
       {found ? (
         <>
           <h2 className={styles.title}>{found.title}</h2>

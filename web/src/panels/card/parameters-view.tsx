@@ -12,7 +12,7 @@ export function ParametersView() {
   if (active.length === 0)
     return <EmptyState title="No bench yet">The parameters of the active controller are set here.</EmptyState>;
   return (
-    <section className={styles.card} aria-label="Parameters of the controller">
+    <section className={styles.card} aria-label="Parameters">
       {active.map((name) => (
         <section key={name} aria-label={block("control", name)?.title ?? name}>
           <h2 className={styles.title}>{block("control", name)?.title ?? name}</h2>

@@ -44,7 +44,7 @@ export function ControllersPanel() {
   const driving = Object.values(slots).flatMap((name) => block("control", name)?.inputs.map((port) => port.name) ?? []);
   const outside = list.filter(({ id }) => id === "rate" || id === "reference" || driving.includes(id));
   return (
-    <section className={styles.panel} aria-label="Controllers">
+    <section className={styles.panel} aria-label="Choice">
       {Object.entries(slots).map(([slot, active]) => {
         const taken = overridden(slot, slots, block);
         return (

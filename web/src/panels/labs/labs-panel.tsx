@@ -38,7 +38,7 @@ export function LabsPanel() {
     if (now && now.id === bench) await send({ kind: "reset", values: kept(labsOf(now, id, block)) }, "Counting afresh");
   };
   return (
-    <section className={styles.panel} aria-label="Labs">
+    <section className={styles.panel} aria-label="Noise and memory">
       <div className={styles.bar}>
         <NativeSelect
           size="xs"

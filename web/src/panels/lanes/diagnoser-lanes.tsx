@@ -18,7 +18,7 @@ import type { LaneTime } from "./use-lane-time";
 import { useRevealed } from "./use-revealed";
 
 /** Share of the panel that the words of the hypotheses may take; otherwise their names stand there. */
-const WORDS_SHARE = 0.32;
+const WORDS_SHARE = 0.42;
 
 interface DiagnoserLanesProps {
   id: string;

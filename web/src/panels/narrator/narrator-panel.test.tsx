@@ -84,3 +84,17 @@ it("tells nothing while a vote is open", () => {
   expect(screen.getByText("Not while a vote is open")).toBeVisible();
   expect(screen.queryByText("Sentence 4 <b>")).not.toBeInTheDocument();
 });
+
+it("copies the command that a sentence tells of", async () => {
+  const { board } = mountPanel(bench, [{ ...sentences[3], span: [300, 300] }, sentences[4]]);
+  expect(screen.queryByRole("button", { name: /^Copy/ })).not.toBeInTheDocument();
+  const inject = {
+    seq: 9,
+    tick: 300,
+    kind: "inject",
+    text: "inject mass",
+    command: { fault: "added_mass", severity: 0.05 },
+  };
+  await board.events([inject, { ...inject, seq: 10, tick: 390 }] as never);
+  expect(screen.getAllByRole("button", { name: /^Copy/ })).toHaveLength(1);
+});

@@ -3,9 +3,16 @@ import { showSentence, useNarrator, useSaid, useVoting } from "../../bench/narra
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatCount } from "../../ui/format";
+import { CopyMenu } from "../events/copy-menu";
 import styles from "./narrator.module.css";
 
 const SHOWN = 300;
+
+/** Copy of the command that a sentence tells of; nothing where the bench did it by itself. */
+function CopySentence({ tick }: { tick: number }) {
+  const event = useBench((s) => s.events.findLast((one) => one.tick === tick && one.command));
+  return event && <CopyMenu event={event} />;
+}
 
 /** What has happened, in sentences, newest last; a click takes the scopes there. A replay lists what is to come as well. */
 export function NarratorPanel() {
@@ -47,6 +54,7 @@ export function NarratorPanel() {
           >
             {sentence.text}
           </button>
+          {sentence.tick === sentence.span[0] && <CopySentence tick={sentence.tick} />}
         </li>
       ))}
     </ol>

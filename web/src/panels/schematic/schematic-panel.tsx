@@ -19,7 +19,6 @@ const OPENED = ["control", "identify", "diagnose"];
 
 /** The loop with what flows in it now, or the inside of a controller, an identifier or a diagnoser. */
 export function SchematicPanel() {
-  const device = useBench((s) => (s.bench?.parameters.device as { id?: string } | undefined)?.id);
   const axes = useBench((s) => s.bench?.axes);
   const slots = useBench(useShallow((s) => s.bench?.slots));
   const controller = useBench((s) => s.bench?.controller);
@@ -60,7 +59,7 @@ export function SchematicPanel() {
       </section>
     );
   return (
-    <section className={styles.panel} aria-label="The loop">
+    <section className={styles.panel} aria-label="Diagram">
       {isFlat ? (
         <ResonatorLoop controller={controller} diagnosers={diagnosers} structure={structure} />
       ) : (
@@ -68,7 +67,7 @@ export function SchematicPanel() {
       )}
       <footer className={styles.foot}>
         <p className={styles.device}>
-          {device ?? "device"} · {rate === undefined ? "" : formatShort(rate, "kHz")}
+          {rate === undefined ? "" : formatShort(rate, "kHz")}
           {isFlat && structure.figure && ` · drawn as figure ${structure.figure}`}
           {isFlat && !structure.hasRoom && acting.length > 0 && (
             <span className={styles.acting}> · {acting.map((fault) => fault.title).join(", ")}</span>

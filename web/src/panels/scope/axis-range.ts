@@ -7,7 +7,7 @@ export interface AxisRange extends TickedRange {
 }
 
 const LOOSE = 0.55;
-const SHRINK_AFTER_MS = 1200;
+export const SHRINK_AFTER_MS = 1200;
 /** Half a range over half of what it holds, at least. */
 const AIR = 1.06;
 const ROOM: TickRoom = { most: 8 };
@@ -23,12 +23,12 @@ export function nextRange(
   const fit = roundRange(low, high, room);
   if (!now) return { ...fit, looseSince: undefined };
   const [from, to] = withAir(low, high);
-  if (from < now.min || to > now.max)
-    return { ...tickedRange(Math.min(from, now.min), Math.max(to, now.max), room), looseSince: undefined };
-  if (fit.max - fit.min > LOOSE * (now.max - now.min))
-    return now.looseSince === undefined ? now : { ...now, looseSince: undefined };
-  if (now.looseSince === undefined) return { ...now, looseSince: timeMs };
-  return timeMs - now.looseSince >= SHRINK_AFTER_MS ? { ...fit, looseSince: undefined } : now;
+  const grows = from < now.min || to > now.max;
+  const range = grows ? tickedRange(Math.min(from, now.min), Math.max(to, now.max), room) : now;
+  const isLoose = fit.max - fit.min <= LOOSE * (range.max - range.min);
+  const looseSince = isLoose ? ((grows ? undefined : now.looseSince) ?? timeMs) : undefined;
+  if (looseSince !== undefined && timeMs - looseSince >= SHRINK_AFTER_MS) return { ...fit, looseSince: undefined };
+  return !grows && looseSince === now.looseSince ? now : { ...range, looseSince };
 }
 
 /** A range in round steps, with a tick clear of either end of the values. */

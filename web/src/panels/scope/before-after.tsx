@@ -37,7 +37,7 @@ export function BeforeAfter({ change, isHidden, figures, traces, plot }: BeforeA
   const dtMs = useBench((s) => s.bench?.dt_ms ?? 1);
   useCatalog(); // the words are those of its cards
   const box = useRef<HTMLElement>(null);
-  const compared = figures && !isHidden ? comparedOf(traces, figures) : [];
+  const compared = figures && !isHidden ? comparedOf(traces, figures, change.tick) : [];
   const words = changeWords(change, useBench.getState().bench);
   const canSlide = compared.length > 0;
   const slide = async () => {

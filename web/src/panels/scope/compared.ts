@@ -2,6 +2,7 @@ import { formatSi } from "../../ui/format";
 import { ratioWords } from "./change-words";
 import type { PlotTrace } from "./paint-scope";
 import type { Figures } from "./use-figures";
+import { drove } from "./while-driving";
 
 const DIGITS = 3;
 const NOISE = 0.05;
@@ -17,19 +18,35 @@ export interface Compared {
   strength: number;
 }
 
+const quantity = ({ name }: PlotTrace): string => name.slice(name.indexOf(".") + 1);
+
+/** The trace before a change that a trace is compared with: itself, or that of the controller that drove then. */
+const earlier = (traces: readonly PlotTrace[], trace: PlotTrace, tick: number): number =>
+  trace.drives
+    ? traces.findIndex((one) => one.drives && quantity(one) === quantity(trace) && drove(one.drives, tick - 1))
+    : traces.indexOf(trace);
+
 /** The figures of the traces of a scope, the largest change first. */
-export function comparedOf(traces: readonly PlotTrace[], { before, after, settled }: Figures): Compared[] {
-  const all = traces.map((trace, i): Compared => {
+export function comparedOf(
+  traces: readonly PlotTrace[],
+  { before, after, settled }: Figures,
+  tick: number,
+): Compared[] {
+  const all = traces.flatMap((trace, i): Compared[] => {
+    if (trace.drives && !drove(trace.drives, tick)) return [];
+    const was = before[earlier(traces, trace, tick)] ?? Number.NaN;
     const now = after?.[i] ?? Number.NaN;
-    const strength = Math.round(Math.abs(Math.log(now / before[i])) / NOISE) * NOISE;
-    return {
-      trace,
-      before: formatSi(before[i], trace.unit, DIGITS),
-      after: formatSi(now, trace.unit, DIGITS),
-      ratio: ratioWords(before[i], now),
-      isSettled: settled?.[i] ?? false,
-      strength: Number.isFinite(strength) ? strength : 0,
-    };
+    const strength = Math.round(Math.abs(Math.log(now / was)) / NOISE) * NOISE;
+    return [
+      {
+        trace,
+        before: formatSi(was, trace.unit, DIGITS),
+        after: formatSi(now, trace.unit, DIGITS),
+        ratio: ratioWords(was, now),
+        isSettled: settled?.[i] ?? false,
+        strength: Number.isFinite(strength) ? strength : 0,
+      },
+    ];
   });
   return all.sort((a, b) => b.strength - a.strength);
 }

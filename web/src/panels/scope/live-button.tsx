@@ -18,7 +18,7 @@ export function LiveButton({ past, onLive }: { past: boolean; onLive(): void }) 
       onClick={onLive}
       title={past ? "Return to the newest data" : "Drag or scroll the plot to look at the past; the board runs on"}
     >
-      {past ? "PAST → LIVE" : isPast ? "AS IT WAS" : stale ? staleWords(stale) : running ? "LIVE" : "LIVE, PAUSED"}
+      {past ? "PAST → LIVE" : isPast ? "AS IT WAS" : stale ? staleWords(stale) : running ? "LIVE" : "PAUSED"}
     </button>
   );
 }

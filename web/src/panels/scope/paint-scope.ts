@@ -1,4 +1,5 @@
 import type { PrintedMark } from "../../api/types";
+import type { Driven } from "../../bench/driven";
 import type { Marks } from "../../bench/marks";
 import { type Axis, paintColumns, paintFrame, paintRows, placeOn, tickedAxis, timeAxis } from "../../picture/axes";
 import type { EventAxis } from "../../picture/event-marks";
@@ -23,6 +24,8 @@ export interface PlotTrace {
   dash: number;
   /** What the bench is called that it is of, where that lies behind the one on the page; `BEFORE` of a ghost. */
   behind?: string;
+  /** When its controller drove, where it is shown for that time alone. */
+  drives?: readonly Driven[];
 }
 
 /** Names the traces as they were before the last change. */

@@ -8,7 +8,7 @@ import { SignalName, TraceSwatch } from "../../ui/trace-swatch";
 import type { PlotTrace } from "./paint-scope";
 import styles from "./scope.module.css";
 import type { ScopePlot } from "./scope-plot";
-import { useLegendRow } from "./use-legend-row";
+import { shareTheRest, useLegendRow } from "./use-legend-row";
 
 const EVERY_MS = 90;
 
@@ -18,15 +18,21 @@ interface ScopeLegendProps {
   onRemove(name: string): void;
 }
 
-/** Names and values in one row; what has no room in it is behind a button that says how many there are. */
+/** Names and values in one row, names alone where values have no room; a button has the signals without room. */
 export function ScopeLegend({ traces, plot, onRemove }: ScopeLegendProps) {
-  const { list, fits, isShort } = useLegendRow(traces);
+  const { list, fits, level } = useLegendRow(traces);
   const entry = (trace: PlotTrace, index: number, hidden = false) => (
     <LegendEntry key={trace.name} trace={trace} index={index} hidden={hidden} plot={plot} onRemove={onRemove} />
   );
   return (
     <>
-      <ul ref={list} className={styles.legend} aria-label="Signals" data-short={isShort}>
+      <ul
+        ref={list}
+        className={styles.legend}
+        aria-label="Signals"
+        data-level={level}
+        data-alike={shareTheRest(traces)}
+      >
         {traces.map((trace, i) => entry(trace, i, i >= fits))}
       </ul>
       {fits < traces.length && (

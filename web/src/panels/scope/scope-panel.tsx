@@ -6,7 +6,7 @@ import { marksOver, useMarks, usePrinted } from "../../bench/printed";
 import { NORMAL_PX, useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import type { PanelFrame } from "../../stream/panel-frame";
-import { onBench, type ScopeConfig } from "../../stream/scope-config";
+import type { ScopeConfig } from "../../stream/scope-config";
 import { stream } from "../../stream/stream";
 import { useFeed } from "../../stream/use-feed";
 import { EmptyState } from "../../ui/empty-state";
@@ -28,6 +28,7 @@ import { SignalPicker } from "./signal-picker";
 import { RearmContext, type TriggerState } from "./trigger-menu";
 import { useBeforeAfter } from "./use-before-after";
 import { useCaptures } from "./use-captures";
+import { useOnBench } from "./use-on-bench";
 import { useScopeKeys } from "./use-scope-keys";
 import { scopeSubscription, useTimeView } from "./use-time-view";
 import { useTraces, useTracesBehind } from "./use-traces";
@@ -39,13 +40,11 @@ interface ScopePanelProps {
 
 /** An oscilloscope: rolls, triggers, or stands still on a span of the past while the board runs on. */
 export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
-  const signals = useBench((s) => s.bench?.signals);
-  const controller = useBench((s) => s.bench?.controller);
-  const config = useMemo(() => onBench(kept, signals ?? [], controller ?? ""), [kept, signals, controller]);
+  const { config, drives } = useOnBench(kept);
   const scheme = useScheme();
   const fontSize = useView((s) => s.fontPx);
   const dtMs = useBench((s) => s.bench?.dt_ms);
-  const traces = useTraces(config.signals);
+  const traces = useTraces(config.signals, drives);
   const behind = useBehind((s) => s.behind);
   const difference = useBehind((s) => s.difference);
   const tracesBehind = useTracesBehind(traces, behind, difference);

@@ -10,7 +10,7 @@ import { columnAt, columnTimes, type PanelFrame } from "../../stream/panel-frame
 import { hover } from "../../ui/hover";
 import { CANVAS, DASHES, faded, fontFor } from "../../ui/palette";
 import { type UnitScale, unitScale } from "../../ui/unit-scale";
-import { type AxisRange, nextRange } from "./axis-range";
+import { type AxisRange, nextRange, SHRINK_AFTER_MS } from "./axis-range";
 import { BarRaster } from "./bar-raster";
 import {
   differenceOf,
@@ -25,6 +25,7 @@ import { type Ghost, ghostOn } from "./ghost";
 import { BEFORE, DIFFERENCE, inkOrder, type PlotTrace, paintScope, type ScopeShown } from "./paint-scope";
 import { listenForGestures, type ScopeGestures } from "./scope-gestures";
 import { type ScopeModel, scopeOptions } from "./scope-options";
+import { drove, whileDriving } from "./while-driving";
 
 const MOST_AXES = 3;
 /** Of a logarithmic axis: what is smaller lies at its foot, as every zero does. */
@@ -55,6 +56,10 @@ function scaleOn(unit: string, size: number): UnitScale {
   return { ...scale, unit: `${DIFFERENCE}${scale.unit}` };
 }
 
+/** A ghost of a trace, unless its controller was in shadow then. */
+const hasDriven = (ghost: Ghost | undefined, { drives }: PlotTrace): Ghost | undefined =>
+  ghost && (!drives || drove(drives, ghost.frame.endTick - 1)) ? ghost : undefined;
+
 /** One uPlot with min/max traces on up to three unit axes; fed by frames, never by React. */
 export class ScopePlot {
   frame: PanelFrame | undefined;
@@ -70,6 +75,8 @@ export class ScopePlot {
   /** Tick of the trigger, which the time axis calls zero. */
   private trigger: number | undefined;
   private hovered = false;
+  /** Draws the last frame of a board that stands still once more, when its axes may shrink. */
+  private shrink: ReturnType<typeof setTimeout> | undefined;
   private readonly raster = new BarRaster();
   /** What the raster is laid over the grid with. */
   private readonly bars = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
@@ -90,6 +97,7 @@ export class ScopePlot {
   }
 
   destroy(): void {
+    clearTimeout(this.shrink);
     if (this.hovered) hover.set(undefined, this);
     for (const stop of this.dispose) stop();
     this.plot.destroy();
@@ -122,15 +130,22 @@ export class ScopePlot {
       high: data.subarray((i * 2 + 1) * columns, (i * 2 + 2) * columns),
     }));
     const own = this.own;
-    const isSampled = samplesOf(frame) <= 1;
     const { traces } = this.options;
+    for (let i = 0; i < own; i += 1) {
+      const { drives } = traces[i];
+      if (drives && this.envelopes[i]) this.envelopes[i] = whileDriving(this.envelopes[i], frame, drives);
+    }
+    const isSampled = samplesOf(frame) <= 1;
     for (let i = 0; traces[frame.signals + i]?.unit.startsWith(DIFFERENCE) && own + i < frame.signals; i += 1)
       this.envelopes.push(differenceOf(this.envelopes[i], this.envelopes[own + i], isSampled));
     const ghost = this.options.ghost();
     if (traces[this.envelopes.length]?.behind === BEFORE)
-      for (let i = 0; i < own; i += 1) this.envelopes.push(ghostOn(ghost, frame, i));
+      for (let i = 0; i < own; i += 1) this.envelopes.push(ghostOn(hasDriven(ghost, traces[i]), frame, i));
     if (this.options.isLog) this.envelopes = this.envelopes.map(magnitudesOf);
     this.fitRanges();
+    clearTimeout(this.shrink);
+    if (this.ranges.some((range) => range?.looseSince !== undefined))
+      this.shrink = setTimeout(() => this.draw(frame, span, trigger), SHRINK_AFTER_MS);
     const times = columnTimes(frame, this.origin);
     this.times = times;
     this.plot.setData([times, ...this.envelopes.map((e) => e.high)] as uPlot.AlignedData);
@@ -149,6 +164,8 @@ export class ScopePlot {
     if (!this.frame || trace >= this.frame.signals) return Number.NaN;
     const { tick } = hover;
     const inSight = tick !== undefined && tick >= this.span.start && tick < this.span.end;
+    const { drives } = this.options.traces[trace];
+    if (drives && !drove(drives, inSight ? tick : this.frame.endTick - 1)) return Number.NaN;
     return inSight ? columnAt(this.frame, trace, tick) : this.frame.latest[trace];
   }
 

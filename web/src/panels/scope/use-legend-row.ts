@@ -10,14 +10,18 @@ interface LegendRow {
   list: RefObject<HTMLUListElement | null>;
   /** How many entries have room. */
   fits: number;
-  /** Whether what all names have in common is left out. */
-  isShort: boolean;
+  level: Level;
 }
 
-/** How much of a legend has room in one row beside what else stands there: with whole names, else with short ones. */
+/** What an entry says: its whole name and its value; without what all names have in common; without the value too. */
+const LEVELS = ["whole", "short", "names"] as const;
+
+type Level = (typeof LEVELS)[number];
+
+/** How much of a legend has room in one row beside what else stands there. Names stay before values do. */
 export function useLegendRow(traces: PlotTrace[]): LegendRow {
   const list = useRef<HTMLUListElement>(null);
-  const [row, setRow] = useChanged({ fits: traces.length, isShort: false });
+  const [row, setRow] = useChanged<{ fits: number; level: Level }>({ fits: traces.length, level: "whole" });
   useLayoutEffect(() => {
     const box = list.current;
     const place = box?.parentElement;
@@ -26,17 +30,16 @@ export function useLegendRow(traces: PlotTrace[]): LegendRow {
       const [first] = place.getElementsByTagName("ul");
       const last = place.lastElementChild as HTMLElement;
       const room = place.clientWidth - last.offsetWidth - GAP_PX;
-      const widths = (short: boolean) => {
-        first.dataset.short = String(short);
+      const widths = (level: Level) => {
+        first.dataset.level = level;
         return [...first.children].map((entry) => (entry as HTMLElement).offsetWidth + GAP_PX);
       };
-      const whole = widths(false);
-      const isShort = sum(whole) > room && shareTheRest(traces);
-      const shown = isShort ? widths(true) : whole;
+      first.dataset.alike = String(shareTheRest(traces));
+      const level = LEVELS.find((one) => sum(widths(one)) <= room) ?? "names";
+      const shown = widths(level);
       const fits = countFitting(shown, room, MORE_PX);
       box.style.maxWidth = `${fits < shown.length ? sum(shown.slice(0, fits)) : room}px`;
-      setRow({ fits, isShort });
-      first.dataset.short = String(isShort);
+      setRow({ fits, level });
     };
     measure();
     const observer = new ResizeObserver(measure);

@@ -5,9 +5,12 @@ import { faded } from "../../ui/palette";
 import { traceColour, traceStyle } from "../../ui/trace-style";
 import { useScheme } from "../../ui/use-canvas";
 import { DIFFERENCE, type PlotTrace } from "./paint-scope";
+import type { Drives } from "./use-on-bench";
+
+const NONE: Drives = {};
 
 /** The traces of some signals, as far as the bench has them, in the colours they have everywhere. */
-export function useTraces(names: string[]): PlotTrace[] {
+export function useTraces(names: string[], drives: Drives = NONE): PlotTrace[] {
   const scheme = useScheme();
   const signals = useBench((s) => s.bench?.signals);
   const diagnosers = useBench((s) => s.bench?.diagnosers);
@@ -18,9 +21,10 @@ export function useTraces(names: string[]): PlotTrace[] {
       const signal = signals?.find((s) => s.name === name);
       if (!signal) return [];
       const style = traceStyle(name, all, hypotheses);
-      return [{ name, unit: signal.unit, slot: style.slot, colour: traceColour(style, scheme), dash: style.dash }];
+      const { slot, dash } = style;
+      return [{ name, unit: signal.unit, slot, dash, colour: traceColour(style, scheme), drives: drives[name] }];
     });
-  }, [names, signals, diagnosers, scheme]);
+  }, [names, signals, diagnosers, scheme, drives]);
 }
 
 /** The same traces of other benches, faded, in the order in which the server sends them; then the differences from the first. */

@@ -49,5 +49,5 @@ it("is a region that keys reach, for it scrolls", async () => {
   const { user } = mount(<ScoreboardPanel />);
   board.status(status);
   await user.tab();
-  expect(screen.getByRole("region", { name: "Scores" })).toHaveFocus();
+  expect(screen.getByRole("region", { name: "Scoreboard" })).toHaveFocus();
 });

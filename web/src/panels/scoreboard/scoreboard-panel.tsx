@@ -24,7 +24,7 @@ export function ScoreboardPanel() {
     );
   return (
     // biome-ignore lint/a11y/noNoninteractiveTabindex: a region that scrolls is reached by the keyboard
-    <section className={styles.panel} aria-label="Scores" tabIndex={0}>
+    <section className={styles.panel} aria-label="Scoreboard" tabIndex={0}>
       <table className={styles.table}>
         <thead>
           <tr>

@@ -39,7 +39,7 @@ function Sets() {
     }
   };
   return (
-    <section className={rows.panel} aria-label="Parameter sets">
+    <section className={rows.panel} aria-label="Sets">
       {teaches && (
         <form
           className={rows.form}

@@ -5,7 +5,7 @@ import { useMay } from "../../api/me";
 import { useAnswer } from "../../api/queries";
 import type { NewVote, Vote } from "../../api/types";
 import { votes } from "../../api/votes";
-import { hypothesisWords } from "../../bench/hypothesis-words";
+import { diagnoserWords, hypothesisWords } from "../../bench/hypothesis-words";
 import { useLecture } from "../../bench/lecture";
 import { showError } from "../../bench/send";
 import { showVote } from "../../bench/vote";
@@ -94,7 +94,10 @@ function Ask({ group, who, run }: { group: string; who: ReactNode; run(what: Pro
           label="Answers"
           value={of}
           data={[
-            ...Object.keys(diagnosers).map((id) => ({ value: id, label: `the lanes of ${id.replaceAll("_", " ")}` })),
+            ...Object.keys(diagnosers).map((id) => ({
+              value: id,
+              label: `the lanes of ${diagnoserWords(id, diagnosers)}`,
+            })),
             { value: "", label: "two to six of my own" },
           ]}
           onChange={(e) => setOf(e.currentTarget.value)}

@@ -57,7 +57,7 @@ export function WhyPanel() {
     );
 
   return (
-    <section className={styles.panel} aria-label="Why this sample">
+    <section className={styles.panel} aria-label="Why">
       {account && !refusal && <WhyVerdict diagnoser={sample.diagnoser} account={account} turn={turn} />}
       <div className={styles.bar}>
         <NativeSelect

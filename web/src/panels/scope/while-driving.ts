@@ -1,0 +1,13 @@
+import type { Driven } from "../../bench/driven";
+import { type PanelFrame, tickOf } from "../../stream/panel-frame";
+import type { Envelope } from "./envelope-path";
+
+export const drove = (spans: readonly Driven[], tick: number): boolean =>
+  spans.some(({ from, until }) => tick >= from && tick < until);
+
+/** What a controller says while it drives; in shadow it says nothing that the device obeys. */
+export function whileDriving({ low, high }: Envelope, frame: PanelFrame, spans: readonly Driven[]): Envelope {
+  const only = (values: Envelope["low"]) =>
+    values.map((value, column) => (drove(spans, tickOf(frame, column)) ? value : Number.NaN));
+  return { low: only(low), high: only(high) };
+}
