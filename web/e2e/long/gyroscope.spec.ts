@@ -122,6 +122,7 @@ test("a loop makes something of a fault, and controllers take over from the page
   const before = await quadrature();
   await faults.getByRole("button", { name: /^Inject \+500 deg\/s: Quadrature$/ }).click();
   await later(server, quadrature).toBeCloseTo(before + 500, -1);
+  await front(page, "Angular rate");
   await later(server, rate).toBeCloseTo(TRUE_DEG_S, -1);
   await faults.getByRole("button", { name: "Heal all" }).click();
   await expect(faults.getByText("The device is healthy")).toBeVisible();

@@ -9,33 +9,33 @@ const DIALOGS = [
   { key: "n", title: "New bench" },
   { key: "S", title: "Share this experiment" },
 ];
-const MENUS = [/: change bench$/, /: change it$/, "Add or close panels", "Choose signals", /^Export/];
+const MENUS = [/change bench\.?$/i, /: change it$/, "Add or close panels", "Choose signals", /^Export/];
 
 const PAGES: [string, (page: Page) => Locator][] = [
-  ["benchmark", (page) => page.getByRole("region", { name: "Curves" })],
-  ["designer", (page) => page.getByRole("img", { name: /^Bode diagram/ })],
+  ["scores", (page) => page.getByRole("region", { name: "Curves" })],
+  ["design", (page) => page.getByRole("img", { name: /^Bode diagram/ })],
   ["theory", (page) => page.getByRole("heading", { name: "Equations" })],
-  ["theory&tab=positive-real", (page) => page.getByRole("img", { name: /^Real part/ })],
-  ["theory&tab=excitation", (page) => page.getByRole("heading", { name: "Does the input excite enough?" })],
-  ["theory&tab=stability", (page) => page.getByText(/of the map is unstable/)],
+  ["theory/positive-real", (page) => page.getByRole("img", { name: /^Real part/ })],
+  ["theory/excitation", (page) => page.getByRole("heading", { name: "Does the input excite enough?" })],
+  ["theory/stability", (page) => page.getByText(/of the map is unstable/)],
   ["gallery", (page) => page.getByRole("list", { name: "Experiments" }).getByRole("listitem").nth(5)],
 ];
 
-async function show(page: Page, server: LabServer, address: string): Promise<void> {
+async function show(page: Page, server: LabServer, place: string): Promise<void> {
   await page.request.get(server.url);
-  await page.goto(`${server.origin}/?${address}`);
+  await page.goto(`${server.origin}/${place}`);
 }
 
 for (const [name, whole] of PAGES)
   test(`the page ${name} fits every screen`, async ({ page, server }) => {
-    await show(page, server, `page=${name}`);
+    await show(page, server, name);
     await expect(whole(page)).toBeVisible();
     if (name === "gallery") await page.getByRole("button", { name: "notes" }).first().click();
     await expectFits(page, name);
   });
 
 test("the designer of a gyroscope fits every screen", async ({ page, server }) => {
-  await show(page, server, "page=designer");
+  await show(page, server, "design");
   await page.getByRole("combobox", { name: "Device" }).selectOption("gyro-a");
   await expect(page.getByText("Angle random walk")).toBeVisible();
   await expectFits(page, "the designer of a gyroscope");
@@ -56,14 +56,14 @@ test("the pages of a run, a comparison and a campaign fit every screen", async (
   for (const job of [`/runs/${run}`, `/runs/${other}`, `/sweeps/${sweep}`])
     await expect.poll(() => server.ask<{ state: string }>("GET", job).then(({ state }) => state)).toBe("done");
   const result = page.getByRole("region", { name: "Result" });
-  await show(page, server, `page=runs&run=${run}`);
+  await show(page, server, `runs/${run}`);
   await expect(result.getByText(/^digest/)).toBeVisible();
   await page.getByText("Campaign", { exact: true }).click();
   await expectFits(page, "a run");
-  await show(page, server, `page=runs&sweep=${sweep}`);
+  await show(page, server, `runs/${sweep}`);
   await expect(result.getByRole("figure").first()).toBeVisible();
   await expectFits(page, "a campaign");
-  await show(page, server, `page=runs&compare=${run},${other}`);
+  await show(page, server, `runs/${run},${other}`);
   await expect(result.getByRole("table")).toBeVisible();
   await expectFits(page, "a comparison");
 });

@@ -87,7 +87,10 @@ async function turnTo(page: Page, rank: number): Promise<string> {
   const turned: string[] = [];
   for (const choice of await page.locator(".dock-views, .dock-view[aria-haspopup=menu]").all()) {
     const isRow = (await choice.getAttribute("role")) === "group";
-    if (!isRow) await choice.click();
+    if (!isRow) {
+      await choice.click();
+      await expect(page.getByRole("menuitem").first()).toBeFocused();
+    }
     const view = (isRow ? choice.getByRole("button") : page.getByRole("menuitem")).nth(rank);
     if (await view.count()) {
       turned.push(await view.innerText());

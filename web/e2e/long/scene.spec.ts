@@ -1,5 +1,6 @@
 import { expect, test } from "../lab";
 import { sceneAtRest, sceneOf, scenePicture, sceneShown, WEBGL_BROWSER } from "../scene";
+import { openOnPhone } from "../screens";
 
 test.use({ drawn: true, ...WEBGL_BROWSER, viewport: { width: 390, height: 844 }, colorScheme: "dark" });
 
@@ -7,8 +8,8 @@ test("every camera keeps the device in the picture, and the scheme reaches it", 
   await openBench();
   await server.advance(1);
   await page.getByRole("button", { name: "Stop" }).click();
+  await openOnPhone(page, "view3d");
   const cameras = page.getByRole("group", { name: "Camera" });
-  await cameras.evaluate((group) => group.parentElement?.scrollIntoView());
   const frame = sceneOf(page);
   const inside = frame.contentFrame();
   await expect(inside.locator("#caption")).toContainText("motion ×");

@@ -40,7 +40,7 @@ test("at first sight every scope has its axis, one row of names, and traces that
   for (const key of ["3", "2", "1"]) {
     await page.keyboard.press(key);
     const scopes = page.getByRole("region", { name: /^Scope: / });
-    await expect(scopes).toHaveCount(key === "1" ? 1 : 2);
+    await expect(scopes).toHaveCount(key === "1" ? 2 : 1);
     for (const scope of await scopes.all()) {
       await expect(scope.locator(".u-over")).toBeInViewport({ ratio: 1 });
       await expect.poll(() => lacks(scope), `layout ${key}`).toEqual([]);

@@ -146,13 +146,13 @@ interface PageProps {
 function Page({ now, turn, children }: PageProps) {
   const used = useMinutesSince(now.began);
   return (
-    <main className={styles.presenter}>
+    <main className={`column ${styles.presenter}`}>
       <h1>
         <span>{now.place}</span> {now.cue?.title}
       </h1>
       <ClockFace used={used} planned={now.planned} whole={now.whole} />
       {now.cue && <Notes cue={now.cue} next={now.next} />}
-      <p className={styles.bar}>
+      <p className={`row ${styles.bar}`}>
         <Button size="sm" onClick={() => turn(-1)}>
           Back
         </Button>

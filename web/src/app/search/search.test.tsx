@@ -81,8 +81,9 @@ it("says when nothing has all words", async () => {
   expect(await screen.findByText("Nothing has all these words.")).toBeVisible();
 });
 
-it("keeps letters that are typed before it has the keyboard from being keys of the page", async () => {
+it("takes letters that are typed before it has the keyboard, which are no keys of the page then", async () => {
   await open();
   fireEvent.keyDown(document.body, { key: "n" });
+  expect(screen.getByRole("textbox", { name: "Search" })).toHaveValue("n");
   expect(useView.getState().dialog).toBe("none");
 });

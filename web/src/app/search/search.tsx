@@ -1,6 +1,6 @@
 import { createSpotlight, Spotlight } from "@mantine/spotlight";
 import { IconSearch } from "@tabler/icons-react";
-import { useState } from "react";
+import { useEffect, useState } from "react";
 import { find } from "./find";
 import styles from "./search.module.css";
 import { useEntries } from "./use-entries";
@@ -16,6 +16,15 @@ export const isSearching = (): boolean => store.getState().opened;
 /** Finds panels, scenarios, equations, devices, settings and places by their words, and opens them. */
 export function Search() {
   const [asked, setAsked] = useState("");
+  useEffect(() => {
+    // letters that are typed before the field has the keyboard belong to it
+    const type = ({ key, target, ctrlKey, metaKey, altKey }: KeyboardEvent) => {
+      if (!isSearching() || key.length !== 1 || ctrlKey || metaKey || altKey) return;
+      if (!(target as HTMLElement).closest("input")) setAsked((before) => before + key);
+    };
+    window.addEventListener("keydown", type);
+    return () => window.removeEventListener("keydown", type);
+  }, []);
   return (
     <Spotlight.Root
       store={store}

@@ -19,6 +19,7 @@ import type { PlotTrace } from "./paint-scope";
 import styles from "./scope.module.css";
 import type { ScopePlot } from "./scope-plot";
 import type { Figures } from "./use-figures";
+import { useFirstRow } from "./use-first-row";
 
 const HIDDEN = "Before and after are hidden while a fault is hidden.";
 const SLIDE_RATIO = 1.5;
@@ -68,8 +69,9 @@ export function BeforeAfter({ change, isHidden, figures, traces, plot }: BeforeA
 /** RMS before in the colour of the ghost, RMS after in the colour of the trace. */
 function ComparedList({ compared }: { compared: Compared[] }) {
   const scheme = useScheme();
+  const list = useFirstRow<HTMLUListElement>();
   return (
-    <ul className={styles.figures}>
+    <ul ref={list} className={styles.figures}>
       {compared.map(({ trace, before, after, ratio, isSettled }) => (
         <li key={trace.name} title="RMS over whole periods of the drive">
           <SignalName name={trace.name} /> <b>{isSettled || !ratio ? ratio : `${ratio}, still settling`}</b>
