@@ -121,7 +121,7 @@ def test_a_bench_that_was_let_go_outlives_the_server_and_a_full_server_says_what
         clock = Clock(live)
         bench = live.bench("first-look", paused=True)["id"]
         full = live.http.post("/api/v1/benches", json={"scenario": "first-look"})
-        assert full.status_code == 409 and "join one" in full.json()["error"]["hint"]
+        assert full.status_code == 409 and "use a running bench" in full.json()["error"]["hint"]
         assert "15 minutes" in full.json()["error"]["hint"]
         clock.pass_minutes(16)
         other = live.bench("first-look")["id"]

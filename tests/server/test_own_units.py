@@ -126,7 +126,7 @@ def test_the_teacher_begins_a_scenario_with_a_unit_on_all_benches(live: Any) -> 
 def test_a_server_may_take_none_at_all(serve: Any) -> None:
     with serve(units="off") as live:
         answer = live.http.post("/api/v1/benches", json={"scenario": document()})
-        assert answer.status_code in (403, 422) and "takes no units" in answer.json()["error"]["message"]
+        assert answer.status_code in (403, 422) and "takes no user units" in answer.json()["error"]["message"]
         assert live.http.post("/api/v1/runs", json={"scenario": document()}).status_code in (403, 422)
 
 

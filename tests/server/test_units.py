@@ -123,7 +123,7 @@ def test_a_student_reads_and_brings_none(live: Any) -> None:
 
 def test_a_server_that_takes_no_units_says_so(serve: Any) -> None:
     with serve(units="off") as live:
-        assert "takes no units" in live.http.get(DOOR).json()["refusal"]
+        assert "takes no user units" in live.http.get(DOOR).json()["refusal"]
         for method, path in (("POST", DOOR), ("PUT", f"{DOOR}/pi")):
             body = {"source": PI} | ({"name": "pi"} if method == "POST" else {})
             assert live.http.request(method, path, json=body).json()["error"]["code"] == "forbidden"

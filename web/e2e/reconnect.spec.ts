@@ -48,9 +48,7 @@ test("a hidden page stays connected; a page outlives its server and continues wh
   }
 });
 
-test("a full server shows the next step, and a bench that it closed while idle opens again unchanged", async ({
-  page,
-}) => {
+test("a full server shows the next step, and a closed idle bench opens again unchanged", async ({ page }) => {
   const server = await LabServer.create({ COMBBENCH_MAX_BENCHES: "1", COMBBENCH_IDLE_MINUTES: "0.001" });
   const benches = () => server.ask<{ benches: { watchers: number }[] }>("GET", "/benches").then((all) => all.benches);
   try {
