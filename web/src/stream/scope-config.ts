@@ -39,7 +39,7 @@ export function namedFor(signal: string, controllers: readonly string[]): string
 /**
  * A scope as it is on a bench: the controllers that drive or drove by name, the trigger on a signal that there is.
  *
- * A switch of the controller so changes what a scope shows.
+ * A switch of the controller so changes the traces of a scope.
  */
 export function onBench(
   config: ScopeConfig,
