@@ -1,7 +1,7 @@
 """Formats numbers for people, in reports, pictures, 3D and events.
 
-The page formats them the same way (``web/src/ui/format.ts``); ``web/src/testing/cases/format.json`` tests that both write
-the same text for the same value.
+The page formats them the same way (``web/src/ui/format.ts``); ``web/src/testing/cases/format.json`` tests that both
+write the same text for the same value.
 """
 
 from __future__ import annotations

@@ -38,7 +38,7 @@ export function SensitivityTable({ evaluation }: { evaluation: Evaluation }) {
   return (
     <>
       <h2 className={styles.heading}>Sensitivity to the process</h2>
-      <table className={styles.table}>
+      <table className={`numbers ${styles.table}`}>
         <TableHead names={["If the process makes", ...COLUMNS.map(([, sign]) => sign)]} />
         <tbody>
           {STEPS.map(([name, words]) => (

@@ -51,9 +51,9 @@ export function useLivePaint(
 interface LiveCanvasProps {
   label: string;
   subscription: Subscription | undefined;
-  /** Take what has come. */
+  /** Take the newest frame. */
   hear(frame: PanelFrame): void;
-  /** Paint the newest; `tells` says whether the words beside it may change now. */
+  /** Paint the newest frame; with `tells` the words beside it may change now. */
   paint: LivePaint;
   /** Painted at most so often, ms. */
   everyMs?: number;

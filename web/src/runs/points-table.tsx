@@ -61,7 +61,7 @@ export function PointsTable({ points, metrics, found, isPage, page, setPage, ord
   return (
     <>
       <div className={styles.wide}>
-        <table className={styles.table}>
+        <table className={`numbers ${styles.table}`}>
           <thead>
             <tr>
               {columns.map((column) => (

@@ -38,7 +38,7 @@ export function RunComparison({ ids }: { ids: string }) {
       />
       {/* biome-ignore lint/a11y/noNoninteractiveTabindex: a table that scrolls is reached by the keyboard */}
       <section className={styles.wide} tabIndex={0} aria-label="Figures of the runs">
-        <table className={styles.table}>
+        <table className={`numbers ${styles.table}`}>
           <thead>
             <tr>
               <th scope="col">figure</th>

@@ -107,7 +107,7 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
         </>
       )}
       <h3>Figures</h3>
-      <table className={styles.table}>
+      <table className={`numbers ${styles.table}`}>
         <TableHead names={["figure", summary.metrics_std ? "mean" : "value", Boolean(summary.metrics_std) && "std"]} />
         <tbody>
           {Object.entries(summary.metrics).map(([name, value]) => {

@@ -1,4 +1,4 @@
-/** The names of the columns of a table; a pair says besides what a column means, and what is false is left out. */
+/** The names of the columns of a table; a pair adds the meaning of a column, and a name that is false is left out. */
 export function TableHead({
   names,
 }: {

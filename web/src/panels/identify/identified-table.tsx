@@ -36,7 +36,7 @@ const ROWS: { label: string; value: Key; error: Key; nominal: string; unit: stri
 /** What the sweep says of the device, how sure it is, and how far that is from the nominal one. */
 export function IdentifiedTable({ result }: { result: Identification }) {
   return (
-    <table className={styles.table}>
+    <table className={`numbers ${styles.table}`}>
       <TableHead names={[`At ${formatTick(result.tick)}`, "Measured ± standard error", "From nominal"]} />
       <tbody>
         {ROWS.map(({ label, value, error, nominal, unit }) => {

@@ -74,7 +74,7 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
             {found.only_in_first.length + found.only_in_second.length > 0 &&
               `; ${found.only_in_first.length + found.only_in_second.length} are in one recording alone`}
           </p>
-          <table className={styles.table}>
+          <table className={`numbers ${styles.table}`}>
             <TableHead names={["signal", "largest difference", "at tick", "rms", "tolerance", "verdict"]} />
             <tbody>
               {rows.slice(0, SHOWN).map((row) => (

@@ -109,7 +109,7 @@ function Section({ section, actions }: { section: SheetSection; actions: StepAct
     <li ref={place} data-state={state} aria-current={state === "open" ? "step" : undefined}>
       <h3>
         {heading}
-        <span className={styles.unseen}>
+        <span className="visually-hidden">
           {state === "done" ? ", done" : state === "closed" ? ". Complete the previous steps first" : ""}
         </span>
       </h3>

@@ -106,7 +106,7 @@ function Conditions({ step, isOpen }: { step: SheetStep; isOpen: boolean }) {
                 </>
               )}
               {wanted && ` (wanted: ${hypothesisWords(wanted)})`}
-              <span className={styles.unseen}>{holds ? ", holds" : ", does not hold yet"}</span>
+              <span className="visually-hidden">{holds ? ", holds" : ", does not hold yet"}</span>
             </span>
           </li>
         ))}

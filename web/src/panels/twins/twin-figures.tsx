@@ -61,7 +61,7 @@ export function TwinFigures({ boards, compared }: { boards: Board[]; compared: C
   const best = Math.min(...figures.map((f) => f.rmsError).filter(Number.isFinite));
   return (
     <div className={styles.scroll}>
-      <table className={styles.table}>
+      <table className={`numbers ${styles.table}`}>
         <caption>
           Against {compared.against}, over the last {formatSi(ticks * dtMs, "ms")}
         </caption>
