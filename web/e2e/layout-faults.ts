@@ -100,7 +100,11 @@ function findFaults(within: string): string[] {
         if (/auto|scroll/.test(style.overflowY)) {
           reach.top = Math.max(reach.top, edge.top);
           reach.bottom = Math.min(reach.bottom, edge.bottom);
-        } else along = Math.max(along, edge.top - reach.top, reach.bottom - edge.bottom);
+        } else {
+          // the last line that is left ends in dots
+          if (style.webkitLineClamp !== "none") reach.bottom = Math.min(reach.bottom, edge.bottom);
+          along = Math.max(along, edge.top - reach.top, reach.bottom - edge.bottom);
+        }
         seen.left = Math.max(seen.left, edge.left);
         seen.right = Math.min(seen.right, edge.right);
         seen.top = Math.max(seen.top, edge.top);

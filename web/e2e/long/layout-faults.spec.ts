@@ -35,6 +35,8 @@ const RIGHT = `
   <h1>A page</h1>
   <div style="height: 60px; overflow: auto"><p>scrolled</p><p>to be</p><p>reached</p><button>Reach me</button></div>
   <p style="width: 90px; overflow: hidden; text-overflow: ellipsis; white-space: nowrap">cut with a sign of it</p>
+  <p style="display: -webkit-box; width: 90px; overflow: hidden; -webkit-box-orient: vertical; -webkit-line-clamp: 2">
+    cut with a sign of it at the end of its second line</p>
   <div data-portal="true" style="position: absolute; top: 0; background: #fff">a menu over the page</div>`;
 
 test("each fault of a page is found by itself, and nothing else is found", async ({ page }) => {

@@ -26,6 +26,9 @@ const GYROSCOPE = { scenario: "gyro-diagnosis", set: { "readouts.allan": { kind:
 /** Views with a place in no laboratory, or in the research layout alone. */
 const ADDED = ["3D", "Spectrum", "Phase plane"];
 
+/** The keys of the layouts. */
+const LAYOUTS = { lecture: "1", lab: "2", research: "3" };
+
 /** Open a bench that runs. */
 async function open(page: Page, server: LabServer, bench: object): Promise<string> {
   const { id } = await server.ask<{ id: string }>("POST", "/benches", bench);
@@ -112,14 +115,16 @@ async function walkPhone(page: Page, look: (where: string) => Promise<void>) {
 for (const [device, bench] of Object.entries({ resonator: RESONATOR, gyroscope: GYROSCOPE })) {
   for (const screen of SCREENS) {
     const at = `${device} at ${nameOf(screen)}`;
-    test(`no panel of a ${at} overlaps or is cut in any layout`, async ({ page, server }) => {
-      await openFound(page, server, bench);
-      await showOn(page, screen);
-      const look = (where: string) => expectClean(page, `${at}: ${where}`);
-      if (isPhone(screen)) return walkPhone(page, look);
-      for (const key of ["1", "3"]) await walkDock(page, key, [], look);
-      await walkDock(page, "2", ADDED, look);
-    });
+    const walk = (where: string, walked: (page: Page, look: (shown: string) => Promise<void>) => Promise<void>) =>
+      test(`no panel of a ${at} overlaps or is cut ${where}`, async ({ page, server }) => {
+        await openFound(page, server, bench);
+        await showOn(page, screen);
+        await walked(page, (shown) => expectClean(page, `${at}: ${shown}`));
+      });
+    if (isPhone(screen)) walk("below the scope", walkPhone);
+    else
+      for (const [layout, key] of Object.entries(LAYOUTS))
+        walk(`in the layout ${layout}`, (page, look) => walkDock(page, key, layout === "lab" ? ADDED : [], look));
   }
 
   test(`the letters of all panels of a ${device} can be read in both schemes`, async ({ page, server }) => {

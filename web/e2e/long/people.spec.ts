@@ -82,7 +82,6 @@ test("the pages of people who share a bench fit their screens", async ({
   await page.getByRole("menuitem", { name: "Let Ada drive my bench" }).click();
   await expect(classLine(ada)).toContainText("Your teacher has handed you this bench.");
   await expectClean(ada, "a bench that was handed over, on a phone");
-  await page.keyboard.press("m");
 
   await chooseMore(page, /^Share this experiment/);
   await expect(page.getByRole("img", { name: /^QR code of/ })).toBeVisible();

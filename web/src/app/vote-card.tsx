@@ -1,13 +1,14 @@
 import { Button } from "@mantine/core";
 import { useEffect, useState } from "react";
 import { ApiError } from "../api/client";
-import { askMe, castVote, useMe } from "../api/me";
+import { castVote, useMe } from "../api/me";
 import type { OpenVote } from "../api/types";
 import { announce } from "../bench/announce";
 import { hypothesisWords } from "../bench/hypothesis-words";
 import { showError } from "../bench/send";
 import { formatCount, formatIn } from "../ui/format";
 import { Slider } from "../ui/slider";
+import { follow } from "./follow";
 import styles from "./vote-card.module.css";
 
 /** How soon a student's page hears of a vote. */
@@ -21,7 +22,7 @@ export function VoteCard() {
     if (!student) return;
     const look = () => {
       if (document.visibilityState === "visible")
-        askMe().catch((error: unknown) => {
+        follow().catch((error: unknown) => {
           if (!(error instanceof ApiError)) return; // the server does not answer; the stream says so
         });
     };
