@@ -1,13 +1,13 @@
 import type { LogEntry } from "../api/types";
 
-/** A time for which a controller drove, in ticks; without end for the one that drives now. */
+/** A time for which a controller drove, in ticks; without end for the driving controller. */
 export interface Driven {
   name: string;
   from: number;
   until: number;
 }
 
-/** The controllers that drove one after another, the one that drives now first. A switch in another slot is none of theirs. */
+/** The controllers that drove one after another, the newest first. A switch in another slot is left out. */
 export function drivenBy(controller: string, events: readonly LogEntry[]): Driven[] {
   const driven: Driven[] = [];
   let now = { name: controller, until: Number.POSITIVE_INFINITY };

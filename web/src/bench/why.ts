@@ -13,7 +13,7 @@ function showWhy(): void {
   else showBeside("why", "lanes");
 }
 
-/** Ask why a diagnoser believed what it did at a sample; the panel that answers opens beside or below the lanes. */
+/** Ask for the reasons of a verdict at a sample; the panel Why opens beside or below the lanes. */
 export function pickSample(diagnoser: string, tick: number): void {
   useView.setState({ sample: { diagnoser, tick: Math.max(0, tick) } });
   showWhy();

@@ -41,7 +41,12 @@ it("keeps a share from reading as all beside errors that were counted, and count
 });
 
 it("says a figure that was not measured by a dash", () => {
-  expect(table(entry("control.rms_error_um", null))[1].slice(MEASURED)).toEqual(["–", "–"]);
+  const other = entry("control.effort_ratio", 1.8, { open_loop: 1 });
+  expect(table(entry("control.rms_error_um", null), other)[1].slice(MEASURED)).toEqual(["–", "–"]);
+});
+
+it("has no column of the open loop where no figure has one", () => {
+  expect(table(entry("control.rms_error_um", null))[0]).toEqual(["figure", "expected", "measured"]);
 });
 
 it("has what the open loop gives beside each figure, and a PID only where one is compared", () => {

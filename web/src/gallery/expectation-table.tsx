@@ -43,6 +43,7 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
   const [all, setAll] = useState(false);
   if (entries.length === 0) return <p className={styles.nothing}>This experiment makes no claim.</p>;
   const rows = all ? entries : entries.slice(0, SHOWN);
+  const hasOpenLoop = entries.some((entry) => typeof entry.open_loop === "number");
   const hasPid = entries.some((entry) => typeof entry.pid === "number");
   return (
     <div className={styles.figures}>
@@ -52,9 +53,11 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
             <th scope="col">figure</th>
             <th scope="col">expected</th>
             <th scope="col">measured</th>
-            <th scope="col" title="The same scenario with the open loop in place of its controller">
-              open loop
-            </th>
+            {hasOpenLoop && (
+              <th scope="col" title="The same scenario with the open loop in place of its controller">
+                open loop
+              </th>
+            )}
             {hasPid && (
               <th scope="col" title="The same scenario with a tuned PID in place of its controller">
                 PID
@@ -91,7 +94,7 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
                   {say(entry.measured)}
                   {entry.ok === false && " ✗"}
                 </td>
-                <td>{say(entry.open_loop)}</td>
+                {hasOpenLoop && <td>{say(entry.open_loop)}</td>}
                 {hasPid && <td>{say(entry.pid)}</td>}
               </tr>
             );

@@ -43,7 +43,7 @@ export const eventsWithin = ({ marks, span }: Pick<EventAxis, "marks" | "span">)
 
 /**
  * Events as lines over a plot, faults as bands along its top. Above a line are the words of the event, after the line or
- * before it; where neither has room, they cover those of the next event. Events without words have numbers, which join into a range
+ * before it; where neither has room, they cover the words of the next event. Events without words have numbers, which join into a range
  * where they have no room.
  */
 export function markEvents(

@@ -30,7 +30,7 @@ const ACTIVE = /^@active(?=\.)/;
 /** Of the controllers that drove, a scope shows the newest. */
 const MOST_DRIVEN = 3;
 
-/** A signal by its name on a bench; that of the controller that drives for each of some controllers, the newest first. */
+/** The names of a signal on a bench: one, or a name for each of some controllers, the newest first. */
 export function namedFor(signal: string, controllers: readonly string[]): string[] {
   if (!ACTIVE.test(signal)) return [signal];
   return [...new Set(controllers)].slice(0, MOST_DRIVEN).map((controller) => signal.replace(ACTIVE, controller));
@@ -39,7 +39,7 @@ export function namedFor(signal: string, controllers: readonly string[]): string
 /**
  * A scope as it is on a bench: the controllers that drive or drove by name, the trigger on a signal that there is.
  *
- * A switch of the controller so changes what a scope shows.
+ * A switch of the controller so changes the traces of a scope.
  */
 export function onBench(
   config: ScopeConfig,

@@ -35,7 +35,10 @@ export function BenchMenu() {
       <Menu.Target>
         <UnstyledButton
           className={styles.bench}
-          title={`${title ?? "No bench"}, ${formatShort(rate ?? 0, "kHz")} board, ${watchers} watching. ${slow ? "The display lags, the simulation is on time. " : ""}Change bench.`}
+          aria-label={title ?? "No bench"}
+          title={`${title ?? "No bench"}: change bench. ${formatShort(rate ?? 0, "kHz")} board, ${watchers} watching.${
+            slow ? " The display lags, the simulation is on time." : ""
+          }`}
         >
           <span data-lines={news ? 1 : 2}>{name} </span>
           <small data-slow={slow}>

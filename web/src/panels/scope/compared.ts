@@ -20,7 +20,7 @@ export interface Compared {
 
 const quantity = ({ name }: PlotTrace): string => name.slice(name.indexOf(".") + 1);
 
-/** The trace before a change that a trace is compared with: itself, or that of the controller that drove then. */
+/** The trace to compare a trace with, before a change: itself, or the trace of the controller that drove then. */
 const earlier = (traces: readonly PlotTrace[], trace: PlotTrace, tick: number): number =>
   trace.drives
     ? traces.findIndex((one) => one.drives && quantity(one) === quantity(trace) && drove(one.drives, tick - 1))

@@ -75,7 +75,7 @@ export class ScopePlot {
   /** Tick of the trigger, which the time axis calls zero. */
   private trigger: number | undefined;
   private hovered = false;
-  /** Draws the last frame of a board that stands still once more, when its axes may shrink. */
+  /** Draws the last frame of a paused board once more, when its axes may shrink. */
   private shrink: ReturnType<typeof setTimeout> | undefined;
   private readonly raster = new BarRaster();
   /** What the raster is laid over the grid with. */

@@ -13,12 +13,12 @@ interface LegendRow {
   level: Level;
 }
 
-/** What an entry says: its whole name and its value; without what all names have in common; without the value too. */
+/** Contents of an entry: its whole name and its value; without the common part of all names; without the value too. */
 const LEVELS = ["whole", "short", "names"] as const;
 
 type Level = (typeof LEVELS)[number];
 
-/** How much of a legend has room in one row beside what else stands there. Names stay before values do. */
+/** How much of a legend has room in one row beside the other tools. Names stay before values do. */
 export function useLegendRow(traces: PlotTrace[]): LegendRow {
   const list = useRef<HTMLUListElement>(null);
   const [row, setRow] = useChanged<{ fits: number; level: Level }>({ fits: traces.length, level: "whole" });

@@ -8,7 +8,7 @@ import { namedFor, onBench, type ScopeConfig } from "../../stream/scope-config";
 /** When the controller of a signal drove, for signals that are shown for that time alone. */
 export type Drives = Partial<Record<string, Driven[]>>;
 
-/** A scope as it is on the bench, and which of its signals are those of the controllers that drive or drove. */
+/** A scope as it is on the bench, and the times for which controllers drove, by signal. */
 export function useOnBench(kept: ScopeConfig): { config: ScopeConfig; drives: Drives } {
   const signals = useBench((s) => s.bench?.signals);
   const controller = useBench((s) => s.bench?.controller ?? "");

@@ -5,7 +5,7 @@ import type { Envelope } from "./envelope-path";
 export const drove = (spans: readonly Driven[], tick: number): boolean =>
   spans.some(({ from, until }) => tick >= from && tick < until);
 
-/** What a controller says while it drives; in shadow it says nothing that the device obeys. */
+/** The signal of a controller while it drives; in shadow the device does not obey it. */
 export function whileDriving({ low, high }: Envelope, frame: PanelFrame, spans: readonly Driven[]): Envelope {
   const only = (values: Envelope["low"]) =>
     values.map((value, column) => (drove(spans, tickOf(frame, column)) ? value : Number.NaN));
