@@ -9,7 +9,7 @@ const DIALOGS = [
   { key: "n", title: "New bench" },
   { key: "S", title: "Share this experiment" },
 ];
-const MENUS = [/change bench\.?$/i, /: change it$/, "Add or close panels", "Choose signals", /^Export/];
+const MENUS = [/: change bench\b/, /: change it$/, "Add or close panels", "Choose signals", /^Export/];
 
 const PAGES: [string, (page: Page) => Locator][] = [
   ["scores", (page) => page.getByRole("region", { name: "Curves" })],
