@@ -134,15 +134,7 @@ test("Bode diagrams, charts of a campaign and plots of theory are kept, in light
   expect(await svgOf(page, chart)).toEqual(expect.arrayContaining(["delay, samples", "share found by then"]));
 });
 
-<<<<<<< HEAD
-test("pictures of a race, of adaptation, of aliases and of a swept sine are saved", async ({
-  page,
-  openBench,
-  server,
-}) => {
-=======
 test("pictures of a race, adaptation, aliases and a swept sine are saved", async ({ page, openBench, server }) => {
->>>>>>> b-e
   await openBench("lab", { "diagnosers.imm": { kind: "imm", hypotheses: HYPOTHESES } });
   const viewOf = async (panel: string, view: string) => {
     await front(page, panel, view);

@@ -22,7 +22,7 @@ it("says what else was done and found", () => {
   expect(words({ kind: "set", command: { set: { "controllers.pid.pole": 1 } } })).toBe("pole changed");
   expect(words({ kind: "set", command: { set: { "rate.deg_per_s": 100 } } })).toBe("angular rate 100\u00a0deg/s");
   expect(words({ kind: "heal", command: { heal: "all" } })).toBe("healed");
-  expect(words({ kind: "recognised", new: "m+5" })).toBe("found m+5");
+  expect(words({ kind: "recognised", new: "m+5" })).toBe("found mass +5\u00a0%");
   expect(words({ kind: "tripped" })).toBe("stopped");
   expect(words({ kind: "restored" })).toBe("restored");
 });

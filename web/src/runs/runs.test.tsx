@@ -7,9 +7,11 @@ import { be, mount } from "../testing/render";
 import { Runs } from "./runs";
 
 const benchmark = await recordedAnswer("benchmark");
+const catalog = await recordedAnswer("catalog");
 
 beforeEach(() => {
   server.on("GET", "/benchmarks/mems-diag-1", benchmark);
+  server.on("GET", "/catalog", catalog);
   server.on("GET", "/scenarios", { scenarios: [] });
   server.on("GET", "/scenarios/:id", { document: {} });
   server.on("GET", "/runs", { runs: [] });
