@@ -169,9 +169,10 @@ def _processor() -> tuple[str, str]:
 
 
 def _hash(block: type[Block]) -> str:
-    """Return a hash of a step, of what it sees, of this compiler and of the processor."""
+    """Return a hash of a step, of what it sees, of this compiler, of the boards side by side and of the machine."""
     ports = [(port.name, _seen(port)) for port in block.Ports.declared]
-    parts = key(block.step), block.Packed.layout, block.State.layout, ports, _compiler(), _processor()
+    machine = llvm.get_process_triple(), *_processor()
+    parts = key(block.step), block.Packed.layout, block.State.layout, ports, _compiler(), WIDTH, machine
     return hashlib.sha256("\n".join(map(str, parts)).encode()).hexdigest()[:24]
 
 

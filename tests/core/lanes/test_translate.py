@@ -240,3 +240,18 @@ def test_what_lanes_cannot_do_runs_one_board_after_another(arrays):
     assert "double" in code.instructions(unit(begins_anywhere), lanes=False)
     with pytest.raises(Unsupported, match="a call of"):
         code.instructions(unit(says_too_much), lanes=False)
+
+
+@pytest.mark.parametrize(
+    ("name", "other"),
+    [
+        ("WIDTH", WIDTH // 2),
+        ("_processor", lambda: ("another", "+sse2")),
+        ("llvm.get_process_triple", lambda: "aarch64-unknown-linux-gnu"),
+    ],
+)
+def test_code_for_other_boards_side_by_side_or_another_machine_has_another_name(name, other, monkeypatch):
+    here = code._hash(unit(arithmetic))
+    assert code._hash(unit(arithmetic)) == here
+    monkeypatch.setattr(f"core.lanes.code.{name}", other)
+    assert code._hash(unit(arithmetic)) != here
