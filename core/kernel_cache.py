@@ -56,8 +56,8 @@ class KernelCache:
     compiled = 0
     """Kernels compiled by this process because no shelf had them."""
 
-    def __init__(self, function: FunctionType, layouts: str = "") -> None:
-        self._function, self._layouts = function, layouts
+    def __init__(self, function: FunctionType) -> None:
+        self._function = function
 
     def load_overload(self, signature: Any, target: Any) -> Any:
         """Return the code compiled for a signature, or nothing."""
@@ -75,7 +75,8 @@ class KernelCache:
             put(self._name(signature, result.target_context), serialize.dumps(result._reduce()))
 
     def _name(self, signature: Any, target: Any) -> str:
-        parts = (key(self._function), self._layouts, signature, target.codegen().magic_tuple())
+        versions = numba.__version__, np.__version__, _compiler()
+        parts = (key(self._function), *versions, signature, target.codegen().magic_tuple())
         digest = hashlib.sha256("\n".join(map(str, parts)).encode())
         return f"{self._function.__module__}.{self._function.__name__}-{digest.hexdigest()[:24]}"
 
@@ -83,14 +84,14 @@ class KernelCache:
 @cache
 def key(function: FunctionType) -> str:
     """Return a hash of a function and of all it names, which another process would find too."""
-    digest = hashlib.sha256(f"{numba.__version__} {np.__version__} {_compiler()}".encode())
+    digest = hashlib.sha256()
     _digest_function(function, digest, {})
     return digest.hexdigest()
 
 
 @cache
 def _compiler() -> str:
-    """Return the text that makes machine code of steps, beside numba."""
+    """Return the text that makes machine code of helpers, beside numba."""
     return "".join(inspect.getsource(sys.modules[name]) for name in ("core.kernel", "core.views"))
 
 

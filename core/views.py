@@ -1,7 +1,6 @@
-"""Records and ports as compiled steps see them: views with attributes whose layout is part of their type.
+"""Records as the kernels see them that Python calls: views with attributes whose layout is part of their type.
 
-Only the way to an address differs. A number of a record is at ``base[offset]``, the signal behind a port at the place
-that the port names; a vector is a pointer, a nested record a view at an offset. So the names cost nothing.
+A number of a record is at ``base[offset]``; a vector is a pointer, a nested record a view at an offset.
 """
 
 from __future__ import annotations
@@ -18,7 +17,6 @@ from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, inf
 from numba.extending import (
     NativeValue,
     infer_getattr,
-    intrinsic,
     lower_builtin,
     lower_getattr_generic,
     models,
@@ -26,11 +24,9 @@ from numba.extending import (
     unbox,
 )
 
-from core.ports import TICK, TIME_MS
 from core.record import RECORD, RECORDS, SCALAR, Field, Layout, Record
 
 DOUBLES = types.CPointer(types.float64)
-INTEGERS = types.CPointer(types.int64)
 
 
 class RecordType(types.Type):
@@ -50,20 +46,6 @@ class RecordsType(types.Type):
         super().__init__(name=f"records({_text(layout)})")
 
 
-class PortsType(types.Type):
-    """Ports of a block."""
-
-    def __init__(self, ports: tuple[tuple[str, bool | Layout], ...]) -> None:
-        self.ports = ports
-        self.places = {name: (place, seen) for place, (name, seen) in enumerate(ports)}
-        super().__init__(name=f"ports({','.join(name + _several(seen) for name, seen in ports)})")
-
-
-def _several(seen: bool | Layout) -> str:
-    """Return what stands behind the name of a port: nothing, or that it is a vector, or of which records."""
-    return f"[{_text(seen)}]" if isinstance(seen, Layout) else "[]" * seen
-
-
 def _text(layout: Layout) -> str:
     """Return a layout in a word, so that equal layouts are one type."""
 
@@ -81,12 +63,6 @@ class _RecordModel(models.StructModel):
         super().__init__(manager, kind, [("base", DOUBLES)])
 
 
-@register_model(PortsType)
-class _PortsModel(models.StructModel):
-    def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, [("signals", DOUBLES), ("places", INTEGERS)])
-
-
 @infer_getattr
 class _RecordAttributes(AttributeTemplate):
     key = RecordType
@@ -98,21 +74,6 @@ class _RecordAttributes(AttributeTemplate):
         if field.inner is None:
             return types.float64 if field.kind == SCALAR else DOUBLES
         return RecordType(field.inner) if field.kind == RECORD else RecordsType(field.inner)
-
-
-@infer_getattr
-class _PortAttributes(AttributeTemplate):
-    key = PortsType
-
-    def generic_resolve(self, ports: Any, name: str) -> Any:  # type: ignore[override]
-        if name in ("tick", "time_ms"):
-            return types.float64
-        if name not in ports.places:
-            return None
-        seen = ports.places[name][1]
-        if isinstance(seen, Layout):
-            return RecordsType(seen)
-        return DOUBLES if seen else types.float64
 
 
 @infer_global(operator.getitem)
@@ -174,29 +135,6 @@ def _read_record(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     return _view(context, builder, signature.return_type, base=at)
 
 
-def _signal(context: Any, builder: Any, kind: Any, value: Any, name: str) -> Any:
-    """Return the address of the signal behind a port."""
-    ports = cgutils.create_struct_proxy(kind)(context, builder, value=value)
-    if name in ("tick", "time_ms"):
-        return builder.gep(ports.signals, [_integer(TICK if name == "tick" else TIME_MS)])
-    place = builder.load(builder.gep(ports.places, [_integer(kind.places[name][0])]))
-    return builder.gep(ports.signals, [place])
-
-
-@lower_getattr_generic(PortsType)
-def _read_port(context: Any, builder: Any, kind: Any, value: Any, name: str) -> Any:
-    at = _signal(context, builder, kind, value, name)
-    seen = kind.places.get(name, (0, False))[1]
-    if isinstance(seen, Layout):
-        return _view(context, builder, RecordsType(seen), base=at)
-    return at if seen else builder.load(at)
-
-
-@lower_setattr_generic(PortsType)
-def _write_port(context: Any, builder: Any, signature: Any, args: Any, name: str) -> None:
-    builder.store(args[1], _signal(context, builder, signature.args[0], args[0], name))
-
-
 @cache
 def _type(record: Any) -> RecordType:
     return RecordType(record.layout)
@@ -213,32 +151,3 @@ def _take(kind: Any, record: Any, c: Any) -> Any:
     base = c.builder.inttoptr(c.pyapi.long_as_ulonglong(number), c.context.get_value_type(DOUBLES))
     c.pyapi.decref(number)
     return NativeValue(_view(c.context, c.builder, kind, base=base))
-
-
-def record_at(layout: Layout) -> Any:
-    """Return what makes a view of a record from a pointer, for compiled code."""
-    kind = RecordType(layout)
-
-    def view(typing: Any, base: Any) -> Any:
-        def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-            return _view(context, builder, kind, base=args[0])
-
-        return kind(DOUBLES), generate
-
-    return intrinsic(view)
-
-
-def ports_at(ports: tuple[tuple[str, bool | Layout], ...]) -> Any:
-    """Return what makes a view of ports from the signals and their places, for compiled code.
-
-    Of every port its name, and whether it is a vector or of which records.
-    """
-    kind = PortsType(ports)
-
-    def view(typing: Any, signals: Any, places: Any) -> Any:
-        def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-            return _view(context, builder, kind, signals=args[0], places=args[1])
-
-        return kind(DOUBLES, INTEGERS), generate
-
-    return intrinsic(view)

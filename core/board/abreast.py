@@ -1,7 +1,7 @@
 """Boards abreast: up to ``WIDTH`` boards of one structure, a tick of all of them at a time.
 
 The boards share blocks, wiring, intervals and choices. Each number of a board stands beside the same number of the
-next, and ``core.lanes`` compiles the steps for all of them at once. Each board gets the bits it gets alone. A board
+next, and ``core.compile`` compiles the steps for all of them at once. Each board gets the bits it gets alone. A board
 that trips, or whose commands change which blocks run, cannot stay: it runs alone.
 """
 
@@ -30,9 +30,9 @@ from core.board.pending import Queue
 from core.board.program import EVERY, call, walk
 from core.board.spec import Spec
 from core.board.wiring import Wiring
+from core.compile.machine import WIDTH
+from core.compile.rows import folding, keeping, sorting
 from core.kernel import kernel
-from core.lanes.numbers import WIDTH
-from core.lanes.rows import folding, keeping, sorting
 from core.ports import RESERVED, TICK, TIME_MS
 
 ALIGNMENT = 8
@@ -65,7 +65,7 @@ def run(
     p, s, w : ndarray, shape (numbers, WIDTH)
         Parameters, states and signals, a column for each board.
     tail : ndarray
-        Addresses of what folds a tick, of what keeps it, and of what sorts the ticks kept (``core.lanes.rows``).
+        Addresses of what folds a tick, of what keeps it, and of what sorts the ticks kept (``core.compile.rows``).
     folds, folded : ndarray
         The folds, and the places of the outputs that count.
     rows, columns : ndarray
@@ -262,7 +262,7 @@ class Abreast:
             raise Uneven("other choices")
         self._io = first.io
         self._table = first.table[rows]
-        self._table[:, program.ADDRESS] = [steps.abreast(first, row) for row in rows]
+        self._table[:, program.ADDRESS] = [steps.address(first, row, WIDTH) for row in rows]
 
 
 def _apart(wiring: Wiring) -> Wiring:

@@ -17,7 +17,8 @@ from numba.extending import intrinsic
 
 from core.block import Block, FloatArray, IntArray
 from core.board.fold import Words, fold, fold_uncompiled
-from core.kernel import compiled_step, inlined, kernel
+from core.compile import code
+from core.kernel import inlined, kernel
 from core.own.apart import compiled_apart
 from core.ports import RESERVED, TICK, TIME_MS
 from core.wall import wall
@@ -30,18 +31,11 @@ DONE, TRIPPED, WATCHED = 0, 1, 2
 """Why the loop returned."""
 
 
-_addresses: dict[type[Block], int] = {}
-
-
-def address(block: type[Block]) -> int:
-    """Return where the C function of the step of a block is; it is compiled when it is asked for the first time."""
+def address(block: type[Block], width: int = 1) -> int:
+    """Return where the C function of a step is, for so many boards; it is compiled when it is asked for first."""
     if block.text and wall.is_demanded():
         raise RuntimeError(f"{block.name} runs behind the wall alone")
-    found = _addresses.get(block)
-    if found is None:
-        found = compiled_step(compiled_apart(block).step, block.Packed, block.State, block.Ports).address
-        _addresses[block] = found
-    return found
+    return code.address(compiled_apart(block), width)
 
 
 def _generate_call(typing_context: Any, address: Any, p: Any, s: Any, w: Any, io: Any) -> Any:

@@ -6,10 +6,10 @@ import ast
 from collections.abc import Sequence
 from typing import Any
 
-from core.lanes.expressions import Expressions
-from core.lanes.frames import returns, tree_of
-from core.lanes.numbers import BOOL, Number, Unsupported, is_number
-from core.lanes.places import Place, PortsView, RecordsView, RecordView, VectorView
+from core.compile.expressions import Expressions
+from core.compile.frames import returns, tree_of
+from core.compile.numbers import BOOL, Number, Unsupported, is_number
+from core.compile.places import Place, PortsView, RecordsView, RecordView, VectorView
 from core.record import SCALAR
 
 SMALL = 12
@@ -25,6 +25,10 @@ class Statements(Expressions):
 
     def statement(self, node: ast.stmt) -> bool:
         """Translate a statement; say whether the code never gets behind it."""
+        with self.told(node):
+            return self._statement(node)
+
+    def _statement(self, node: ast.stmt) -> bool:
         if isinstance(node, ast.Assign):
             value = self.value(node.value)
             for target in node.targets:

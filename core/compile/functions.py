@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import ast
 import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+from core.compile.numbers import FLOAT, INT, UINT, Arithmetic, Number
 from core.elementary.bits import bits_of, number_of
 from core.kernel import whole
-from core.lanes.numbers import FLOAT, INT, UINT, Arithmetic, Number, type_of
 
 
 def _absolute(a: Arithmetic, value: Any) -> Any:
@@ -53,12 +54,17 @@ def _floor(a: Arithmetic, value: Any) -> Any:
 
 def _bits(a: Arithmetic, value: Any) -> Any:
     number = a.as_kind(value, FLOAT)
-    return Number(a.builder.bitcast(number.value, type_of(INT, is_lanes=number.is_lanes)), INT)
+    return Number(a.builder.bitcast(number.value, a.type_of(INT, is_lanes=number.is_lanes)), INT)
 
 
 def _from_bits(a: Arithmetic, value: Any) -> Any:
     number = a.as_kind(value, INT)
-    return Number(a.builder.bitcast(number.value, type_of(FLOAT, is_lanes=number.is_lanes)), FLOAT)
+    return Number(a.builder.bitcast(number.value, a.type_of(FLOAT, is_lanes=number.is_lanes)), FLOAT)
+
+
+def _whole(a: Arithmetic, n: Any) -> Any:
+    """Boards side by side fill registers with boards; one alone does so with numbers."""
+    return n if a.width > 1 else a.binary(ast.LShift, a.binary(ast.RShift, a.plus(n, 7), 3), 3)
 
 
 FUNCTIONS: dict[Any, Callable[..., Any]] = {
@@ -75,7 +81,7 @@ FUNCTIONS: dict[Any, Callable[..., Any]] = {
     math.copysign: lambda a, size, sign: a.intrinsic("copysign", size, sign),
     math.isfinite: _finite,
     math.floor: _floor,
-    whole: lambda a, n: n,
+    whole: _whole,
     bits_of: _bits,
     number_of: _from_bits,
 }

@@ -11,7 +11,7 @@ from functools import cache
 from types import FunctionType
 from typing import Any
 
-from core.lanes.numbers import Number, Unsupported
+from core.compile.numbers import Number, Unsupported
 
 Kinds = dict[str, tuple[int, bool]]
 """Of every variable of every call its kind, and whether each board has its own."""
