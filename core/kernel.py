@@ -1,54 +1,70 @@
-"""Compiles helpers: what steps call, and what Python calls by itself."""
+"""Kernels: functions that steps call, and that Python calls by itself as machine code."""
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
+from functools import update_wrapper
 from types import FunctionType
 from typing import Any, TypeVar, cast
 
-import numba
-from numba.core.dispatcher import Dispatcher
+from core.compile import entry
+from core.compile.instructions import whole
+from core.record import Record
 
-from core import views  # noqa: F401  (numba learns what records are)
-from core.kernel_cache import KernelCache
+__all__ = ["SMALL", "Kernel", "flush_tiny", "inlined", "is_kernel", "kernel", "whole"]
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 SMALL = 1e-100
 """Numbers smaller than this count as nothing."""
 
-_OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
+
+def _nothing(*_arguments: Any) -> Any:
+    return NotImplemented
+
+
+class Kernel:
+    """A function that is machine code where Python calls it, and part of the step where a step does."""
+
+    def __init__(self, function: FunctionType) -> None:
+        update_wrapper(self, function)
+        self.py_func = function
+        self._last: Callable[..., Any] = _nothing
+        self._made: dict[entry.Kinds, Callable[..., Any]] = {}
+
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
+        """Call the function; it is compiled when it is called first with such arguments."""
+        if named:
+            arguments = inspect.signature(self.py_func).bind(*arguments, **named).args
+        found = self._last(*arguments)
+        if found is not NotImplemented:
+            return found
+        kinds = tuple(map(entry.kind_of, arguments))
+        made = self._made.get(kinds)
+        if made is None:
+            made = self._made[kinds] = entry.made(self.py_func, kinds)
+        if any(isinstance(kind, type) for kind in kinds):
+            return made(*(one.address if isinstance(one, Record) else one for one in arguments))
+        found = made(*arguments)
+        if found is NotImplemented:  # an integer of another class, say
+            return made(*map(entry.plain, arguments))
+        self._last = made
+        return found
 
 
 def kernel(function: F) -> F:
-    """Compile a helper that steps call: strict arithmetic, no GIL, kept."""
-    return _kept(function, numba.njit(**_OPTIONS)(function))
+    """Declare a function that steps may call."""
+    return cast(F, Kernel(cast(FunctionType, function)))
 
 
-def inlined(function: F) -> F:
-    """Compile a helper into whatever calls it: for the few whose call would cost as much as their work."""
-    return _kept(function, numba.njit(inline="always", **_OPTIONS)(function))
-
-
-def _kept(function: F, compiled: Any) -> F:
-    if isinstance(compiled, Dispatcher):  # numba gives the function back when it is told not to compile
-        vars(compiled)["_cache"] = KernelCache(cast(FunctionType, function))
-    return cast(F, compiled)
+inlined = kernel
+"""The same, by the name that some units know it by."""
 
 
 def is_kernel(function: object) -> bool:
     """Say whether a step may call a function."""
-    return isinstance(function, Dispatcher) or bool(getattr(numba.config, "DISABLE_JIT", False))
-
-
-@inlined
-def whole(n: int) -> int:
-    """Return how many numbers whole vector registers hold, at least ``n``.
-
-    A loop that fills vectors longer than what is in use may go so far: it has no rest then that goes number by number.
-    Nobody reads what it writes behind the n-th. Boards abreast fill registers with boards and go to ``n`` alone.
-    """
-    return (n + 7) >> 3 << 3
+    return isinstance(function, Kernel)
 
 
 @kernel

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from llvmlite import ir
 
+from core.compile.arrays import ArrayPlace, ArrayView, Bound
 from core.compile.numbers import DOUBLE, FLOAT, I64, INT, SIGNS, Number, Unsupported, is_number
 from core.compile.places import Place, PortsView, RecordsView, RecordView, VectorView
 from core.compile.variables import Variables
@@ -64,7 +65,9 @@ class Expressions(Variables):
             return RecordsView(place.base, None, seen)
         if isinstance(owner, RecordView):
             return self.memory.attribute(owner, node.attr, self.mask)
-        if isinstance(owner, Number | Place):
+        if isinstance(owner, ArrayView) and node.attr in ("shape", "view"):
+            return owner.lengths if node.attr == "shape" else Bound(owner)
+        if isinstance(owner, Number | Place | ArrayView):
             raise Unsupported(f"an attribute {node.attr}")
         return getattr(owner, node.attr)
 
@@ -74,11 +77,19 @@ class Expressions(Variables):
             return owner[index]
         if isinstance(owner, VectorView):
             return self.memory.read(self.memory.item(owner, index), self.mask)
+        if isinstance(owner, ArrayView):
+            part = self.arrays.part(owner, index if isinstance(index, tuple) else (index,))
+            return self.arrays.read(part) if isinstance(part, ArrayPlace) else part
         if isinstance(owner, RecordsView):
             return self.memory.item(owner, index)
         if isinstance(owner, np.ndarray):
             return self._constant_at(owner, index)
         raise Unsupported(f"a part of {ast.unparse(node.value)}")
+
+    def _slice(self, node: ast.Slice) -> slice:
+        if node.step is not None:
+            raise Unsupported("a slice with a step")
+        return slice(*(self.value(part) if part else None for part in (node.lower, node.upper)))
 
     def _constant_at(self, numbers: Any, index: Any) -> Any:
         """Return a number of an array that never changes."""

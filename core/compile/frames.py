@@ -20,7 +20,11 @@ Kinds = dict[str, tuple[int, bool]]
 @cache
 def tree_of(function: FunctionType) -> ast.FunctionDef:
     """Return the syntax tree of a function."""
-    (tree,) = ast.parse(textwrap.dedent(inspect.getsource(function))).body
+    try:
+        text = inspect.getsource(function)
+    except OSError:
+        raise Unsupported(f"{function.__name__} has no text that can be read") from None
+    (tree,) = ast.parse(textwrap.dedent(text)).body
     if not isinstance(tree, ast.FunctionDef):
         raise Unsupported(f"{function.__name__} is no function with statements")
     return tree

@@ -8,10 +8,11 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from llvmlite import ir
 
-from core.compile.numbers import FLOAT, INT, UINT, Arithmetic, Number
-from core.elementary.bits import bits_of, number_of
-from core.kernel import whole
+from core.compile.arrays import Arrays, ArrayView
+from core.compile.instructions import address_of, bits_of, call, number_of, whole
+from core.compile.numbers import FLOAT, I64, INT, UINT, Arithmetic, Number, Unsupported
 
 
 def _absolute(a: Arithmetic, value: Any) -> Any:
@@ -67,6 +68,37 @@ def _whole(a: Arithmetic, n: Any) -> Any:
     return n if a.width > 1 else a.binary(ast.LShift, a.binary(ast.RShift, a.plus(n, 7), 3), 3)
 
 
+def _single(a: Arithmetic, value: Any) -> Any:
+    number, kind = a.as_kind(value, FLOAT), ir.FloatType()
+    return Number(a.builder.fpext(a.builder.fptrunc(number.value, kind), number.value.type), FLOAT)
+
+
+def _length(a: Arithmetic, value: Any) -> Any:
+    return value.lengths[0] if isinstance(value, ArrayView) else len(value)
+
+
+def _address(a: Arithmetic, view: Any) -> Any:
+    if not isinstance(view, ArrayView):
+        raise Unsupported("the address of anything but an array")
+    return Number(a.builder.ptrtoint(view.base, I64), INT)
+
+
+def _called(a: Arithmetic, address: Any, *pointers: Any) -> None:
+    """Call a step at an address, with pointers that are whole numbers too."""
+    pointer = ir.IntType(8).as_pointer()
+    kind = ir.FunctionType(ir.VoidType(), [pointer] * len(pointers))
+    values = [a.as_kind(one, INT).value for one in (address, *pointers)]
+    function = a.builder.inttoptr(values[0], kind.as_pointer())
+    a.builder.call(function, [a.builder.inttoptr(one, pointer) for one in values[1:]])
+
+
+def _scratch(*, zero: bool) -> Callable[..., Any]:
+    def scratch(a: Arithmetic, lengths: Any, dtype: Any = np.float64) -> Any:
+        return Arrays(a).scratch(lengths, np.dtype(dtype).name, zero)
+
+    return scratch
+
+
 FUNCTIONS: dict[Any, Callable[..., Any]] = {
     abs: _absolute,
     min: _extreme("<"),
@@ -84,4 +116,10 @@ FUNCTIONS: dict[Any, Callable[..., Any]] = {
     whole: _whole,
     bits_of: _bits,
     number_of: _from_bits,
+    np.float32: _single,
+    np.empty: _scratch(zero=False),
+    np.zeros: _scratch(zero=True),
+    len: _length,
+    address_of: _address,
+    call: _called,
 }

@@ -23,15 +23,19 @@ def target() -> tuple[str, ...]:
 
 def compiled(text: str, *, loops: bool = False) -> bytes:
     """Return the machine code of instructions; where asked for, loops become vector code where they can."""
-    machine = _machine()
+    return bytes(machine().emit_object(improved(text, loops=loops)))
+
+
+def improved(text: str, *, loops: bool) -> Any:
+    """Return the module of instructions as machine code is made of it."""
     module = llvm.parse_assembly(text)
     module.verify()
-    module.triple, module.data_layout = machine.triple, str(machine.target_data)
+    module.triple, module.data_layout = machine().triple, str(machine().target_data)
     tuning = llvm.create_pipeline_tuning_options(speed_level=3)
     tuning.loop_vectorization, tuning.slp_vectorization = loops, False
-    passes = llvm.create_pass_builder(machine, tuning)
+    passes = llvm.create_pass_builder(machine(), tuning)
     passes.getModulePassManager().run(module, passes)
-    return bytes(machine.emit_object(module))
+    return module
 
 
 _loaded: list[tuple[Any, ...]] = []
@@ -41,7 +45,7 @@ _loaded: list[tuple[Any, ...]] = []
 def loaded(code: bytes) -> int:
     """Return the address of the function in machine code."""
     # an engine of its own for each: the constants of a second file in one engine would be read from the wrong place
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine())
     file = llvm.ObjectFileRef.from_data(code)
     engine.add_object_file(file)
     engine.finalize_object()
@@ -50,7 +54,8 @@ def loaded(code: bytes) -> int:
 
 
 @cache
-def _machine() -> Any:
+def machine() -> Any:
+    """Return the compiler for the processor of this machine."""
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     triple, processor, features, _ = target()

@@ -115,7 +115,7 @@ class Arithmetic:
         return Number(self.builder.shuffle_vector(first, ir.Constant(kind, ir.Undefined), places), number.kind)
 
     def as_kind(self, value: Any, kind: int) -> Number:
-        """Return a number as one of another kind, as Python and numba convert it."""
+        """Return a number as one of another kind, as Python converts it."""
         number = self.number(value)
         if number.kind == kind:
             return number

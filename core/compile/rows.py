@@ -11,7 +11,8 @@ from typing import Any
 
 from llvmlite import ir
 
-from core.compile.code import PLACES, POINTER, begun, counted
+from core.compile.arrays import counted
+from core.compile.code import PLACES, POINTER, begun
 from core.compile.machine import WIDTH, compiled, loaded
 from core.compile.numbers import DOUBLE, I64
 

@@ -12,6 +12,9 @@ from collections.abc import Sequence
 from types import FunctionType
 from typing import Any
 
+import numpy as np
+
+from core.compile.arrays import Bound
 from core.compile.frames import Frame, stored, tree_of
 from core.compile.functions import FUNCTIONS
 from core.compile.loops import Loops
@@ -28,7 +31,9 @@ class Translation(Loops):
         """Translate a call of a function; its statements become part of the code."""
         function = getattr(function, "py_func", function)
         if function in FUNCTIONS:
-            return FUNCTIONS[function](self.arithmetic, *arguments)
+            return FUNCTIONS[function](self.arithmetic, *arguments, **(named or {}))
+        if isinstance(function, Bound):
+            return self.arrays.viewed(function.view, np.dtype(*arguments).name)
         if not isinstance(function, FunctionType) or self._depth > DEEPEST:
             raise Unsupported(f"a call of {function}")
         tree = tree_of(function)

@@ -9,6 +9,7 @@ from typing import Any
 
 from llvmlite import ir
 
+from core.compile.arrays import Arrays
 from core.compile.frames import Frame, Kinds, Masks, says
 from core.compile.numbers import BOOL, Arithmetic, Number, Unsupported, is_number
 from core.compile.places import Memory
@@ -34,6 +35,7 @@ class Variables:
         self.is_complete = True
         self.arithmetic = Arithmetic(builder, width)
         self.memory = Memory(self.arithmetic, lanes=lanes)
+        self.arrays = Arrays(self.arithmetic)
         self.mask: Number | None = None
         self.frame: Frame
         self._depth = 0

@@ -15,7 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from llvmlite import ir
 
-from core.compile.code import PLACES, POINTER, begun, counted
+from core.compile.arrays import counted
+from core.compile.code import PLACES, POINTER, begun
 from core.compile.machine import compiled, loaded
 from core.compile.numbers import DOUBLE, I64
 from core.ports import RESERVED
