@@ -38,7 +38,7 @@ compiled_here: list[str] = []
 
 
 def get(name: str) -> bytes | None:
-    """Return a kernel from the shelf, if it is there, whole, and under the name that it was put there by."""
+    """Return a kernel from the shelf, if its file is whole and has the mark of this name."""
     for shelf in _shelves:
         file = shelf.get(name) or b""
         mark, code = file[:MARK], file[MARK:]

@@ -77,7 +77,7 @@ def folder() -> Path | None:
 
 
 def _is_ours(path: Path) -> bool:
-    """Say whether nobody else can put code into a folder, to be run here."""
+    """Say whether no other user can put code into a folder; this process would run it."""
     if os.name != "posix":
         return True
     known = path.stat()

@@ -1,6 +1,6 @@
 """Arrays of one and two dimensions and more: views with lengths and strides; their parts are views again.
 
-No index is checked, and only a constant counts from the end when it is below 0.
+Indices are not checked. Only a constant index below 0 counts from the end.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class Arrays:
         return self._arithmetic.as_kind(number, INT).value
 
     def part(self, view: ArrayView, indices: Sequence[Any]) -> ArrayView | ArrayPlace:
-        """Return an element, or a view of those that indices and slices leave."""
+        """Return an element, or a view of the elements that indices and slices leave."""
         if len(indices) > len(view.lengths):
             raise Unsupported("more indices than dimensions")
         a, offset, lengths, strides = self._arithmetic, None, [], []
@@ -109,7 +109,7 @@ class Arrays:
         self._build.store(number, place.at)
 
     def fill(self, view: ArrayView, value: Any) -> None:
-        """Write a number to all elements, or those of another array of the same lengths."""
+        """Write a number to all elements, or the elements of another array of the same lengths."""
         with counted(self._build, self.whole(view.lengths[0])) as k:
             index = Number(k, INT)
             target = self.part(view, [index])
@@ -120,7 +120,7 @@ class Arrays:
                 self.write(target, self.read(source) if isinstance(source, ArrayPlace) else source)
 
     def scratch(self, lengths: Any, element: str, zero: bool) -> ArrayView:
-        """Return an array of known lengths that is there until the function returns."""
+        """Return an array of known lengths, which lives until the function returns."""
         lengths = lengths if isinstance(lengths, tuple) else (lengths,)
         if not all(isinstance(length, int) for length in lengths):
             raise Unsupported("an array whose length is not known", hint="let the caller give it")

@@ -20,6 +20,8 @@ from core.compile.translate import Translation
 from core.kernel_cache import compiled_here, get, key, put
 
 MOST_PASSES = 30
+OTHERS = {"core.compile.rows"}
+"""Modules beside the translator, which some processes load and some do not."""
 POINTER, PLACES = DOUBLE.as_pointer(), I64.as_pointer()
 
 
@@ -43,7 +45,7 @@ def kept(block: Block, width: int = 1) -> bytes:
 
 
 def kept_as(name: str, write: Callable[[], str], *, loops: bool) -> bytes:
-    """Return the machine code of that name on the shelf; where there is none, it is compiled from what is written."""
+    """Return the machine code of a name on the shelf. Without it, the instructions are written and compiled."""
     code = get(name)
     if code is None:
         code = compiled(write(), loops=loops)
@@ -134,6 +136,6 @@ def hash_of(block: Block, *machine: Any) -> str:
 @cache
 def compiler() -> str:
     """Return a hash of this compiler."""
-    names = sorted(name for name in sys.modules if name.startswith("core.compile."))
+    names = sorted(name for name in sys.modules if name.startswith("core.compile.") and name not in OTHERS)
     text = "".join(inspect.getsource(sys.modules[name]) for name in names)
     return hashlib.sha256(text.encode()).hexdigest()

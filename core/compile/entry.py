@@ -31,7 +31,7 @@ Kinds = tuple[Any, ...]
 OBJECT = ir.IntType(8).as_pointer()
 LONG = ir.IntType(8 * ctypes.sizeof(ctypes.c_long))
 TYPE, DATA, DIMENSIONS, LENGTHS, STRIDES, ELEMENT, FLAGS = 8, 16, 24, 32, 40, 56, 64
-"""Where an object of Python has its type, and an array of numpy what is known of it."""
+"""Offsets of the type in an object of Python, and of the fields of an array of numpy."""
 DENSE = 1
 """The flag of an array without gaps."""
 C_INTERFACE: dict[str, tuple[Any, list[Any]]] = {
@@ -208,7 +208,7 @@ class _Interface:
         return Number(self("PyLong_AsLongLong", given), INT)
 
     def stop_at_errors(self, kinds: Sequence[Any]) -> None:
-        """Let Python raise what it found wrong with a number, such as one too large."""
+        """Raise the error of a conversion, such as a number that is too large."""
         if any(not isinstance(kind, tuple) for kind in kinds):
             wrong = self._build.icmp_unsigned("!=", self("PyErr_Occurred"), ir.Constant(OBJECT, None))
             with self._build.if_then(wrong, likely=False):

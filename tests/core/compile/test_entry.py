@@ -6,6 +6,7 @@ import ctypes
 import os
 import pickle
 import threading
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -236,3 +237,20 @@ def test_the_address_of_an_array_is_that_of_numpy(a):
         return address_of(x[1:, 2:])
 
     assert where(a) == a[1:, 2:].ctypes.data == plain(where)(a)
+
+
+def test_a_text_that_has_changed_since_it_was_loaded_is_not_compiled(tmp_path):
+    """Its code would be kept under the name of the code before."""
+    file = tmp_path / "made_up.py"
+    text = "from core.kernel import kernel\n\n\n@kernel\ndef doubled(x):\n    return 2.0 * x\n"
+    file.write_text(text)
+    module = ModuleType("made_up")
+    exec(compile(text, str(file), "exec"), vars(module))
+    file.write_text(text.replace("2.0 * x", "20.0 * x"))
+    with pytest.raises(Unsupported, match="the text of doubled has changed since it was loaded"):
+        module.doubled(1.0)
+    file.write_text("# longer\n" + text)
+    with pytest.raises(Unsupported, match="has changed"):
+        module.doubled(1.0)
+    file.write_text(text + "# another line\n")
+    assert module.doubled(1.0) == 2.0
