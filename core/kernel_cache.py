@@ -8,17 +8,11 @@ from __future__ import annotations
 
 import dis
 import hashlib
-import inspect
-import pickle
-import sys
 from functools import cache
 from types import CodeType, FunctionType, ModuleType
 from typing import Any, Protocol
 
-import numba
 import numpy as np
-from numba.core import serialize
-from numba.core.compiler import CompileResult
 
 
 class Shelf(Protocol):
@@ -39,59 +33,40 @@ def keep_on(shelf: Shelf) -> None:
     _shelves[:] = [shelf]
 
 
+compiled_here: list[str] = []
+"""The names of what this process has compiled because no shelf had it."""
+
+
 def get(name: str) -> bytes | None:
-    """Return a kernel from the shelf, if there is one and the kernel is on it."""
-    return next((code for shelf in _shelves if (code := shelf.get(name)) is not None), None)
+    """Return a kernel from the shelf, if its file is whole and has the mark of this name."""
+    for shelf in _shelves:
+        file = shelf.get(name) or b""
+        mark, code = file[:MARK], file[MARK:]
+        if mark == _mark(name, code):
+            return code
+    return None
 
 
 def put(name: str, code: bytes) -> None:
     """Keep a kernel on the shelf, if there is one."""
     for shelf in _shelves:
-        shelf.put(name, code)
+        shelf.put(name, _mark(name, code) + code)
 
 
-class KernelCache:
-    """Compiled code of one kernel; numba asks here before it compiles, and tells what it has compiled."""
+MARK = 32
+"""Bytes before the code of a kernel, a hash of its name and of its code."""
 
-    compiled = 0
-    """Kernels compiled by this process because no shelf had them."""
 
-    def __init__(self, function: FunctionType, layouts: str = "") -> None:
-        self._function, self._layouts = function, layouts
-
-    def load_overload(self, signature: Any, target: Any) -> Any:
-        """Return the code compiled for a signature, or nothing."""
-        target.refresh()
-        code = get(self._name(signature, target))
-        try:
-            return CompileResult._rebuild(target, *pickle.loads(code)) if code is not None else None
-        except (EOFError, pickle.UnpicklingError, ValueError, TypeError, AttributeError):
-            return None  # another version wrote it, or half of it is lost: compile again
-
-    def save_overload(self, signature: Any, result: Any) -> None:
-        """Keep the code compiled for a signature."""
-        KernelCache.compiled += 1
-        if not result.library.has_dynamic_globals:
-            put(self._name(signature, result.target_context), serialize.dumps(result._reduce()))
-
-    def _name(self, signature: Any, target: Any) -> str:
-        parts = (key(self._function), self._layouts, signature, target.codegen().magic_tuple())
-        digest = hashlib.sha256("\n".join(map(str, parts)).encode())
-        return f"{self._function.__module__}.{self._function.__name__}-{digest.hexdigest()[:24]}"
+def _mark(name: str, code: bytes) -> bytes:
+    return hashlib.sha256(name.encode() + b"\0" + code).digest()
 
 
 @cache
 def key(function: FunctionType) -> str:
     """Return a hash of a function and of all it names, which another process would find too."""
-    digest = hashlib.sha256(f"{numba.__version__} {np.__version__} {_compiler()}".encode())
+    digest = hashlib.sha256()
     _digest_function(function, digest, {})
     return digest.hexdigest()
-
-
-@cache
-def _compiler() -> str:
-    """Return the text that makes machine code of steps, beside numba."""
-    return "".join(inspect.getsource(sys.modules[name]) for name in ("core.kernel", "core.views"))
 
 
 def _digest_function(function: FunctionType, digest: Any, seen: dict[int, int]) -> None:

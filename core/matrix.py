@@ -22,7 +22,9 @@ def product(*factors: FloatArray) -> FloatArray:
     """Return the product of matrices, from left to right."""
     whole = _whole(factors[0])
     for factor in factors[1:]:
-        whole = _product(whole, _whole(factor))
+        found = np.empty((whole.shape[0], factor.shape[1]))
+        _product(whole, _whole(factor), found)
+        whole = found
     return whole
 
 
@@ -47,7 +49,9 @@ def solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
 
 def exponential(matrix: FloatArray) -> FloatArray:
     """Return the exponential of a matrix: halved until it is small, summed, and squared as often."""
-    return _exponential(_whole(matrix))
+    found = np.eye(len(matrix))
+    _exponential(_whole(matrix).copy(), found, np.empty_like(found))
+    return found
 
 
 def riccati(phi: FloatArray, seen: FloatArray, noise: FloatArray, measured: FloatArray) -> FloatArray:
@@ -76,7 +80,9 @@ def riccati(phi: FloatArray, seen: FloatArray, noise: FloatArray, measured: Floa
         When there is no limit.
     """
     p = np.array(noise, np.float64)
-    if not _riccati(_whole(phi.T), product(seen.T, solved(measured, seen)), p):
+    n = len(p)
+    room, right = np.empty((4, n, n)), np.empty((n, 2 * n))
+    if not _riccati(np.array(phi.T, np.float64, order="C"), product(seen.T, solved(measured, seen)), p, room, right):
         raise InputError("the Riccati equation has no solution", "noise")
     return 0.5 * (p + p.T)
 
@@ -84,7 +90,7 @@ def riccati(phi: FloatArray, seen: FloatArray, noise: FloatArray, measured: Floa
 def lyapunov(phi: FloatArray, noise: FloatArray) -> FloatArray:
     r"""Return the covariance :math:`P=\Phi P\Phi^T+Q` of a stable filter in the limit, by doubling."""
     p = np.array(noise, np.float64)
-    _lyapunov(_whole(phi), p)
+    _lyapunov(np.array(phi, np.float64), p, np.empty((3, *p.shape)))
     return p
 
 
@@ -93,14 +99,13 @@ def _whole(matrix: FloatArray) -> FloatArray:
 
 
 @kernel
-def _product(a: FloatArray, b: FloatArray) -> FloatArray:
+def _product(a: FloatArray, b: FloatArray, out: FloatArray) -> None:
     rows, inner, columns = a.shape[0], a.shape[1], b.shape[1]
-    out = np.zeros((rows, columns))
+    out[:, :] = 0.0
     for i in range(rows):
         for k in range(inner):
             for j in range(columns):
                 out[i, j] += a[i, k] * b[k, j]
-    return out
 
 
 @kernel
@@ -134,7 +139,8 @@ def _eliminate(a: FloatArray, x: FloatArray) -> bool:
 
 
 @kernel
-def _exponential(a: FloatArray) -> FloatArray:
+def _exponential(a: FloatArray, out: FloatArray, next_: FloatArray) -> None:
+    """Write the exponential of a matrix, which is made small, over the one of 0."""
     n = a.shape[0]
     size = 0.0
     for i in range(n):
@@ -147,15 +153,18 @@ def _exponential(a: FloatArray) -> FloatArray:
     while size * scale > 0.5 and halvings < 1100:
         scale *= 0.5
         halvings += 1
-    small = a * scale
-    out = np.eye(n)
+    for i in range(n):
+        for j in range(n):
+            a[i, j] *= scale
     for k in range(TAYLOR, 0, -1):
-        out = _product(small, out) / k
+        _product(a, out, next_)
         for i in range(n):
+            for j in range(n):
+                out[i, j] = next_[i, j] / k
             out[i, i] += 1.0
     for _ in range(halvings):
-        out = _product(out, out)
-    return out
+        _product(out, out, next_)
+        out[:, :] = next_
 
 
 @kernel
@@ -171,40 +180,48 @@ def _settled(p: FloatArray, more: FloatArray) -> bool:
 
 
 @kernel
-def _transposed(a: FloatArray) -> FloatArray:
-    out = np.empty((a.shape[1], a.shape[0]))
+def _transpose(a: FloatArray, out: FloatArray) -> None:
     for i in range(a.shape[0]):
         for j in range(a.shape[1]):
             out[j, i] = a[i, j]
-    return out
 
 
 @kernel
-def _riccati(a: FloatArray, g: FloatArray, p: FloatArray) -> bool:
+def _riccati(a: FloatArray, g: FloatArray, p: FloatArray, room: FloatArray, right: FloatArray) -> bool:
     """Double in place until the change is negligible; return whether there was an end."""
     n = a.shape[0]
+    matrix, turned, part, more = room[0], room[1], room[2], room[3]
+    wa, wga = right[:, :n], right[:, n:]
     for _ in range(MOST_DOUBLINGS):
-        matrix = _product(g, p)
-        right = np.empty((n, 2 * n))
-        right[:, :n] = a
-        right[:, n:] = _product(g, _transposed(a))
+        _product(g, p, matrix)
+        _transpose(a, turned)
+        wa[:, :] = a
+        _product(g, turned, wga)
         for i in range(n):
             matrix[i, i] += 1.0
         if not _eliminate(matrix, right):
             return False
-        wa, wga = right[:, :n].copy(), right[:, n:].copy()
-        more = _product(_product(_transposed(a), p), wa)
-        g = g + _product(a, wga)
-        a = _product(a, wa)
+        _product(turned, p, part)
+        _product(part, wa, more)
+        _product(a, wga, part)
+        for i in range(n):
+            for j in range(n):
+                g[i, j] += part[i, j]
+        _product(a, wa, part)
+        a[:, :] = part
         if _settled(p, more):
             return True
     return False
 
 
 @kernel
-def _lyapunov(a: FloatArray, p: FloatArray) -> None:
+def _lyapunov(a: FloatArray, p: FloatArray, room: FloatArray) -> None:
+    part, turned, more = room[0], room[1], room[2]
     for _ in range(MOST_DOUBLINGS):
-        done = _settled(p, _product(_product(a, p), _transposed(a)))
-        a = _product(a, a)
-        if done:
+        _product(a, p, part)
+        _transpose(a, turned)
+        _product(part, turned, more)
+        _product(a, a, part)
+        a[:, :] = part
+        if _settled(p, more):
             return

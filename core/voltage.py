@@ -25,7 +25,7 @@ import numpy as np
 from core.block import Context, Oscillator
 from core.device.oscillator import is_soft, transition, within, yielded
 from core.format import format_short
-from core.kernel import flush_tiny, inlined, kernel
+from core.kernel import flush_tiny, kernel
 from core.ports import BlockPorts, reads
 from core.record import Record
 
@@ -99,7 +99,7 @@ class Gathered(Record):
     gained2: float
 
 
-@inlined
+@kernel
 def moves(x: AppliedPorts) -> tuple[float, float, float]:
     """Return the voltage at the start of the tick that ends now, and by how much its middle and its end exceed that."""
     u = x.applied

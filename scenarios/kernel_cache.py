@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
+import stat
 import tempfile
 import time
 from functools import cache
@@ -70,15 +71,25 @@ def folder() -> Path | None:
             path.mkdir(parents=True, exist_ok=True, mode=0o700)
         except OSError:
             continue
-        if os.access(path, os.W_OK):
+        if os.access(path, os.W_OK) and _is_ours(path):
             return path
     return None
+
+
+def _is_ours(path: Path) -> bool:
+    """Say whether no other user can put code into a folder; this process would run it."""
+    if os.name != "posix":
+        return True
+    known = path.stat()
+    return known.st_uid == os.getuid() and not known.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
 
 
 def prepare() -> None:
     """Keep compiled kernels; without a writable folder they are compiled anew at every start."""
     path = folder()
     if path is None:
-        logging.getLogger(__name__).warning("no writable folder for compiled kernels; set COMBBENCH_KERNEL_CACHE")
+        logging.getLogger(__name__).warning(
+            "no folder for compiled kernels that can be written, and by nobody else; set COMBBENCH_KERNEL_CACHE"
+        )
     else:
         keep_on(Folder(path))

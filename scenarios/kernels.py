@@ -20,8 +20,8 @@ from core.board import abreast, fold, program
 from core.board.history import History
 from core.board.rows import Rows
 from core.board.wiring import wire
-from core.lanes import code
-from core.lanes.numbers import WIDTH
+from core.compile import code
+from core.compile.machine import WIDTH
 from core.ports import RESERVED
 from scenarios.kernel_cache import COMPLETE, folder, prune
 from scenarios.key import code_version
@@ -89,9 +89,8 @@ def _compile(task: Task, abreast: bool) -> None:
         _loop()
         return
     block = registry.block(family, name)
-    program.address(block)
-    if abreast:
-        code.kept(block)
+    for width in (1, WIDTH) if abreast else (1,):
+        code.kept(block, width)
 
 
 def complete() -> Path | None:

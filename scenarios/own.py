@@ -14,11 +14,11 @@ from functools import cache
 from pathlib import Path
 
 from core import registry
-from core.board import program
 from core.board.document import Document
+from core.compile import code
+from core.compile.machine import WIDTH
 from core.errors import InputError, one_line
 from core.kernel_cache import get, key, put
-from core.lanes import code
 from core.own.apart import compile_by
 from core.own.unit import Unit, unit
 from core.wall import wall
@@ -105,8 +105,8 @@ def main() -> None:
     if behind_wall:
         kept(block)  # as WebAssembly alone
     else:
-        program.address(block)
-        code.kept(block)
+        for width in (1, WIDTH):
+            code.kept(block, width)
 
 
 if __name__ == "__main__":

@@ -1,3 +1,3 @@
 """The service around the bench: REST, WebSocket, 3D, records."""
 
-import scenarios  # noqa: F401  (names the folder of compiled kernels, before anything imports numba)
+import scenarios  # noqa: F401  (names the folder of compiled kernels)

@@ -19,7 +19,7 @@ from server.version import VERSION
 PACKAGES = (
     "numpy",
     "scipy",
-    "numba",
+    "llvmlite",
     "pydantic",
     "fastapi",
     "uvicorn",

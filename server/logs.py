@@ -71,7 +71,7 @@ def configure(settings: Settings) -> None:
     handler.setFormatter(JsonFormatter() if as_json else text)
     handler.addFilter(Brief())
     logging.basicConfig(handlers=[handler], level=settings.log_level, force=True)
-    for noisy in ("uvicorn.access", "uvicorn.error", "websockets", "alembic", "numba"):
+    for noisy in ("uvicorn.access", "uvicorn.error", "websockets", "alembic"):
         logging.getLogger(noisy).setLevel(max(logging.WARNING, logging.getLevelName(settings.log_level)))
     # Python's own warnings and uncaught errors go the same way.
     logging.captureWarnings(True)

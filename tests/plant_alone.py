@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from core.block import Block, Context
-from core.kernel import compiled_step
+from core.compile import code
 from core.plain import plain
 from core.ports import RESERVED
 
@@ -31,7 +31,7 @@ class PlantAlone:
                 self[port.name] = NEUTRAL
         self.pointers = [array.ctypes.data for array in (self.p, self.s, self.w, self.io)]
         if compiled:
-            self.address = compiled_step(block.step, block.Packed, block.State, block.Ports).address
+            self.address = code.address(block)
             function = ENTRY(self.address)
             self._run = lambda: function(*self.pointers)
         else:

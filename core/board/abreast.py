@@ -1,7 +1,7 @@
 """Boards abreast: up to ``WIDTH`` boards of one structure, a tick of all of them at a time.
 
 The boards share blocks, wiring, intervals and choices. Each number of a board stands beside the same number of the
-next, and ``core.lanes`` compiles the steps for all of them at once. Each board gets the bits it gets alone. A board
+next, and ``core.compile`` compiles the steps for all of them at once. Each board gets the bits it gets alone. A board
 that trips, or whose commands change which blocks run, cannot stay: it runs alone.
 """
 
@@ -27,12 +27,13 @@ from core.board.pattern import (
     unlike,
 )
 from core.board.pending import Queue
-from core.board.program import EVERY, call, walk
+from core.board.program import EVERY, walk
 from core.board.spec import Spec
 from core.board.wiring import Wiring
+from core.compile.instructions import address_of, call
+from core.compile.machine import WIDTH
+from core.compile.rows import folding, keeping, sorting
 from core.kernel import kernel
-from core.lanes.numbers import WIDTH
-from core.lanes.rows import folding, keeping, sorting
 from core.ports import RESERVED, TICK, TIME_MS
 
 ALIGNMENT = 8
@@ -65,7 +66,7 @@ def run(
     p, s, w : ndarray, shape (numbers, WIDTH)
         Parameters, states and signals, a column for each board.
     tail : ndarray
-        Addresses of what folds a tick, of what keeps it, and of what sorts the ticks kept (``core.lanes.rows``).
+        Addresses of what folds a tick, of what keeps it, and of what sorts the ticks kept (``core.compile.rows``).
     folds, folded : ndarray
         The folds, and the places of the outputs that count.
     rows, columns : ndarray
@@ -75,12 +76,11 @@ def run(
     sizes : ndarray
         How many outputs count, how many there are, how many signals are kept; the four numbers of ``sorting``.
     """
-    p_address, s_address = np.int64(p.ctypes.data), np.int64(s.ctypes.data)
-    w_address, io_address = np.int64(w.ctypes.data), np.int64(io.ctypes.data)
-    first_row, row_bytes = np.int64(rows.ctypes.data), 8 * WIDTH * len(columns)
-    trace_address, row = np.int64(trace.ctypes.data), first_row
-    fold_address, folded_address = np.int64(folds.ctypes.data), np.int64(folded.ctypes.data)
-    column_address, size_address = np.int64(columns.ctypes.data), np.int64(sizes.ctypes.data)
+    p_address, s_address, w_address, io_address = address_of(p), address_of(s), address_of(w), address_of(io)
+    first_row, row_bytes = address_of(rows), 8 * WIDTH * len(columns)
+    trace_address, row = address_of(trace), first_row
+    fold_address, folded_address = address_of(folds), address_of(folded)
+    column_address, size_address = address_of(columns), address_of(sizes)
     for i in range(n):
         tick = first_tick + i
         for k in range(WIDTH):
@@ -262,7 +262,7 @@ class Abreast:
             raise Uneven("other choices")
         self._io = first.io
         self._table = first.table[rows]
-        self._table[:, program.ADDRESS] = [steps.abreast(first, row) for row in rows]
+        self._table[:, program.ADDRESS] = [steps.address(first, row, WIDTH) for row in rows]
 
 
 def _apart(wiring: Wiring) -> Wiring:

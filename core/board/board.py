@@ -223,7 +223,7 @@ class Board:
         self._table = wiring.table[running]
         self._idle = wiring.idle(running)
         if self.compiled:
-            self._table[:, program.ADDRESS] = [steps.alone(wiring, row) for row in running]
+            self._table[:, program.ADDRESS] = [steps.address(wiring, row) for row in running]
         else:
             self._steps = [wiring.bound(row) for row in running]
 

@@ -82,9 +82,10 @@ def digest(folds: Words, blocks: Sequence[str]) -> str:
         The block each column belongs to; empty for one that does not count.
     """
     names, owners = _owners(tuple(blocks))
-    words = joined(np.ascontiguousarray(folds), owners, len(names)).astype("<u8")
+    words = np.repeat(START.T, len(names), axis=0)
+    join(folds, owners, words)
     sha = hashlib.sha256()
-    for name, own in zip(names, words, strict=True):
+    for name, own in zip(names, words.astype("<u8"), strict=True):
         sha.update(name + b"\0" + own.tobytes())
     return sha.hexdigest()
 
@@ -97,7 +98,7 @@ def _owners(blocks: tuple[str, ...]) -> tuple[list[bytes], IntArray]:
 
 
 @kernel
-def joined(folds: Words, owners: IntArray, blocks: int) -> Words:
+def join(folds: Words, owners: IntArray, words: Words) -> None:
     """Fold the folds of the columns of each block into one, in their order.
 
     Parameters
@@ -106,15 +107,13 @@ def joined(folds: Words, owners: IntArray, blocks: int) -> Words:
         Of every column.
     owners : ndarray of int64, shape (columns,)
         The block of each, below 0 for none.
-    blocks : int
-        How many there are.
+    words : ndarray of uint64, shape (blocks, 2)
+        Those of each block, which have begun.
     """
-    words = np.empty((blocks, 2), dtype=np.uint64)
-    words[:, 0], words[:, 1] = START[0, 0], START[1, 0]
-    for column, own in enumerate(owners):
+    for column in range(len(owners)):
+        own = owners[column]
         if own >= 0:
             for k in range(2):
                 word = folds[k, column]
                 a, b = (words[own, 0] ^ word) * FACTOR_A, (words[own, 1] + word) * FACTOR_B
                 words[own, 0], words[own, 1] = a ^ (a >> S32), b ^ (b >> S29)
-    return words

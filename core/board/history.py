@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from core.block import FloatArray, IntArray
 from core.board.rows import Rows
-from core.kernel import inlined, kernel
+from core.kernel import kernel
 
 Float32Array = NDArray[np.float32]
 FACTOR = 16
@@ -20,23 +20,25 @@ WIDEST = 4096
 """Ticks under a bucket of the last level, FACTOR ** LEVELS."""
 LANES = 32
 """Signals side by side in memory: a tick of them is written, and two of them compared, by a few vector instructions."""
+HALF = FACTOR * LANES // 2
+"""Numbers of half a bucket of the first level."""
 
 
-@inlined
+@kernel
 def _copy(source: Any, target: Any) -> None:
     """Copy doubles to single precision."""
     for k in range(source.shape[0]):
         target[k] = np.float32(source[k])
 
 
-@inlined
+@kernel
 def _least(a: Any, b: Any, out: Any) -> None:
     """Take the smaller of two arrays, place by place."""
     for k in range(out.shape[0]):
         out[k] = a[k] if a[k] < b[k] else b[k]
 
 
-@inlined
+@kernel
 def _most(a: Any, b: Any, out: Any) -> None:
     """Take the larger of two arrays, place by place."""
     for k in range(out.shape[0]):
@@ -57,14 +59,13 @@ def _write(ring: Any, place: int, rows: FloatArray, first: int) -> None:
 def _fold_ticks(ring: Any, low: Any, high: Any, buckets: int, first: int, end: int) -> None:
     """Fold ticks into the buckets of the first level; every touched bucket is folded again from its start."""
     places = ring.shape[0] // LANES
-    half = FACTOR * LANES // 2
-    least, most = np.empty(half, dtype=np.float32), np.empty(half, dtype=np.float32)
+    least, most = np.empty(HALF, dtype=np.float32), np.empty(HALF, dtype=np.float32)
     for bucket in range(first // FACTOR, (end - 1) // FACTOR + 1):
         begin = bucket * FACTOR % places * LANES
         at = bucket % buckets * LANES
         lowest, highest = low[at : at + LANES], high[at : at + LANES]
         if end >= (bucket + 1) * FACTOR:
-            size = half
+            size = HALF
             earlier, later = ring[begin : begin + size], ring[begin + size : begin + 2 * size]
             _least(earlier, later, least)
             _most(earlier, later, most)
@@ -176,16 +177,11 @@ def _adopt(
         for level in range(LEVELS):
             size, of_size = sizes[level], of_sizes[level]
             at, of_at = offsets[level] * LANES, of_offsets[level] * LANES
-            for pyramid, other in ((low, of_low), (high, of_high)):
-                to = pyramid[group, at : at + size * LANES]
-                _copy_run(
-                    to,
-                    size,
-                    other[group, of_at : of_at + of_size * LANES],
-                    of_size,
-                    first // span,
-                    (end - 1) // span + 1,
-                )
+            begin, stop = first // span, (end - 1) // span + 1
+            to, other = low[group, at : at + size * LANES], of_low[group, of_at : of_at + of_size * LANES]
+            _copy_run(to, size, other, of_size, begin, stop)
+            to, other = high[group, at : at + size * LANES], of_high[group, of_at : of_at + of_size * LANES]
+            _copy_run(to, size, other, of_size, begin, stop)
             span *= FACTOR
 
 

@@ -10,14 +10,12 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from llvmlite import ir
-from numba import types
-from numba.core import cgutils
-from numba.extending import intrinsic
 
 from core.block import Block, FloatArray, IntArray
 from core.board.fold import Words, fold, fold_uncompiled
-from core.kernel import compiled_step, inlined, kernel
+from core.compile import code
+from core.compile.instructions import address_of, call
+from core.kernel import kernel
 from core.own.apart import compiled_apart
 from core.ports import RESERVED, TICK, TIME_MS
 from core.wall import wall
@@ -30,36 +28,14 @@ DONE, TRIPPED, WATCHED = 0, 1, 2
 """Why the loop returned."""
 
 
-_addresses: dict[type[Block], int] = {}
-
-
-def address(block: type[Block]) -> int:
-    """Return where the C function of the step of a block is; it is compiled when it is asked for the first time."""
+def address(block: type[Block], width: int = 1) -> int:
+    """Return where the C function of a step is, for so many boards; it is compiled when it is asked for first."""
     if block.text and wall.is_demanded():
         raise RuntimeError(f"{block.name} runs behind the wall alone")
-    found = _addresses.get(block)
-    if found is None:
-        found = compiled_step(compiled_apart(block).step, block.Packed, block.State, block.Ports).address
-        _addresses[block] = found
-    return found
+    return code.address(compiled_apart(block), width)
 
 
-def _generate_call(typing_context: Any, address: Any, p: Any, s: Any, w: Any, io: Any) -> Any:
-    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        pointer = cgutils.voidptr_t
-        function_type = ir.FunctionType(ir.VoidType(), [pointer] * 4)
-        function = builder.inttoptr(args[0], function_type.as_pointer())
-        builder.call(function, [builder.inttoptr(arg, pointer) for arg in args[1:]])
-        return context.get_dummy_value()
-
-    return types.void(types.int64, types.int64, types.int64, types.int64, types.int64), generate
-
-
-call: Callable[[Any, Any, Any, Any, Any], None] = intrinsic(_generate_call)  # type: ignore[assignment]
-"""Call the C function at an address with four pointers given as integers."""
-
-
-@inlined
+@kernel
 def walk(table: IntArray, tick: int, width: int, p: Any, s: Any, w: Any, io: Any) -> None:
     """Call the steps whose turn is at a tick, of boards whose numbers stand side by side; arrays are addresses."""
     for b in range(table.shape[0]):
@@ -80,15 +56,7 @@ def begin(table: IntArray, tick: int, dt_ms: float, p: FloatArray, s: FloatArray
     """Run the first steps of a tick; ``run`` goes on with the rest of the table."""
     w[TICK] = tick
     w[TIME_MS] = tick * dt_ms
-    walk(
-        table,
-        tick,
-        1,
-        np.int64(p.ctypes.data),
-        np.int64(s.ctypes.data),
-        np.int64(w.ctypes.data),
-        np.int64(io.ctypes.data),
-    )
+    walk(table, tick, 1, address_of(p), address_of(s), address_of(w), address_of(io))
 
 
 @kernel
@@ -114,13 +82,12 @@ def run(
     """
     first_tap = RESERVED + outputs.shape[1]
     bits = w.view(np.uint64)[RESERVED:]
-    p_address, s_address = np.int64(p.ctypes.data), np.int64(s.ctypes.data)
-    w_address, io_address = np.int64(w.ctypes.data), np.int64(io.ctypes.data)
+    arrays = address_of(p), address_of(s), address_of(w), address_of(io)
     for i in range(n):
         tick = first_tick + i
         w[TICK] = tick
         w[TIME_MS] = tick * dt_ms
-        walk(table, tick, 1, p_address, s_address, w_address, io_address)
+        walk(table, tick, 1, arrays[0], arrays[1], arrays[2], arrays[3])
         for c in range(outputs.shape[1]):
             outputs[i, c] = w[RESERVED + c]
         for c in range(taps.shape[1]):

@@ -4,24 +4,16 @@ from __future__ import annotations
 
 from core.board import program
 from core.board.wiring import Wiring
-from core.lanes import code
-from core.lanes.numbers import WIDTH
 from core.own.apart import compiled_apart
 from core.ports import INPUT, Port
 from core.wall import wall
 from core.wall.crossing import Behind, Sizes
 
 
-def alone(wiring: Wiring, row: int) -> int:
-    """Return the address of the step of a row for one board."""
+def address(wiring: Wiring, row: int, width: int = 1) -> int:
+    """Return the address of the step of a row, for so many boards side by side."""
     block = wiring.instances[row].block
-    return _behind(wiring, row, 1) if block.text and wall.is_demanded() else program.address(block)
-
-
-def abreast(wiring: Wiring, row: int) -> int:
-    """Return the address of the step of a row for boards side by side."""
-    block = compiled_apart(wiring.instances[row].block)
-    return _behind(wiring, row, WIDTH) if block.text and wall.is_demanded() else code.address(block)
+    return _behind(wiring, row, width) if block.text and wall.is_demanded() else program.address(block, width)
 
 
 def _behind(wiring: Wiring, row: int, width: int) -> int:

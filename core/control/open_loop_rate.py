@@ -8,7 +8,7 @@ from typing import Any
 from core.block import Block, BlockParams, Context, Equation, Stage, parameter
 from core.control.two_axis import RatePorts, Sense, components, fill_sense, share_kept, two_axis
 from core.elementary import cos, sin
-from core.kernel import inlined
+from core.kernel import kernel
 from core.ports import output, tap
 from core.record import Record
 from core.units import PM_PER_UM
@@ -40,7 +40,7 @@ class ReadOut(Record):
     corrected: float
 
 
-@inlined
+@kernel
 def read(p: ReadOut, s: Filtered, x: ReadPorts) -> None:
     """Demodulate y and write the rate that follows from it."""
     omega = x.frequency * 6.283185307179586e-3

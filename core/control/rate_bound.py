@@ -26,7 +26,7 @@ from __future__ import annotations
 import math
 
 from core.control.two_axis_estimates import Asked, Basis, EstimatePorts, Estimates, Gains, PackedLaw
-from core.kernel import inlined
+from core.kernel import kernel
 from core.units import RAD_MS_PER_DEG_S
 
 SHARE = 0.25
@@ -52,7 +52,7 @@ def fill_basis(p: Basis, a: Asked, g: Gains, dt_ms: float, cancels: bool) -> Non
     p.repeats = 0.25 * h * h * math.sqrt(a.omega_x * a.omega_y) if cancels else 0.0
 
 
-@inlined
+@kernel
 def unlearned(p: PackedLaw, s: Estimates) -> float:
     """Return the rate that is still to be learned, from the changes since the beats began."""
     a, c = p.asked, s.claim
@@ -69,7 +69,7 @@ def unlearned(p: PackedLaw, s: Estimates) -> float:
     return 0.25 * abs(across - along)
 
 
-@inlined
+@kernel
 def misread(p: PackedLaw, s: Estimates) -> float:
     """Return the rate error of holding the force, as far as the law does not compensate it."""
     a = p.asked
@@ -81,7 +81,7 @@ def misread(p: PackedLaw, s: Estimates) -> float:
     return p.basis.held * both * both * abs(s.omega) + 2.0 * offset
 
 
-@inlined
+@kernel
 def judge(p: PackedLaw, s: Estimates, x: EstimatePorts) -> None:
     """Claim a bound after whole beats, withdraw it when the rate leaves it, and decide whether the rate is trusted."""
     c = s.claim

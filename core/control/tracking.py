@@ -11,7 +11,7 @@ A held force is late by half a sample, which :math:`\theta'` makes up for.
 from __future__ import annotations
 
 from core.control.two_axis import components
-from core.kernel import inlined
+from core.kernel import kernel
 from core.record import Record
 
 
@@ -37,7 +37,7 @@ def fill_tracking(p: Tracking, target: float, mass: float, damping: float, omega
     p.gain = 0.25 * damping * p.added_damping * omega * dt_ms
 
 
-@inlined
+@kernel
 def follow(
     p: Tracking, f: Phasor, q: float, velocity: float, carrier: tuple[float, float, float, float, float], engaged: float
 ) -> tuple[float, float]:

@@ -13,7 +13,7 @@ from typing import cast
 from core.block import Context
 from core.device.two_axis import TwoAxis
 from core.elementary import exp
-from core.kernel import inlined
+from core.kernel import kernel
 from core.ports import BlockPorts, output, reads
 from core.record import Record
 from core.units import rate_deg_s
@@ -88,7 +88,7 @@ def fill_sense(p: Sense, device: TwoAxis) -> None:
     p.per_speed = rate_deg_s(1.0 / (2.0 * device.coriolis_mass))
 
 
-@inlined
+@kernel
 def components(q: float, v: float, omega: float, sine: float, cosine: float) -> tuple[float, float]:
     r"""Return :math:`Q_s,Q_c` of :math:`q=Q_s\sin\theta+Q_c\cos\theta` from displacement and velocity.
 

@@ -30,7 +30,7 @@ from core.control.rate_bound import SLOW_MS, judge
 from core.control.two_axis import share_kept, two_axis
 from core.control.two_axis_estimates import Asked, EstimatePorts, Estimates, Gains, PackedLaw
 from core.elementary import sin, sin_of_turns
-from core.kernel import inlined
+from core.kernel import kernel
 from core.units import RAD_MS_PER_DEG_S
 
 
@@ -68,7 +68,7 @@ def larger(half: float) -> float:
     return reach / sin(reach)
 
 
-@inlined
+@kernel
 def asked(p: Asked, t: float) -> tuple[float, float, float, float]:
     """Return desired displacements at a time in ms, and velocities per unit of time."""
     x = p.cycles_x * t
@@ -81,14 +81,14 @@ def asked(p: Asked, t: float) -> tuple[float, float, float, float]:
     )
 
 
-@inlined
+@kernel
 def held(p: Asked, t: float) -> tuple[float, float, float, float]:
     """Return the desired motion as a held force needs it: half a sample later, and larger."""
     q1, q2, v1, v2 = asked(p, t + p.ahead_ms)
     return p.larger_x * q1, p.larger_y * q2, p.larger_x * v1, p.larger_y * v2
 
 
-@inlined
+@kernel
 def velocity_errors(
     p: PackedLaw, s: Estimates, x: EstimatePorts, q1: float, q2: float, v1: float, v2: float
 ) -> tuple[float, float]:
@@ -102,7 +102,7 @@ def velocity_errors(
     )
 
 
-@inlined
+@kernel
 def adapt(g: Gains, s: Estimates, e1: float, e2: float, q1: float, q2: float, v1: float, v2: float) -> None:
     """Adapt the estimates to the velocity error ``e``, with the motion that the law multiplies them with."""
     s.kxx -= g.stiffness * e1 * q1
@@ -115,7 +115,7 @@ def adapt(g: Gains, s: Estimates, e1: float, e2: float, q1: float, q2: float, v1
     s.omega -= g.rate * (e2 * v1 - e1 * v2)
 
 
-@inlined
+@kernel
 def push(s: Estimates, q1: float, q2: float, v1: float, v2: float) -> tuple[float, float]:
     r"""Return :math:`(\hat K+\hat nS)q+\hat D\dot q+2\hat\Omega S\dot q`."""
     return (
@@ -124,7 +124,7 @@ def push(s: Estimates, q1: float, q2: float, v1: float, v2: float) -> tuple[floa
     )
 
 
-@inlined
+@kernel
 def write(p: PackedLaw, s: Estimates, x: EstimatePorts) -> None:
     """Write the estimates, and their trust."""
     unit = p.asked.unit_ms

@@ -5,7 +5,7 @@ from __future__ import annotations
 from core.block import Stage
 from core.diagnose.lanes import Filters, PackedFilters
 from core.diagnose.weights import winner_of
-from core.kernel import flush_tiny, inlined, whole
+from core.kernel import flush_tiny, kernel, whole
 from core.record import Vector
 
 EVIDENCE = Stage("Evidence of a sample", "probability", "information unexcited")
@@ -13,7 +13,7 @@ LEAST_INFORMATION = 1e-3
 """Nats per sample below which thousands of samples do not repay the odds of a probability floor."""
 
 
-@inlined
+@kernel
 def nearest_rival(p: PackedFilters, s: Filters, separation: Vector, probability: Vector, n: int) -> float:
     r"""Return the evidence per sample against the nearest rival of the winner, in nats.
 

@@ -6,7 +6,7 @@ import math
 
 from core.diagnose.lanes import Filters, PackedFilters
 from core.elementary import log
-from core.kernel import flush_tiny, inlined, kernel, whole
+from core.kernel import flush_tiny, kernel, whole
 from core.ports import output, tap
 from core.record import Vector
 from core.voltage import AppliedPorts, ObservedPorts
@@ -29,7 +29,7 @@ class BankPorts(ObservedPorts):
     gain_velocity: Vector = tap("1/ms", "Kalman gain of the velocity", each="hypotheses")
 
 
-@inlined
+@kernel
 def push(p: PackedFilters, s: Filters, x: AppliedPorts, low: int, high: int) -> float:
     """Write the effect of the voltage of the tick that ends now on the models from ``low`` to ``high``, and return it.
 
@@ -60,7 +60,7 @@ def gauge(p: PackedFilters, s: Filters, u: float) -> None:
     s.drive_level = flush_tiny(p.memory * s.drive_level + (1.0 - p.memory) * mean * mean)
 
 
-@inlined
+@kernel
 def predicted(p: PackedFilters, s: Filters, i: int) -> tuple[float, float]:
     """Return the state of a model one tick later."""
     x1 = s.x1[i]
@@ -80,7 +80,7 @@ def drift(p: PackedFilters, s: Filters, low: int, high: int) -> None:
         s.x2[i] = flush_tiny(x2)
 
 
-@inlined
+@kernel
 def between_updates(p: PackedFilters, s: Filters, x: AppliedPorts, low: int, high: int) -> bool:
     """Take the voltage of a tick; return whether a bank that runs every N of them skips this one.
 
@@ -109,7 +109,7 @@ def informed(p: PackedFilters, s: Filters, measured: float) -> bool:
     return math.isfinite(measured) and driven(p, s)
 
 
-@inlined
+@kernel
 def filter_step(p: PackedFilters, s: Filters, i: int, z: float, first: bool, seen: bool) -> int:
     r"""Predict one filter, unless this is its first sample; correct it, if there is a measurement.
 
@@ -154,7 +154,7 @@ def filter_step(p: PackedFilters, s: Filters, i: int, z: float, first: bool, see
     return changed
 
 
-@inlined
+@kernel
 def correct_state(
     p: PackedFilters,
     s: Filters,
@@ -182,7 +182,7 @@ def correct_state(
     s.nis[i] = residual * residual * inverse
 
 
-@inlined
+@kernel
 def filters_step(p: PackedFilters, s: Filters, x: BankPorts, n: int) -> bool:
     """Predict and correct all filters; show their residuals, the squares over psi, and the gains.
 
@@ -221,7 +221,7 @@ def take_logarithms(s: Filters, n: int) -> None:
         s.half_log[i] = 0.5 * log(s.covariance[i])
 
 
-@inlined
+@kernel
 def judge(s: Filters, before: Vector, after: Vector, n: int, evidence: bool) -> float:
     """Add the log-likelihood of each residual to the logarithms ``before``, write ``after``; return the largest."""
     for i in range(whole(n)):

@@ -12,12 +12,12 @@ from core.diagnose.filters import between_updates, filters_step, informed
 from core.diagnose.kalman import FILTERS, KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE
 from core.elementary import exp
-from core.kernel import inlined, whole
+from core.kernel import kernel, whole
 from core.ports import tap
 from core.record import Vector, vector
 
 
-@inlined
+@kernel
 def mix(s: Imm.State, n: int, switching: float) -> None:
     r"""Give every filter the mixture of states it may have come from, and its weight before the measurement.
 

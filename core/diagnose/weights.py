@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from core.elementary import exp, log
-from core.kernel import SMALL, inlined, whole
+from core.kernel import SMALL, kernel, whole
 from core.record import Vector
 
 LEAST_LOG = log(SMALL)
@@ -15,14 +15,14 @@ def floored(floor: float) -> list[float]:
     return [floor, log(floor) if floor > 0.0 else 0.0]
 
 
-@inlined
+@kernel
 def shrunk(logarithm: float) -> float:
     """Return the number with this logarithm, or 0 for the smallest: a processor is ten times slower with underflow."""
     number = exp(LEAST_LOG if logarithm < LEAST_LOG else logarithm)
     return 0.0 if logarithm < LEAST_LOG else number
 
 
-@inlined
+@kernel
 def winner_of(probability: Vector, n: int) -> int:
     """Return the hypothesis with the largest probability, or the first of several with the same."""
     winner = 0
@@ -32,7 +32,7 @@ def winner_of(probability: Vector, n: int) -> int:
     return winner
 
 
-@inlined
+@kernel
 def take_floored_softmax(
     logs: Vector, likelihood: Vector, probability: Vector, n: int, best: float, floor: float, log_floor: float
 ) -> None:
@@ -73,7 +73,7 @@ def take_floored_softmax(
         logs[i] = 0.0
 
 
-@inlined
+@kernel
 def take_softmax(likelihood: Vector, probability: Vector, n: int, best: float) -> None:
     """Turn unnormalised logarithms into probabilities, and store no logarithms."""
     total = 0.0

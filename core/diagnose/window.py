@@ -23,7 +23,7 @@ from core.block import Context
 from core.diagnose.kalman import KalmanBank
 from core.diagnose.lanes import LANE
 from core.elementary import cos, floor, sin
-from core.kernel import inlined, kernel
+from core.kernel import kernel
 from core.record import Choice, Record, Records, Vector, tail, vector
 
 MOST = 512
@@ -147,7 +147,7 @@ def clear_tone(s: State, capacity: int) -> None:
         sample.sine = 0.0
 
 
-@inlined
+@kernel
 def push(s: State, n: int, place: int, cosine: float, sine: float) -> None:
     """Add the normalised residuals of all models, subtract the oldest residuals, and move to the next place.
 
@@ -185,7 +185,7 @@ def push(s: State, n: int, place: int, cosine: float, sine: float) -> None:
     s.place = place
 
 
-@inlined
+@kernel
 def leaning(p: Packed, cosine: float, sine: float) -> tuple[float, float]:
     """Return D/W times cosine and twice the sine of the doubled angle in the middle of the window."""
     c = cosine * cosine - sine * sine
@@ -193,7 +193,7 @@ def leaning(p: Packed, cosine: float, sine: float) -> tuple[float, float]:
     return p.along * c + p.across * d, 2.0 * (p.along * d - p.across * c)
 
 
-@inlined
+@kernel
 def tone(s: State, i: int, along: float, across: float, span: float) -> float:
     """Return T of one model."""
     c = s.cosine_sum[i]
@@ -201,7 +201,7 @@ def tone(s: State, i: int, along: float, across: float, span: float) -> float:
     return 2.0 * (c * c + d * d - (along * (c * c - d * d) + across * (c * d))) / span  # type: ignore[no-any-return]
 
 
-@inlined
+@kernel
 def power(s: State, i: int) -> float:
     """Return S of one model, which rounding cannot make negative."""
     return max(s.power_sum[i], 0.0)  # type: ignore[no-any-return]

@@ -7,7 +7,7 @@ from typing import Any, cast
 from core.block import Block, Context
 from core.device.two_axis import TwoAxis
 from core.diagnose.axes_hypothesis import AxesModels
-from core.kernel import inlined
+from core.kernel import kernel
 from core.loop.score import TOLERANCE, Factors, Score, Turns, count, holds, nothing_counted, take_turns
 from core.ports import reads
 from core.record import Records, tail
@@ -77,7 +77,7 @@ class AxesScore(Block):
         count(p, s, x, n, truth)
 
 
-@inlined
+@kernel
 def holds_along_both(h: AxesFactors, x: AxesScore.Ports) -> bool:
     """Return whether a hypothesis is true at this moment."""
     return (

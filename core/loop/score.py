@@ -12,7 +12,7 @@ from core.diagnose.chance import chi_square
 from core.diagnose.hypothesis import BankParams
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import winner_of
-from core.kernel import inlined
+from core.kernel import kernel
 from core.ports import BlockPorts, output, reads, tap
 from core.record import Choice, Record, Records, Vector, tail, vector
 
@@ -164,7 +164,7 @@ def nothing_counted(n: int) -> Score.State:
     return s
 
 
-@inlined
+@kernel
 def holds(h: Factors, x: Score.Ports) -> bool:
     """Return whether the factors of a hypothesis are the present factors of the plant."""
     stiffness = x.set_stiffness * h.stiffness
@@ -178,7 +178,7 @@ def holds(h: Factors, x: Score.Ports) -> bool:
     )
 
 
-@inlined
+@kernel
 def count(p: Turns, s: Score.State, x: Score.Ports, n: int, truth: int) -> None:
     """Compare the winner with the truth, and count."""
     winner = winner_of(x.probability, n)

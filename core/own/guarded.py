@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from core.kernel import inlined, kernel
+from core.kernel import kernel
 from core.record import Vector
 
 
@@ -23,7 +23,7 @@ def put(vector: Vector, count: float, index: float, value: float) -> None:
         vector[int(index)] = value
 
 
-@inlined
+@kernel
 def signed(size: float, sign: float) -> float:
     """Return a size with a sign; NaN for a NaN sign, which differs between machines."""
     return math.copysign(size, sign) if sign == sign else math.nan
@@ -33,7 +33,7 @@ WHOLE_FROM = 4503599627370496.0
 """2^52: every number from here on is whole."""
 
 
-@inlined
+@kernel
 def floored(value: float) -> float:
     """Return the whole number below a number; a number too large for a fraction, and NaN, as they are."""
     return float(math.floor(value)) if abs(value) < WHOLE_FROM else value

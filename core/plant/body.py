@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from core.kernel import inlined, kernel
+from core.kernel import kernel
 from core.plant.contact import stop, touch
 from core.plant.electrostatics import comb
 from core.plant.plane import Plane
@@ -34,7 +34,7 @@ def prepare(p: Plane.Packed, s: Plane.State, x: Plane.Ports) -> None:
     s.squeeze = p.squeeze * x.damping_scale * x.squeeze_scale
 
 
-@inlined
+@kernel
 def squeeze_factor(r: float) -> float:
     r"""Return :math:`\tfrac12[(1-u)^{-3}+(1+u)^{-3}]=r^2(4r-3)` from :math:`r=1/(1-u^2)`."""
     return r * r * (4.0 * r - 3.0)
@@ -58,7 +58,7 @@ def noise_of(p: Plane.Packed, s: Plane.State, y: float, theta: float) -> tuple[f
     return l11, l21, math.sqrt(max(s.rotation_damping + arm * arm * (c1 + c2) - l21 * l21, 0.0))
 
 
-@inlined
+@kernel
 def acceleration(
     p: Plane.Packed,
     s: Plane.State,

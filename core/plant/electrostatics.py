@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from core.kernel import inlined, kernel
+from core.kernel import kernel
 
 Z1, Z2 = 0.538469310105683091, 0.906179845938663993
 W0, W1, W2 = 0.568888888888888889, 0.478628670499366468, 0.236926885056189088
@@ -36,7 +36,7 @@ def point(square: float, limit: float, eta: float) -> tuple[float, float]:
     return r + 2.0 * q * (eta - inside), q
 
 
-@inlined
+@kernel
 def sums(
     square: float, limit: float, middle: float, half: float, y: float, theta: float
 ) -> tuple[float, float, float, float]:
@@ -109,7 +109,7 @@ def co_energy(strength: float, square: float, limit: float, tips: Any, x: float,
     return float(strength * (right * a * first[0] + left * b * second[0]))
 
 
-@inlined
+@kernel
 def comb(
     square: float, limit: float, stator: float, half: float, side: float, y: float, theta: float
 ) -> tuple[float, float, float, float, float]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from core.block import Block, BlockParams, Context, Oscillator, parameter
 from core.device.two_axis import TwoAxis
-from core.kernel import inlined, kernel
+from core.kernel import kernel
 from core.noise import key, normal
 from core.ports import BlockPorts, output, reads, tap
 from core.record import Record
@@ -110,7 +110,7 @@ class Shuttle(Block):
         return p
 
 
-@inlined
+@kernel
 def comb_voltage_parabola(x: Shuttle.Ports) -> tuple[float, float, float]:
     r"""Return the voltage that reaches the comb over a sample, :math:`u_0+a(r+ab)` at the share :math:`a` of it.
 
@@ -141,7 +141,7 @@ def comb_voltage(v: float, short: float, comb: int) -> float:
     return 0.0 if int(short) & comb else v
 
 
-@inlined
+@kernel
 def coefficients(p: PackedMotion, x: Shuttle.Ports) -> tuple[float, float, float]:
     """Return mass, damping and stiffness with the effects of faults and environment."""
     return p.mass * x.mass_scale, p.damping * x.damping_scale, p.stiffness * x.stiffness_scale

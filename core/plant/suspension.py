@@ -11,7 +11,7 @@ derivative of the whole energy, so energy is conserved.
 
 from __future__ import annotations
 
-from core.kernel import inlined, kernel
+from core.kernel import kernel
 from core.record import Record
 
 
@@ -44,7 +44,7 @@ def elastic_energy(k: Suspension, x: float, y: float, theta: float) -> float:
     return float(0.5 * (k.stiffness * x * x + 0.5 * k.cubic * x * x * x * x + sideways + turning))
 
 
-@inlined
+@kernel
 def elastic_force(k: Suspension, x: float, y: float, theta: float) -> tuple[float, float, float]:
     """Return minus the gradient of the energy: two forces, uN, and a torque, uN um."""
     squared = x * x

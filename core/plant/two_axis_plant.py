@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from core.block import Block, BlockParams, Context, Oscillator, parameter
 from core.device.two_axis import TwoAxis
 from core.elementary import atan2
-from core.kernel import flush_tiny, inlined
+from core.kernel import flush_tiny, kernel
 from core.plant.two_axis_body import Body, Motion, pack_body, push_x, push_y, take
 from core.plant.two_axis_motion import advance
 from core.ports import BlockPorts, output, reads, tap
@@ -85,7 +85,7 @@ class TwoAxisPlant(Block):
         return p
 
 
-@inlined
+@kernel
 def start(p: TwoAxisPlant.Packed, x: TwoAxisPorts) -> None:
     """Set the start at the first tick."""
     if x.tick == 0.0:
@@ -93,7 +93,7 @@ def start(p: TwoAxisPlant.Packed, x: TwoAxisPorts) -> None:
         x.x_velocity, x.y_velocity = p.initial_x_velocity_um_ms, p.initial_y_velocity_um_ms
 
 
-@inlined
+@kernel
 def move(b: Body, m: Motion, x: TwoAxisPorts) -> None:
     """Advance a device with the effects of faults and environment, unless it starts; write energy and orbit."""
     take(b, m, x.mass_scale, x.stiffness_scale, x.damping_scale)
@@ -113,7 +113,7 @@ def move(b: Body, m: Motion, x: TwoAxisPorts) -> None:
     look(m, x)
 
 
-@inlined
+@kernel
 def look(m: Motion, x: TwoAxisPorts) -> None:
     """Write energy and orbit."""
     q1, q2, v1, v2 = x.x, x.y, x.x_velocity, x.y_velocity

@@ -87,18 +87,24 @@ def _coefficients(
     return strength * r, 0.0, 0.0, 0.0
 
 
-@kernel
 def monodromy(p: FloatArray, rule: int, rate: float, w: float) -> FloatArray:
     """Return the transition over one period of a sine (w > 0), or the matrix of the system for a constant."""
-    b1, b2, k, amplitude, q = p[0], p[1], p[3], p[4], p[7]
     transition = np.zeros((3, 3))
+    _carry(p, rule, rate, w, transition)
+    return transition
+
+
+@kernel
+def _carry(p: FloatArray, rule: int, rate: float, w: float, transition: FloatArray) -> None:
+    """Write the transition over zeros."""
+    b1, b2, k, amplitude, q = p[0], p[1], p[3], p[4], p[7]
     if w == 0.0:
         on_e, on_v, at_once, slope_at_once = _coefficients(p, rule, rate, amplitude, k * amplitude, amplitude)
         transition[0, 1] = 1.0
         transition[1, 0], transition[1, 1] = (at_once - 1.0) / b2, (slope_at_once - b1) / b2
         transition[1, 2] = amplitude / b2
         transition[2, 0], transition[2, 1] = on_e, on_v
-        return transition
+        return
     for i in range(3):
         transition[i, i] = 1.0
     # model and filter answer R sin wt with a real and an imaginary part
@@ -134,7 +140,6 @@ def monodromy(p: FloatArray, rule: int, rate: float, w: float) -> FloatArray:
             transition[1, c] = v + h / 6.0 * (la + 2.0 * lb + 2.0 * lc + ld)
             transition[2, c] = x + h / 6.0 * (ma + 2.0 * mb + 2.0 * mc + md)
         r1, e1, v1, g1, d1 = r3, e3, v3, g3, d3
-    return transition
 
 
 def growth(loop: GainLoop, rule: int, rate: float, w: float) -> float:

@@ -6,7 +6,6 @@ where on memory is free. It asks for its memory and the place of its stack, and 
 
 from __future__ import annotations
 
-import hashlib
 import inspect
 import sys
 from functools import cache
@@ -16,29 +15,22 @@ import llvmlite
 import llvmlite.binding as llvm
 
 from core.block import Block
+from core.compile.code import hash_of, instructions
+from core.compile.numbers import NAME
 from core.errors import InputError
-from core.kernel import step_instructions
-from core.kernel_cache import get, key, put
+from core.kernel_cache import get, put
 
 TARGET = "wasm32-unknown-unknown"
 FEATURES = "+bulk-memory,+nontrapping-fptoint,+sign-ext,+mutable-globals"
 ALIGNMENT = 64
 
-STEP = """
-declare ptr @"{name}"(ptr, ptr, ptr, ptr)
-define void @step(ptr %p, ptr %s, ptr %w, ptr %io) "wasm-export-name"="step" {{
-  %unused = call ptr @"{name}"(ptr %p, ptr %s, ptr %w, ptr %io)
+OFFERED = f"""
+declare void @{NAME}(ptr, ptr, ptr, ptr)
+define void @offered(ptr %p, ptr %s, ptr %w, ptr %io) "wasm-export-name"="step" {{
+  call void @{NAME}(ptr %p, ptr %s, ptr %w, ptr %io)
   ret void
 }}
 """
-ROOT = """
-declare double @llvm.sqrt.f64(double)
-define double @sqrt(double %x) {
-  %root = call double @llvm.sqrt.f64(double %x)
-  ret double %root
-}
-"""
-"""What numba takes from outside; IEEE 754 says every bit of it."""
 ROOM = """
 define i32 @room() "wasm-export-name"="room" {{
   ret i32 {free}
@@ -51,13 +43,13 @@ def kept(block: type[Block]) -> bytes:
     name = name_of(block)
     code = get(name)
     if code is None:
-        code = compiled(*step_instructions(block.step, block.Packed, block.State, block.Ports))
+        code = compiled(instructions(block, 1, lanes=False))
         put(name, code)
     return code
 
 
-def compiled(text: str, name: str) -> bytes:
-    """Return the WebAssembly of instructions, for the function of that name.
+def compiled(text: str) -> bytes:
+    """Return the WebAssembly of the instructions of a step.
 
     Raises
     ------
@@ -66,10 +58,9 @@ def compiled(text: str, name: str) -> bytes:
     """
     machine = _machine()
     module = _aimed(text, machine)
-    module.link_in(_aimed(STEP.format(name=name), machine))
-    module.link_in(_aimed(ROOT, machine))
+    module.link_in(_aimed(OFFERED, machine))
     for one in (*module.global_variables, *module.functions):
-        if not one.is_declaration and one.name != "step":
+        if not one.is_declaration and one.name != "offered":
             one.linkage = "internal"  # what nobody needs is left out
     tuning = llvm.create_pipeline_tuning_options(speed_level=2)
     tuning.loop_vectorization = tuning.slp_vectorization = False
@@ -102,7 +93,5 @@ def _machine() -> Any:
 
 def name_of(block: type[Block]) -> str:
     """Return the name of a step on the shelf, with a hash of it, of what it sees, and of this compiler."""
-    ports = [(port.name, port.record.layout if port.record else port.vector) for port in block.Ports.declared]
     own = inspect.getsource(sys.modules[__name__])
-    parts = key(block.step), block.Packed.layout, block.State.layout, ports, own, llvmlite.__version__
-    return f"wall-{block.__module__}-{hashlib.sha256(chr(10).join(map(str, parts)).encode()).hexdigest()[:24]}"
+    return f"wall-{block.__module__}-{hash_of(block, own, llvmlite.__version__)}"

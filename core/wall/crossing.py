@@ -15,8 +15,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from llvmlite import ir
 
-from core.lanes.code import PLACES, POINTER, begun, compiled, counted, loaded
-from core.lanes.numbers import DOUBLE, I64
+from core.compile.arrays import counted
+from core.compile.code import PLACES, POINTER, begun
+from core.compile.machine import compiled, loaded
+from core.compile.numbers import DOUBLE, I64
 from core.ports import RESERVED
 from core.wall.host import FUEL, Instance, function_address
 

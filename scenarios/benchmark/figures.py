@@ -27,16 +27,19 @@ WIDE = 1.959963984540054
 """Standard errors to either side of a mean that hold 95 %."""
 
 
-@kernel
 def surprise(healthy: FloatArray) -> FloatArray:
     r"""Return the evidence of a fault, :math:`-\ln p_\text{healthy}`; no number counts as 0."""
     found = np.empty(len(healthy))
-    for i in range(len(healthy)):
-        found[i] = -log(healthy[i] if healthy[i] > LEAST else LEAST)
+    _surprise(healthy, found)
     return found
 
 
 @kernel
+def _surprise(healthy: FloatArray, found: FloatArray) -> None:
+    for i in range(len(healthy)):
+        found[i] = -log(healthy[i] if healthy[i] > LEAST else LEAST)
+
+
 def classed(probabilities: FloatArray, classes: IntArray, count: int) -> FloatArray:
     """Return the probability of each class, shape (count, samples): the share of its hypotheses in the sum of all.
 
@@ -49,8 +52,15 @@ def classed(probabilities: FloatArray, classes: IntArray, count: int) -> FloatAr
     count : int
         Classes.
     """
+    found = np.zeros((count, probabilities.shape[1]))
+    _classify(probabilities, classes, found)
+    return found
+
+
+@kernel
+def _classify(probabilities: FloatArray, classes: IntArray, found: FloatArray) -> None:
+    """Write shares over zeros."""
     hypotheses, samples = probabilities.shape
-    found = np.zeros((count, samples))
     for i in range(samples):
         total = 0.0
         for h in range(hypotheses):
@@ -58,9 +68,8 @@ def classed(probabilities: FloatArray, classes: IntArray, count: int) -> FloatAr
             p = p if 0.0 < p < np.inf else 0.0
             found[classes[h], i] += p
             total += p
-        for c in range(count):
+        for c in range(found.shape[0]):
             found[c, i] = found[c, i] / total if total > 0.0 else 0.0
-    return found
 
 
 @kernel
@@ -83,28 +92,38 @@ def scores(p: FloatArray, truth: IntArray) -> tuple[float, float]:
     return logs / samples, squares / samples
 
 
-@kernel
 def named(p: FloatArray, first: int) -> IntArray:
     """Return the most probable class of each sample, of those from ``first`` on, the first of several alike."""
+    found = np.empty(p.shape[1], dtype=np.int64)
+    _name(p, first, found)
+    return found
+
+
+@kernel
+def _name(p: FloatArray, first: int, found: IntArray) -> None:
     classes, samples = p.shape
-    found = np.empty(samples, dtype=np.int64)
     for i in range(samples):
         best = first
         for c in range(first + 1, classes):
             if p[c, i] > p[best, i]:
                 best = c
         found[i] = best
-    return found
 
 
-@kernel
 def reliability(p: FloatArray, truth: IntArray) -> FloatArray:
     """Count samples by the probability of the class that is named, shape (3, BINS): how many, that sum, how many right.
 
     Of a calibrated diagnoser the share of right ones in a bin is the mean probability said there (Dawid 1982).
     """
-    classes, samples = p.shape
     counts = np.zeros((3, BINS))
+    _bin(p, truth, counts)
+    return counts
+
+
+@kernel
+def _bin(p: FloatArray, truth: IntArray, counts: FloatArray) -> None:
+    """Add to counts."""
+    classes, samples = p.shape
     for i in range(samples):
         best = 0
         for c in range(1, classes):
@@ -114,7 +133,6 @@ def reliability(p: FloatArray, truth: IntArray) -> FloatArray:
         counts[0, place] += 1.0
         counts[1, place] += p[best, i]
         counts[2, place] += 1.0 if best == truth[i] else 0.0
-    return counts
 
 
 @kernel

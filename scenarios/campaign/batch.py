@@ -19,8 +19,8 @@ from core.board.lane import Lane
 from core.board.observer import cautions, warnings
 from core.board.pattern import Pattern, Uneven
 from core.board.pending import Pending, Queue
+from core.compile.machine import WIDTH
 from core.errors import InputError
-from core.lanes.numbers import WIDTH
 from scenarios.campaign.outcome import Outcome, outcome, summed
 from scenarios.run import DEFAULT_SAMPLES, figures
 from scenarios.schema import Scenario

@@ -14,8 +14,8 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import AbstractContextManager, nullcontext
 from typing import Any, Protocol
 
+from core.compile.machine import WIDTH
 from core.errors import InputError
-from core.lanes.numbers import WIDTH
 from scenarios.campaign.batch import outcomes
 from scenarios.campaign.cluster import Cluster, open_cluster
 from scenarios.campaign.executor import LOST, Processes

@@ -131,7 +131,6 @@ def _diagnosis(board: Board, name: str, scores: Scores, trace: dict[str, FloatAr
     return counted
 
 
-@kernel
 def evidence(fault: FloatArray, none: FloatArray, truth: FloatArray, healthy: int, odds: FloatArray) -> IntArray:
     """Count samples by the odds of any fault, those while the truth was healthy and the others.
 
@@ -150,20 +149,23 @@ def evidence(fault: FloatArray, none: FloatArray, truth: FloatArray, healthy: in
     -------
     ndarray of int64, shape (2, thresholds + 1)
     """
+    counts = np.zeros((2, len(odds) + 1), dtype=np.int64)
+    _count(np.maximum(fault, LEAST) / np.maximum(none, LEAST), truth, healthy, odds, counts)
+    return counts
+
+
+@kernel
+def _count(ratio: FloatArray, truth: FloatArray, healthy: int, odds: FloatArray, counts: IntArray) -> None:
     count = len(odds)
-    counts = np.zeros((2, count + 1), dtype=np.int64)
-    ratio = np.maximum(fault, LEAST) / np.maximum(none, LEAST)
-    for i in range(len(ratio)):
-        if not ratio[i] > 0.0:
-            ratio[i] = 1.0
     # the bits of a number are nearly proportional to its logarithm: the bin from them is the right one or next to it
     bits, ends = ratio.view(np.int64), odds.view(np.int64)
     share = (count - 1) / (ends[-1] - ends[0])
     for i in range(len(ratio)):
+        if not ratio[i] > 0.0:
+            ratio[i] = 1.0
         found = min(max(int((bits[i] - ends[0]) * share) + 1, 0), count)
         while found > 0 and ratio[i] < odds[found - 1]:
             found -= 1
         while found < count and ratio[i] >= odds[found]:
             found += 1
         counts[0 if truth[i] == healthy else 1, found] += 1
-    return counts

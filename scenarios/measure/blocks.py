@@ -13,7 +13,6 @@ from typing import Any, cast
 import numpy as np
 
 from core.block import FloatArray, IntArray
-from core.kernel import kernel
 
 BLOCK = 1 << 16
 """Samples of a block."""
@@ -88,10 +87,4 @@ def stretches(column: FloatArray) -> Iterator[int]:
     """Yield 0, and the samples at which a column takes another value."""
     yield 0
     for number, (block,) in enumerate(blocks(column, more=1)):
-        for change in _changes(block):
-            yield number * BLOCK + change
-
-
-@kernel
-def _changes(values: FloatArray) -> list[int]:
-    return [i for i in range(1, len(values)) if values[i] != values[i - 1]]
+        yield from (number * BLOCK + 1 + np.flatnonzero(block[1:] != block[:-1])).tolist()

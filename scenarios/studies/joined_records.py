@@ -77,7 +77,7 @@ def _play(board: Board, name: str, hypothesis: str, record: dict[str, FloatArray
     """Run one diagnoser on a record and return the probability of a hypothesis."""
     wiring = again(board, board.spec.seed).wiring
     table = np.ascontiguousarray(wiring.table[[wiring.row(name)]])
-    table[:, program.ADDRESS] = steps.alone(wiring, wiring.row(name))
+    table[:, program.ADDRESS] = steps.address(wiring, wiring.row(name))
     nothing, watches = np.zeros((1, 0)), np.zeros((0, 3))
     places = {signal: wiring.index[signal] for signal in RECORDED}
     wanted, trip = wiring.index[f"{name}.probability.{hypothesis}"], wiring.index["guard.trip"]

@@ -18,7 +18,7 @@ from pathlib import Path
 SLEEPS, WANTS_PROCESSOR, WAITS_FOR_DISK = "S", "R", "D"
 CROWDED_ABOVE = 0.1
 """Time that all threads of the process together waited for a processor, over the time that has passed."""
-OTHERS_WORK = ("numba", "importlib", "_frozen_importlib", "_frozen_importlib_external", "pyarrow")
+OTHERS_WORK = ("llvmlite", "importlib", "_frozen_importlib", "_frozen_importlib_external", "pyarrow")
 """Packages in which a thread sleeps while another works for it: it compiles, imports or reads a file."""
 
 

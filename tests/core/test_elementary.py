@@ -6,14 +6,16 @@ import math
 import struct
 
 import mpmath
-import numba
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from core import elementary
+from core.compile import entry
+from core.compile.machine import improved, machine
 from core.elementary.bits import bits_of, number_of, product_error, sum_error
+from core.kernel import kernel
 from core.plain import plain
 
 BITS = 160
@@ -127,7 +129,9 @@ def test_edges():
 
 
 def test_bits_go_there_and_back():
-    there_and_back = numba.njit(lambda value: number_of(bits_of(value)))
+    @kernel
+    def there_and_back(value):
+        return number_of(bits_of(value))
 
     @given(st.floats(allow_nan=False))
     def any_number(x):
@@ -151,13 +155,13 @@ def test_a_loop_of_them_becomes_vector_code():
     """The point of having no branch and no call: several at once in the registers of the processor."""
     f = elementary.exp
 
-    @numba.njit(error_model="numpy")
+    @kernel
     def all_of(x, out):
         for i in range(len(x)):
             out[i] = f(x[i])
 
-    x = np.linspace(-2.0, 2.0, 64)
-    all_of(x, np.empty_like(x))
-    code = next(iter(all_of.inspect_asm().values()))
+    vector = "float64", 1, True
+    text = entry.instructions(all_of.py_func, (vector, vector))
+    code = machine().emit_assembly(improved(text, loops=True))
     assert "vmulpd" in code or "mulpd" in code
     assert "callq\texp" not in code and "call\texp" not in code

@@ -6,10 +6,11 @@ import subprocess
 import sys
 import textwrap
 from pathlib import Path
-from types import FunctionType, ModuleType
+from types import FunctionType, ModuleType, SimpleNamespace
 
 import pytest
 
+from core import kernel_cache
 from core.kernel_cache import key
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -89,7 +90,7 @@ from core import kernel_cache
 from core.kernel import kernel
 from core.record import Record
 import {module} as made
-print(made.outer(1.0), kernel_cache.KernelCache.compiled)
+print(made.outer(1.0), len(kernel_cache.compiled_here))
 """
 
 
@@ -113,10 +114,29 @@ def outer_in_a_process(folder: Path, source: str) -> list[str]:
 
 
 def test_a_second_process_compiles_nothing_an_edit_what_it_touches_and_damage_everything(tmp_path):
-    assert outer_in_a_process(tmp_path, SOURCE) == ["7.0", "2"]
+    assert outer_in_a_process(tmp_path, SOURCE) == ["7.0", "1"]
     assert outer_in_a_process(tmp_path, SOURCE) == ["7.0", "0"]
     assert outer_in_a_process(tmp_path, SOURCE.replace("+ 3.0", "+ 4.0")) == ["8.0", "1"]
-    assert outer_in_a_process(tmp_path, SOURCE.replace("FACTOR = 2.0", "FACTOR = 3.0")) == ["8.0", "2"]
+    assert outer_in_a_process(tmp_path, SOURCE.replace("FACTOR = 2.0", "FACTOR = 3.0")) == ["8.0", "1"]
     for path in (tmp_path / "kept" / "kernels").iterdir():
         path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
-    assert outer_in_a_process(tmp_path, SOURCE) == ["7.0", "2"]
+    assert outer_in_a_process(tmp_path, SOURCE) == ["7.0", "1"]
+
+
+def test_a_file_of_another_name_or_with_other_bytes_is_no_kernel(monkeypatch):
+    files: dict[str, bytes] = {}
+    shelf = SimpleNamespace(get=files.get, put=files.__setitem__)
+    monkeypatch.setattr(kernel_cache, "_shelves", [shelf])
+    kernel_cache.put("one", b"code")
+    kernel_cache.put("empty", b"")
+    assert kernel_cache.get("one") == b"code" and kernel_cache.get("empty") == b"" and kernel_cache.get("two") is None
+    files["two"] = files["one"]
+    files["old"] = b"code"
+    assert kernel_cache.get("two") is None and kernel_cache.get("old") is None
+    for place in range(len(files["one"])):
+        changed = bytearray(files["one"])
+        changed[place] ^= 1
+        files["changed"] = bytes(changed)
+        assert kernel_cache.get("changed") is None
+    files["one"] = files["one"][:-1]
+    assert kernel_cache.get("one") is None

@@ -20,10 +20,12 @@ CODE = re.findall(r"```python\n(.*?)```", (ROOT / "CONTRIBUTING.md").read_text()
 
 
 @pytest.fixture
-def recipe(monkeypatch) -> type[Block]:
+def recipe(monkeypatch, tmp_path) -> type[Block]:
     module = ModuleType("core.control.pi")
     monkeypatch.setitem(sys.modules, module.__name__, module)
-    exec(compile(CODE, "pi.py", "exec"), vars(module))
+    file = tmp_path / "pi.py"
+    file.write_text(CODE)
+    exec(compile(CODE, str(file), "exec"), vars(module))
     known = registry.blocks("control")
     monkeypatch.setattr(
         registry, "blocks", lambda family: {**known, "pi": module.Pi} if family == "control" else BLOCKS(family)

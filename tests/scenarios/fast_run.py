@@ -15,7 +15,7 @@ import pytest
 from core.board.abreast import Abreast
 from core.board.pattern import Pattern
 from core.board.pending import Queue
-from core.lanes.numbers import WIDTH
+from core.compile.machine import WIDTH
 from scenarios.campaign.batch import outcomes
 from scenarios.measure import lateral
 from scenarios.measure.metrics import device_metrics

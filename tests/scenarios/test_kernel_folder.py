@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from scenarios import kernels
-from scenarios.kernel_cache import Folder, prune
+from scenarios.kernel_cache import Folder, folder, prune
 
 DAY_S = 24 * 3600.0
 
@@ -87,3 +87,15 @@ def test_a_log_gets_a_line_now_and_then_and_a_terminal_one_that_changes(tmp_path
     assert len(parts) == len(said)
     assert all(part.startswith(text) for part, text in zip(parts, said, strict=True))
     assert names(tmp_path) == {"complete-this"}
+
+
+@pytest.mark.skipif(os.name != "posix", reason="this system has other rights")
+@pytest.mark.parametrize(("rights", "is_refused"), [(0o700, False), (0o755, False), (0o775, True), (0o757, True)])
+def test_a_folder_that_others_can_write_to_is_refused(tmp_path, monkeypatch, rights, is_refused):
+    kept = tmp_path / "kernels"
+    kept.mkdir()
+    kept.chmod(rights)
+    monkeypatch.setenv("COMBBENCH_KERNEL_CACHE", str(tmp_path))
+    assert folder.__wrapped__() == (None if is_refused else kept)
+    monkeypatch.setattr(os, "getuid", lambda: os.stat(kept).st_uid + 1)
+    assert folder.__wrapped__() is None

@@ -14,7 +14,8 @@ from core.board.commands import parse_command
 from core.board.document import with_values
 from core.board.parse import parse
 from core.board.pattern import Pattern, Uneven, unlike
-from core.lanes import code
+from core.compile import code
+from core.compile.machine import WIDTH
 from tests.lab import AXES_RICH, RICH
 
 TICKS = 700
@@ -158,5 +159,5 @@ def test_controllers_that_look_on_are_left_out_unless_a_command_may_switch_to_th
 @pytest.mark.timeout(300)
 def test_all_steps_but_one_run_for_all_boards_at_once():
     blocks = {block for family in registry.FAMILIES for block in registry.blocks(family).values()}
-    slow = {f"{block.family}.{block.name}" for block in blocks if not code.translated(block)[1]}
+    slow = {f"{block.family}.{block.name}" for block in blocks if not code.translated(block, WIDTH)[1]}
     assert slow == ONE_AFTER_ANOTHER

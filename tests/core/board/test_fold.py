@@ -17,10 +17,10 @@ from hypothesis.extra import numpy as stn
 from core import registry
 from core.board import fold
 from core.board.board import Board
+from core.compile.machine import WIDTH
+from core.compile.rows import folding
 from core.control.open_loop import OpenLoop
 from core.kernel import kernel
-from core.lanes.numbers import WIDTH
-from core.lanes.rows import folding
 from core.own.guarded import signed
 from core.plain import plain
 from core.ports import RESERVED

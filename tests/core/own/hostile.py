@@ -82,7 +82,7 @@ TOPS = (
         for name in ("np", "NDArray", "_Many", "Field", "ValidationError", "__builtins__")
     ),
     *each(
-        "from core.kernel import numba ;; from core.record import np ;; from . import unit ;; from .. import own ;; "
+        "from core.kernel import entry ;; from core.record import np ;; from . import unit ;; from .. import own ;; "
         "import math as m ;; import os.path ;; from math import sqrt ;; from core import registry ;; "
         "from core.registry import block ;; print(1) ;; x: int ;; A = [1] ;; A = open('x') ;; A = {} ;; "
         "A = lambda: 1 ;; A = 'x' * 99 ;; A = 9 ** 9 ** 9 ;; A = (1,) * 10 ;; A = range(10 ** 9) ;; "

@@ -21,16 +21,16 @@ from scenarios.run import build
 from tests.core.own.test_own_units import with_unit
 from tests.core.own.texts import PI, ROOT
 
-BEGIN = "define ptr @f(ptr %p, ptr %s, ptr %w, ptr %io) {\n"
-GOOD = "%v = load double, ptr %p\nstore double %v, ptr %s\nret ptr null\n}"
+BEGIN = "define void @step(ptr %p, ptr %s, ptr %w, ptr %io) {\n"
+GOOD = "%v = load double, ptr %p\nstore double %v, ptr %s\nret void\n}"
 FAR = "%far = getelementptr double, ptr %p, i64 {}\n"
-END = "ret ptr null\n}"
+END = "ret void\n}"
 STOP = "call void @llvm.trap()\n" + END + "\ndeclare void @llvm.trap()"
 BAD = {
     "reads beyond": FAR.format(16777216) + "%v = load volatile double, ptr %far\n" + END,
     "writes before": FAR.format(-99999) + "store volatile double 1.0, ptr %far\n" + END,
     "never ends": "br label %a\na:\n%v = load volatile double, ptr %p\nbr label %a\n}",
-    "calls itself": "%x = call ptr @f(ptr %p, ptr %s, ptr %w, ptr %io)\nstore volatile double 2.0, ptr %s\n" + END,
+    "calls itself": "call void @step(ptr %p, ptr %s, ptr %w, ptr %io)\nstore volatile double 2.0, ptr %s\n" + END,
     "stops": STOP,
     "leaves its stack": "%r = alloca [64 x double]\nstore volatile double 1.0, ptr %r\n" + STOP,
 }
@@ -46,7 +46,7 @@ def _wall() -> Iterator[None]:
 STOPS_BELOW_0 = (
     "%r = alloca [64 x double]\n%in = getelementptr double, ptr %w, i64 2\n%v = load double, ptr %in\n"
     "store volatile double %v, ptr %r\ncall void @g(ptr %r)\n%u = load volatile double, ptr %r\n"
-    "%out = getelementptr double, ptr %w, i64 3\nstore double %u, ptr %out\nret ptr null\n}\n"
+    "%out = getelementptr double, ptr %w, i64 3\nstore double %u, ptr %out\nret void\n}\n"
     "define void @g(ptr %r) noinline {\n%v = load volatile double, ptr %r\n%bad = fcmp olt double %v, 0.0\n"
     "br i1 %bad, label %stop, label %go\nstop:\ncall void @llvm.trap()\nunreachable\ngo:\nret void\n}\n"
     "declare void @llvm.trap()"
@@ -56,7 +56,7 @@ STOPS_BELOW_0 = (
 
 def way(body: str) -> tuple[Crossing, Callable[..., None]]:
     """Return the way to a step written by hand, and what calls it."""
-    module = host.module_of(code.compiled(BEGIN + body, "f"))
+    module = host.module_of(code.compiled(BEGIN + body))
     crossing = Crossing([host.instance_of(module, SIZES.total)], SIZES, 1)
     step = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 4)(crossing.address)
     return crossing, lambda *arrays: step(*(array.ctypes.data for array in arrays))
@@ -97,7 +97,7 @@ def test_a_step_that_failed_a_thousand_times_computes_again() -> None:
 def test_what_a_step_may_not_write_stays_as_it_is() -> None:
     """Addresses in its memory are all its own, so it can write over its copies of parameters and inputs."""
     far = "%port = getelementptr double, ptr %w, i64 2\nstore double 9.0, ptr %port\nstore double 9.0, ptr %p\n"
-    p, _, w = called(far + "ret ptr null\n}")
+    p, _, w = called(far + "ret void\n}")
     assert p == [3.0, 4.0] and w == [float(i) for i in range(20)]
 
 
@@ -111,7 +111,7 @@ def test_a_driving_unit_that_leaves_its_memory_trips_the_board_and_in_shadow_dis
 ) -> None:
     plain = build(with_unit("pi", PI + "\n# plain\n"))
     plain.advance(200)
-    monkeypatch.setattr("core.wall.wall.kept", lambda _: code.compiled(BEGIN + BAD["reads beyond"], "f"))
+    monkeypatch.setattr("core.wall.wall.kept", lambda _: code.compiled(BEGIN + BAD["reads beyond"]))
     wall.demand()
     driving = build(with_unit("pi", PI + "\n# driving\n", {"controller.kind": "pi"}))
     driving.advance(200)
@@ -170,7 +170,7 @@ def test_memory_has_a_limit_and_does_not_grow() -> None:
 
 def test_a_function_from_outside_is_refused_where_it_is_compiled() -> None:
     with pytest.raises(InputError, match="calls system"):
-        code.compiled("declare void @system(ptr)\n" + BEGIN + "call void @system(ptr %p)\nret ptr null\n}", "f")
+        code.compiled("declare void @system(ptr)\n" + BEGIN + "call void @system(ptr %p)\nret void\n}")
 
 
 def test_without_the_package_the_wall_is_not_built_and_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -185,7 +185,7 @@ def test_without_the_package_the_wall_is_not_built_and_says_what_to_install(monk
 def test_a_wall_that_gives_other_bits_is_not_built(monkeypatch: pytest.MonkeyPatch) -> None:
     """The unit has a line more than any that was compiled before, so that it is one of its own."""
     unit = {"pid": {"source": inspect.getsource(pid) + "\nOTHER = 1\n"}}
-    monkeypatch.setattr("core.wall.wall.kept", lambda _: code.compiled(BEGIN + GOOD, "f"))
+    monkeypatch.setattr("core.wall.wall.kept", lambda _: code.compiled(BEGIN + GOOD))
     monkeypatch.setattr(built, "with_unit", lambda: {**built.BENCH, "units": unit})
     with pytest.raises(InputError, match="other bits"):
         built.build()

@@ -9,9 +9,10 @@ from typing import Any
 
 from llvmlite import ir
 
-from core.lanes.frames import Frame, Kinds, Masks, says
-from core.lanes.numbers import BOOL, Arithmetic, Number, Unsupported, is_number, type_of
-from core.lanes.places import Memory
+from core.compile.arrays import Arrays
+from core.compile.frames import Frame, Kinds, Masks, says
+from core.compile.numbers import BOOL, Arithmetic, Number, Unsupported, is_number
+from core.compile.places import Memory
 
 
 class Variables:
@@ -23,15 +24,18 @@ class Variables:
         Where the instructions go.
     kinds : dict
         What each variable is, as far as earlier translations found out; ``is_complete`` says whether it was enough.
+    width : int
+        Boards side by side.
     lanes : bool
-        Whether for all boards at once; else for one of them.
+        Whether for all of them at once; else for one of them.
     """
 
-    def __init__(self, builder: ir.IRBuilder, kinds: Kinds, *, lanes: bool) -> None:
+    def __init__(self, builder: ir.IRBuilder, kinds: Kinds, width: int, *, lanes: bool) -> None:
         self.builder, self.kinds, self.lanes = builder, kinds, lanes
         self.is_complete = True
-        self.arithmetic = Arithmetic(builder)
+        self.arithmetic = Arithmetic(builder, width)
         self.memory = Memory(self.arithmetic, lanes=lanes)
+        self.arrays = Arrays(self.arithmetic)
         self.mask: Number | None = None
         self.frame: Frame
         self._depth = 0
@@ -53,9 +57,9 @@ class Variables:
         number = self.arithmetic.as_kind(number, kind)
         number = self.arithmetic.spread(number) if is_lanes else number
         slot = frame.variables.get(name)
-        if slot is None or slot.type.pointee != type_of(kind, is_lanes=is_lanes):
+        if slot is None or slot.type.pointee != self.arithmetic.type_of(kind, is_lanes=is_lanes):
             with self.builder.goto_entry_block():
-                slot = self.builder.alloca(type_of(kind, is_lanes=is_lanes))
+                slot = self.builder.alloca(self.arithmetic.type_of(kind, is_lanes=is_lanes))
             frame.variables[name] = slot
         frame.names.pop(name, None)
         value = number.value
@@ -103,7 +107,7 @@ class Variables:
 
     def slot(self, value: Any = None) -> Any:
         """Return a variable of a lane for each board, true or false; nobody at first."""
-        nobody = ir.Constant(type_of(BOOL, is_lanes=True), None)
+        nobody = ir.Constant(self.arithmetic.type_of(BOOL, is_lanes=True), None)
         with self.builder.goto_entry_block():
             slot = self.builder.alloca(nobody.type)
         self.builder.store(nobody if value is None else value, slot)

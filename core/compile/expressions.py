@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 import numpy as np
 from llvmlite import ir
 
-from core.lanes.numbers import DOUBLE, FLOAT, I64, INT, SIGNS, Number, Unsupported, is_number
-from core.lanes.places import Place, PortsView, RecordsView, RecordView, VectorView
-from core.lanes.variables import Variables
+from core.compile.arrays import ArrayPlace, ArrayView, Bound
+from core.compile.numbers import DOUBLE, FLOAT, I64, INT, SIGNS, Number, Unsupported, is_number
+from core.compile.places import Place, PortsView, RecordsView, RecordView, VectorView
+from core.compile.variables import Variables
+
+NEEDED = ast.Call, ast.Subscript, ast.Mod, ast.FloorDiv
+"""What is computed only where its result is needed: it may write, read beyond an end, or divide by 0."""
 
 
 class Expressions(Variables):
@@ -21,12 +27,23 @@ class Expressions(Variables):
         """Translate a call of a function."""
         raise NotImplementedError
 
+    @contextmanager
+    def told(self, node: ast.expr | ast.stmt) -> Iterator[None]:
+        """Tell the place of what is outside the notation."""
+        try:
+            yield
+        except Unsupported as error:
+            raise error.at(self.frame.function, node) from None
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+            raise Unsupported(str(error)).at(self.frame.function, node) from None
+
     def value(self, node: ast.expr) -> Any:
         """Translate an expression."""
         method = getattr(self, f"_{type(node).__name__.lower()}", None)
-        if method is None:
-            raise Unsupported(f"an expression {type(node).__name__}")
-        return method(node)
+        with self.told(node):
+            if method is None:
+                raise Unsupported(f"an expression {type(node).__name__}")
+            return method(node)
 
     def _constant(self, node: ast.Constant) -> Any:
         return node.value
@@ -48,7 +65,9 @@ class Expressions(Variables):
             return RecordsView(place.base, None, seen)
         if isinstance(owner, RecordView):
             return self.memory.attribute(owner, node.attr, self.mask)
-        if isinstance(owner, Number | Place):
+        if isinstance(owner, ArrayView) and node.attr in ("shape", "view"):
+            return owner.lengths if node.attr == "shape" else Bound(owner)
+        if isinstance(owner, Number | Place | ArrayView):
             raise Unsupported(f"an attribute {node.attr}")
         return getattr(owner, node.attr)
 
@@ -58,11 +77,19 @@ class Expressions(Variables):
             return owner[index]
         if isinstance(owner, VectorView):
             return self.memory.read(self.memory.item(owner, index), self.mask)
+        if isinstance(owner, ArrayView):
+            part = self.arrays.part(owner, index if isinstance(index, tuple) else (index,))
+            return self.arrays.read(part) if isinstance(part, ArrayPlace) else part
         if isinstance(owner, RecordsView):
             return self.memory.item(owner, index)
         if isinstance(owner, np.ndarray):
             return self._constant_at(owner, index)
         raise Unsupported(f"a part of {ast.unparse(node.value)}")
+
+    def _slice(self, node: ast.Slice) -> slice:
+        if node.step is not None:
+            raise Unsupported("a slice with a step")
+        return slice(*(self.value(part) if part else None for part in (node.lower, node.upper)))
 
     def _constant_at(self, numbers: Any, index: Any) -> Any:
         """Return a number of an array that never changes."""
@@ -110,8 +137,45 @@ class Expressions(Variables):
             else:
                 found = self.arithmetic.truth(found)
                 open_ = found if isinstance(node.op, ast.And) else self.arithmetic.opposite(found)
-                found = self._joined(node.op, found, self._under(open_, part))
+                if self._branches(open_, part):
+                    found = self._chosen(open_, partial(self._truth, part), found)
+                else:
+                    found = self._joined(node.op, found, self._under(open_, part))
         return found
+
+    def _truth(self, node: ast.expr) -> Number:
+        return self.arithmetic.truth(self.value(node))
+
+    def _branches(self, condition: Number, *parts: ast.expr) -> bool:
+        """Say whether parts of an expression are computed only where a condition holds, by a branch of the code."""
+        return not condition.is_lanes and any(isinstance(one, NEEDED) for part in parts for one in ast.walk(part))
+
+    def _chosen(self, condition: Number, yes: Callable[[], Any], no: Number | Callable[[], Any]) -> Number:
+        """Return one of two numbers, of which only one is computed."""
+        build = self.builder
+        ways, behind = (build.append_basic_block(), build.append_basic_block()), build.append_basic_block()
+        build.cbranch(condition.value, *ways)
+        found, ends = [], []
+        for way, make in zip(ways, (yes, no), strict=True):
+            build.position_at_end(way)
+            value = make if isinstance(make, Number) else make()
+            if not is_number(value):
+                raise Unsupported("a choice between anything but numbers")
+            found.append(self.arithmetic.number(value))
+            ends.append(build.block)
+        kind, is_lanes = self.arithmetic.common(*found)
+        slot_type = self.arithmetic.type_of(kind, is_lanes=is_lanes)
+        values = []
+        for number, end in zip(found, ends, strict=True):
+            build.position_at_end(end)
+            number = self.arithmetic.as_kind(number, kind)
+            values.append((self.arithmetic.spread(number) if is_lanes else number).value)
+            build.branch(behind)
+        build.position_at_end(behind)
+        joined = build.phi(slot_type)
+        for value, end in zip(values, ends, strict=True):
+            joined.add_incoming(value, end)
+        return Number(joined, kind)
 
     def _under(self, condition: Number, node: ast.expr) -> Any:
         """Translate an expression that only counts where a condition holds."""
@@ -130,6 +194,8 @@ class Expressions(Variables):
         if not isinstance(condition, Number):
             return self.value(node.body if condition else node.orelse)
         condition = self.arithmetic.truth(condition)
+        if self._branches(condition, node.body, node.orelse):
+            return self._chosen(condition, partial(self.value, node.body), partial(self.value, node.orelse))
         yes = self._under(condition, node.body)
         no = self._under(self.arithmetic.opposite(condition), node.orelse)
         if not (is_number(yes) and is_number(no)):

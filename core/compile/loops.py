@@ -7,9 +7,9 @@ from typing import Any
 
 from llvmlite import ir
 
-from core.lanes.frames import Loop, Masks, says
-from core.lanes.numbers import BOOL, I64, INT, Number, Unsupported, type_of
-from core.lanes.statements import Statements
+from core.compile.frames import Loop, Masks, says
+from core.compile.numbers import BOOL, I64, INT, Number, Unsupported
+from core.compile.statements import Statements
 
 
 class Loops(Statements):
@@ -76,7 +76,7 @@ class Loops(Statements):
         """Translate the body of a loop, for the boards that go on."""
         frame = self.frame
         if loop.skipped is not None:
-            self.builder.store(ir.Constant(type_of(BOOL, is_lanes=True), None), loop.skipped)
+            self.builder.store(ir.Constant(self.arithmetic.type_of(BOOL, is_lanes=True), None), loop.skipped)
         self.mask, frame.mask = before
         if loop.out is not None:
             self.leave_out(loop.out)

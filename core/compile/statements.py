@@ -6,10 +6,11 @@ import ast
 from collections.abc import Sequence
 from typing import Any
 
-from core.lanes.expressions import Expressions
-from core.lanes.frames import returns, tree_of
-from core.lanes.numbers import BOOL, Number, Unsupported, is_number
-from core.lanes.places import Place, PortsView, RecordsView, RecordView, VectorView
+from core.compile.arrays import ArrayPlace, ArrayView
+from core.compile.expressions import Expressions
+from core.compile.frames import returns, tree_of
+from core.compile.numbers import BOOL, Number, Unsupported, is_number
+from core.compile.places import Place, PortsView, RecordsView, RecordView, VectorView
 from core.record import SCALAR
 
 SMALL = 12
@@ -25,6 +26,10 @@ class Statements(Expressions):
 
     def statement(self, node: ast.stmt) -> bool:
         """Translate a statement; say whether the code never gets behind it."""
+        with self.told(node):
+            return self._statement(node)
+
+    def _statement(self, node: ast.stmt) -> bool:
         if isinstance(node, ast.Assign):
             value = self.value(node.value)
             for target in node.targets:
@@ -71,6 +76,10 @@ class Statements(Expressions):
             for i in range(place.layout.size):
                 source = self.memory.read(Place(*self.memory.moved(value, i)), self.mask)
                 self.memory.write(Place(*self.memory.moved(place, i)), source, self.mask)
+        elif isinstance(place, ArrayView):
+            self.arrays.fill(place, value)
+        elif isinstance(place, ArrayPlace):
+            self.arrays.write(place, value)
         elif isinstance(place, Place):
             self.memory.write(place, value, self.mask)
         else:
@@ -82,7 +91,9 @@ class Statements(Expressions):
             self.assign(node.target.id, self.arithmetic.binary(type(node.op), before, self.value(node.value)))
             return
         place = self._place(node.target)
-        before = self.memory.read(place, self.mask)
+        if isinstance(place, ArrayView):
+            raise Unsupported("arithmetic on an array")
+        before = self.arrays.read(place) if isinstance(place, ArrayPlace) else self.memory.read(place, self.mask)
         self._write(place, self.arithmetic.binary(type(node.op), before, self.value(node.value)))
 
     def _place(self, node: ast.expr) -> Any:
@@ -101,8 +112,11 @@ class Statements(Expressions):
                     return self.memory.attribute(owner, node.attr, self.mask)
         elif isinstance(node, ast.Subscript):
             owner = self.value(node.value)
+            index = self.value(node.slice)
+            if isinstance(owner, ArrayView):
+                return self.arrays.part(owner, index if isinstance(index, tuple) else (index,))
             if isinstance(owner, VectorView | RecordsView):
-                return self.memory.item(owner, self.value(node.slice))
+                return self.memory.item(owner, index)
         raise Unsupported(f"an assignment to {ast.unparse(node)}")
 
     def _if(self, node: ast.If) -> bool:

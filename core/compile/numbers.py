@@ -1,28 +1,39 @@
-"""Numbers as the compiler of lanes sees them, and arithmetic on them with the rules of compiled steps."""
+"""Numbers as the compiler sees them, and arithmetic on them with the rules of compiled steps."""
 
 from __future__ import annotations
 
 import ast
+import inspect
 import operator
 from collections.abc import Callable
 from dataclasses import dataclass
+from types import FunctionType
 from typing import Any
 
 import numpy as np
-from llvmlite import binding as llvm
 from llvmlite import ir
 
-WIDTH = 16 if llvm.get_host_cpu_features().get("avx512f") else 8
-"""Boards side by side: two of the widest vectors or more, so that one computes while another waits for its operands."""
+from core.errors import InputError
 
+NAME = "step"
+"""Of the function in machine code."""
 BOOL, INT, UINT, FLOAT = 0, 1, 2, 3
 """Kinds of numbers, each wider than the one before."""
 DOUBLE, I64, I1 = ir.DoubleType(), ir.IntType(64), ir.IntType(1)
 SCALARS = {BOOL: I1, INT: I64, UINT: I64, FLOAT: DOUBLE}
 
 
-class Unsupported(Exception):
-    """Nothing that lanes can do; the step runs for one board after another."""
+class Unsupported(InputError):
+    """Outside the notation; what only boards side by side cannot do runs for one board after another."""
+
+    def at(self, function: FunctionType, node: ast.stmt | ast.expr) -> Unsupported:
+        """Return the same with its place in the text of a function; one that has a place stays."""
+        if self.field:
+            return self
+        text, code = inspect.getsource(function), function.__code__
+        line = code.co_firstlineno + node.lineno - 1
+        column = len(text) - len(text.lstrip()) + node.col_offset + 1
+        return Unsupported(self.message, f"{code.co_filename}:{line}:{column}", self.hint)
 
 
 @dataclass(frozen=True)
@@ -36,11 +47,6 @@ class Number:
     def is_lanes(self) -> bool:
         """Whether each board has its own."""
         return isinstance(self.value.type, ir.VectorType)
-
-
-def type_of(kind: int, *, is_lanes: bool) -> Any:
-    """Return the type of a kind of numbers."""
-    return ir.VectorType(SCALARS[kind], WIDTH) if is_lanes else SCALARS[kind]
 
 
 def is_number(value: Any) -> bool:
@@ -74,10 +80,14 @@ ORDER: dict[str, Callable[[Any, Any], Any]] = {
 
 
 class Arithmetic:
-    """Writes instructions on numbers."""
+    """Writes instructions on numbers, of so many boards side by side."""
 
-    def __init__(self, builder: ir.IRBuilder) -> None:
-        self.builder = builder
+    def __init__(self, builder: ir.IRBuilder, width: int) -> None:
+        self.builder, self.width = builder, width
+
+    def type_of(self, kind: int, *, is_lanes: bool) -> Any:
+        """Return the type of a kind of numbers."""
+        return ir.VectorType(SCALARS[kind], self.width) if is_lanes else SCALARS[kind]
 
     def number(self, value: Any) -> Number:
         """Return something as a number of the code."""
@@ -97,19 +107,19 @@ class Arithmetic:
         """Return a number of all boards as one of each."""
         if number.is_lanes:
             return number
-        kind = type_of(number.kind, is_lanes=True)
+        kind = self.type_of(number.kind, is_lanes=True)
         if isinstance(number.value, ir.Constant):
-            return Number(ir.Constant(kind, [number.value] * WIDTH), number.kind)
+            return Number(ir.Constant(kind, [number.value] * self.width), number.kind)
         first = self.builder.insert_element(ir.Constant(kind, ir.Undefined), number.value, ir.Constant(I64, 0))
-        places = ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), [0] * WIDTH)
+        places = ir.Constant(ir.VectorType(ir.IntType(32), self.width), [0] * self.width)
         return Number(self.builder.shuffle_vector(first, ir.Constant(kind, ir.Undefined), places), number.kind)
 
     def as_kind(self, value: Any, kind: int) -> Number:
-        """Return a number as one of another kind, as Python and numba convert it."""
+        """Return a number as one of another kind, as Python converts it."""
         number = self.number(value)
         if number.kind == kind:
             return number
-        target, build = type_of(kind, is_lanes=number.is_lanes), self.builder
+        target, build = self.type_of(kind, is_lanes=number.is_lanes), self.builder
         if kind == BOOL:
             zero = ir.Constant(number.value.type, None)
             if number.kind == FLOAT:
@@ -127,14 +137,17 @@ class Arithmetic:
 
     def alike(self, *values: Any) -> list[Number]:
         """Return numbers of one kind, all of each board or all of every board."""
+        kind, is_lanes = self.common(*values)
+        numbers = [self.as_kind(value, kind) for value in values]
+        return [self.spread(number) for number in numbers] if is_lanes else numbers
+
+    def common(self, *values: Any) -> tuple[int, bool]:
+        """Return the kind that numbers have in common, and whether each board has its own."""
         numbers = [self.number(value) for value in values]
         kind = max(number.kind for number in numbers)
         if kind == UINT and any(isinstance(n, Number) and n.kind == INT for n in values):
             raise Unsupported("a signed and an unsigned number")
-        numbers = [self.as_kind(number, kind) for number in numbers]
-        if any(number.is_lanes for number in numbers):
-            numbers = [self.spread(number) for number in numbers]
-        return numbers
+        return kind, any(number.is_lanes for number in numbers)
 
     def truth(self, value: Any) -> Number:
         """Return a number as true or false."""
@@ -165,8 +178,8 @@ class Arithmetic:
         """Return whether a condition holds in some lane, for a branch."""
         if not condition.is_lanes:
             return condition.value
-        bits = self.builder.bitcast(condition.value, ir.IntType(WIDTH))
-        return self.builder.icmp_unsigned("!=", bits, ir.Constant(ir.IntType(WIDTH), 0))
+        bits = self.builder.bitcast(condition.value, ir.IntType(self.width))
+        return self.builder.icmp_unsigned("!=", bits, ir.Constant(ir.IntType(self.width), 0))
 
     def negative(self, value: Any) -> Any:
         """Return a number with the other sign."""
@@ -230,6 +243,8 @@ class Arithmetic:
         # the remainder has the sign of the divisor
         other = self.binary(ast.BitXor, self.compare("<", rest, 0.0), self.compare("<", right, 0.0))
         moved = self.both(self.compare("!=", rest, 0.0), other)
+        whole = self.intrinsic("copysign", 0.0, right)
+        rest = self.select(self.compare("==", rest, 0.0), whole, rest)
         return self.select(moved, self.binary(ast.Add, rest, right), rest)
 
     def _whole(self, sign: type[ast.AST], left: Number, right: Number) -> Number:
@@ -260,7 +275,7 @@ class Arithmetic:
         """Return the result of an instruction on real numbers, such as a square root."""
         numbers = self.alike(*(self.as_kind(value, FLOAT) for value in values))
         kind = numbers[0].value.type
-        full = f"llvm.{name}.{f'v{WIDTH}f64' if numbers[0].is_lanes else 'f64'}"
+        full = f"llvm.{name}.{f'v{self.width}f64' if numbers[0].is_lanes else 'f64'}"
         module = self.builder.module
         function = module.globals.get(full)
         if function is None:

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import ast
 import inspect
+import linecache
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
 from functools import cache
-from types import FunctionType
+from types import CodeType, FunctionType
 from typing import Any
 
-from core.lanes.numbers import Number, Unsupported
+from core.compile.numbers import Number, Unsupported
 
+AGAIN = "end this process and start it again"
 Kinds = dict[str, tuple[int, bool]]
 """Of every variable of every call its kind, and whether each board has its own."""
 
@@ -20,10 +22,34 @@ Kinds = dict[str, tuple[int, bool]]
 @cache
 def tree_of(function: FunctionType) -> ast.FunctionDef:
     """Return the syntax tree of a function."""
-    (tree,) = ast.parse(textwrap.dedent(inspect.getsource(function))).body
+    try:
+        text = inspect.getsource(function)
+    except OSError:
+        raise Unsupported(f"{function.__name__} has no text that can be read") from None
+    file = function.__code__.co_filename
+    if _mark(function.__code__) not in _marks(file, "".join(linecache.getlines(file))):
+        raise Unsupported(f"the text of {function.__name__} has changed since it was loaded", file, AGAIN)
+    (tree,) = ast.parse(textwrap.dedent(text)).body
     if not isinstance(tree, ast.FunctionDef):
         raise Unsupported(f"{function.__name__} is no function with statements")
     return tree
+
+
+@cache
+def _marks(file: str, text: str) -> frozenset[Hashable]:
+    """Return the marks of all functions of a text."""
+    found, left = [], [compile(text, file, "exec", dont_inherit=True)]
+    while left:
+        code = left.pop()
+        found.append(_mark(code))
+        left += [one for one in code.co_consts if isinstance(one, CodeType)]
+    return frozenset(found)
+
+
+def _mark(code: CodeType) -> Hashable:
+    """Return the parts of the code of a function that change with its text."""
+    constants = tuple(repr(one) for one in code.co_consts if not isinstance(one, CodeType))
+    return code.co_name, code.co_firstlineno, code.co_code, code.co_names, code.co_varnames, constants
 
 
 @cache

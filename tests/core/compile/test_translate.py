@@ -10,10 +10,12 @@ import numpy as np
 import pytest
 
 import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
+from core import kernel_cache
+from core.compile import code
+from core.compile.machine import WIDTH, compiled, loaded
+from core.compile.numbers import Unsupported
 from core.elementary import atan2, cos, exp, expm1, floor, log, sin, sin_of_turns, tanh
 from core.kernel import kernel
-from core.lanes import code
-from core.lanes.numbers import WIDTH, Unsupported
 from core.noise import normal
 from core.plain import plain
 from core.ports import RESERVED, BlockPorts, output, reads
@@ -78,7 +80,7 @@ def arithmetic(p, s, x):
     x.z[0] = min(x.a, x.b, p.level)
     x.z[1] = max(x.a, x.b)
     x.z[2] = math.copysign(x.a, x.b) + math.sqrt(abs(x.b))
-    x.z[3] = x.a % 3.0 if math.isfinite(x.a) else 0.0
+    x.z[3] = x.a % 3.0 + math.copysign(1.0, (2.0 * floor(x.b)) % -2.0) if abs(x.a) + abs(x.b) < 1e9 else 0.0
     x.z[4] = float(int(x.tick) % 7 // 2) + (1.0 if x.tick % 2.0 == 1.0 else 0.0)
 
 
@@ -114,6 +116,20 @@ def chooses(p, s, x):
             y += x.b
     x.y = y
     x.z[0] = 1.0 if x.a > 0.0 and x.b > 0.0 else (2.0 if x.b > 1.0 else 3.0)
+
+
+@kernel
+def counted(s: State) -> float:
+    s.sum += 1.0
+    return s.sum
+
+
+def computes_what_is_needed(p, s, x):
+    x.y = counted(s) if p.count == 4.0 else -1.0
+    x.z[0] = 1.0 if p.count == 3.0 or counted(s) > 0.0 else 2.0
+    x.z[1] = float(int(x.tick) % int(p.count - 3.0)) if p.count != 3.0 else 5.0
+    x.z[2] = counted(s) if p.count == 3.0 and x.tick > 5.0 else 0.0
+    x.z[3] = counted(s) if x.a > 0.0 else 0.0
 
 
 def loops(p, s, x):
@@ -171,20 +187,34 @@ def functions(p, s, x):
     x.z[3] = normal(9007199254740.0, x.tick) + normal(abs(a) * 1e9, x.tick)
 
 
-STEPS = (arithmetic, returns_early, returns_several, chooses, loops, loops_of_other_lengths, copies, functions)
+STEPS = (
+    arithmetic,
+    returns_early,
+    returns_several,
+    chooses,
+    computes_what_is_needed,
+    loops,
+    loops_of_other_lengths,
+    copies,
+    functions,
+)
 
 
 def unit(step: Any) -> Any:
     return type(step.__name__, (), {"step": step, "Packed": Packed, "State": State, "Ports": Ports})
 
 
-def call(step: Any, p: Any, s: Any, w: Any, io: Any, *, lanes: bool) -> None:
-    address = code.loaded(code.compiled(code.instructions(unit(step), lanes=lanes)))
-    function = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 4)(address)
-    for tick in range(1, 30):
-        w[0] = tick
-        w[1] = 0.01 * tick
-        function(*(array.ctypes.data for array in (p, s, w, io)))
+def call(step: Any, p: Any, s: Any, w: Any, io: Any, width: int, *, lanes: bool) -> None:
+    text = code.instructions(unit(step), width, lanes=lanes)
+    function = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 4)(loaded(compiled(text, loops=width == 1)))
+    for k in range(0, WIDTH, width):
+        own = [np.ascontiguousarray(array[:, k : k + width]) for array in (p, s, w)]
+        for tick in range(1, 30):
+            own[2][0] = tick
+            own[2][1] = 0.01 * tick
+            function(*(array.ctypes.data for array in (*own, io)))
+        for array, now in zip((s, w), own[1:], strict=True):
+            array[:, k : k + width] = now
 
 
 @pytest.fixture
@@ -207,12 +237,12 @@ def arrays() -> Any:
     return p, s, w, io
 
 
-@pytest.mark.parametrize("lanes", [True, False])
+@pytest.mark.parametrize(("width", "lanes"), [(WIDTH, True), (WIDTH, False), (1, False)])
 @pytest.mark.parametrize("step", STEPS, ids=lambda step: step.__name__)
-def test_each_board_gets_the_bits_of_plain_python(step, lanes, arrays):
+def test_each_board_gets_the_bits_of_plain_python(step, width, lanes, arrays):
     p, s, w, io = arrays
     now = s.copy(), w.copy()
-    call(step, p, *now, io, lanes=lanes)
+    call(step, p, *now, io, width, lanes=lanes)
     function = plain(step)
     for lane in range(WIDTH):
         own = s[:, lane].copy(), w[:, lane].copy()
@@ -236,7 +266,39 @@ def says_too_much(p, s, x):
 
 def test_what_lanes_cannot_do_runs_one_board_after_another(arrays):
     with pytest.raises(Unsupported, match="begins"):
-        code.instructions(unit(begins_anywhere), lanes=True)
-    assert "double" in code.instructions(unit(begins_anywhere), lanes=False)
+        code.instructions(unit(begins_anywhere), WIDTH, lanes=True)
+    assert "double" in code.instructions(unit(begins_anywhere), WIDTH, lanes=False)
     with pytest.raises(Unsupported, match="a call of"):
-        code.instructions(unit(says_too_much), lanes=False)
+        code.instructions(unit(says_too_much), 1, lanes=False)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        ("x86_64-unknown-linux-gnu", "x86-64-v2", "+sse2", "1"),
+        ("x86_64-unknown-linux-gnu", "x86-64-v3", "+sse2", "1"),
+        ("x86_64-unknown-linux-gnu", "x86-64-v2", "+avx", "1"),
+        ("aarch64-unknown-linux-gnu", "x86-64-v2", "+sse2", "1"),
+        ("x86_64-unknown-linux-gnu", "x86-64-v2", "+sse2", "2"),
+    ],
+)
+def test_code_for_another_machine_has_another_name(other, monkeypatch):
+    here = ("x86_64-unknown-linux-gnu", "x86-64-v2", "+sse2", "1")
+    monkeypatch.setattr(code, "target", lambda: here)
+    name = code.name_of(unit(arithmetic), WIDTH)
+    monkeypatch.setattr(code, "target", lambda: other)
+    assert (code.name_of(unit(arithmetic), WIDTH) == name) is (other == here)
+
+
+def test_code_for_other_boards_side_by_side_has_another_name_and_is_another_file():
+    class Shelf:
+        def __init__(self):
+            self.kept = {}
+            self.get, self.put = self.kept.get, self.kept.__setitem__
+
+    shelf = Shelf()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(kernel_cache, "_shelves", [shelf])
+        codes = {code.kept(unit(arithmetic), width) for width in (1, 8, 16)}
+        assert len(codes) == len(shelf.kept) == 3
+        assert {code.kept(unit(arithmetic), width) for width in (1, 8, 16)} == codes and len(shelf.kept) == 3

@@ -1,4 +1,4 @@
-"""Translates steps and the helpers they call into instructions for boards side by side.
+"""Translates steps and the helpers they call into instructions, for one board or for boards side by side.
 
 Of Python it knows what steps are written in: assignments, ``if``, loops, ``return``, arithmetic, and calls of other
 such functions, which become part of the step. In a condition in which boards differ both branches are translated, each
@@ -12,10 +12,13 @@ from collections.abc import Sequence
 from types import FunctionType
 from typing import Any
 
-from core.lanes.frames import Frame, stored, tree_of
-from core.lanes.functions import FUNCTIONS
-from core.lanes.loops import Loops
-from core.lanes.numbers import Unsupported, is_number
+import numpy as np
+
+from core.compile.arrays import Bound
+from core.compile.frames import Frame, stored, tree_of
+from core.compile.functions import FUNCTIONS
+from core.compile.loops import Loops
+from core.compile.numbers import Unsupported, is_number
 
 DEEPEST = 40
 """Calls within calls."""
@@ -28,7 +31,9 @@ class Translation(Loops):
         """Translate a call of a function; its statements become part of the code."""
         function = getattr(function, "py_func", function)
         if function in FUNCTIONS:
-            return FUNCTIONS[function](self.arithmetic, *arguments)
+            return FUNCTIONS[function](self.arithmetic, *arguments, **(named or {}))
+        if isinstance(function, Bound):
+            return self.arrays.viewed(function.view, np.dtype(*arguments).name)
         if not isinstance(function, FunctionType) or self._depth > DEEPEST:
             raise Unsupported(f"a call of {function}")
         tree = tree_of(function)

@@ -1,7 +1,7 @@
 """Records, vectors and ports of boards side by side: where their numbers are.
 
-A number of a board stands beside that of the next: field ``offset`` of the board in lane ``k`` is at
-``base[offset * WIDTH + k]``.
+A number of a board stands beside that of the next: of so many boards, field ``offset`` of the one in lane ``k`` is at
+``base[offset * width + k]``.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Any
 
 from llvmlite import ir
 
-from core.lanes.numbers import FLOAT, I64, INT, WIDTH, Arithmetic, Number, Unsupported, type_of
+from core.compile.numbers import FLOAT, I64, INT, Arithmetic, Number, Unsupported
 from core.ports import TICK, TIME_MS
 from core.record import RECORD, SCALAR, Field, Layout
 
@@ -57,6 +57,7 @@ class Memory:
 
     def __init__(self, arithmetic: Arithmetic, *, lanes: bool) -> None:
         self._arithmetic, self._build, self._lanes = arithmetic, arithmetic.builder, lanes
+        self._width = arithmetic.width
 
     def moved(self, place: Place, numbers: Any) -> tuple[Any, Number | None]:
         """Return the base and the shift of a place so many numbers further."""
@@ -64,14 +65,14 @@ class Memory:
             shift = numbers if place.shift is None else self._arithmetic.plus(place.shift, numbers)
             return place.base, shift
         count = self._arithmetic.as_kind(numbers, INT).value
-        offset = self._build.mul(count, ir.Constant(I64, WIDTH))
+        offset = self._build.mul(count, ir.Constant(I64, self._width))
         return self._build.gep(place.base, [offset], inbounds=True), place.shift
 
     def read(self, place: Place, mask: Number | None, *, shared: bool = False) -> Number:
         """Return the number at a place; a shared one is the same in all lanes."""
         if shared or not self._lanes:
             return Number(self._build.load(place.base), FLOAT)
-        kind = type_of(FLOAT, is_lanes=True)
+        kind = self._arithmetic.type_of(FLOAT, is_lanes=True)
         if place.shift is None:
             at = self._build.bitcast(place.base, kind.as_pointer())
             return Number(self._build.load(at, align=8), FLOAT)
@@ -103,9 +104,9 @@ class Memory:
         if mask is not None:
             shift = self._arithmetic.select(mask, shift, 0)
         found = []
-        for lane in range(WIDTH):
+        for lane in range(self._width):
             count = self._build.extract_element(shift.value, ir.Constant(I64, lane))
-            offset = self._build.add(self._build.mul(count, ir.Constant(I64, WIDTH)), ir.Constant(I64, lane))
+            offset = self._build.add(self._build.mul(count, ir.Constant(I64, self._width)), ir.Constant(I64, lane))
             found.append(self._build.gep(place.base, [offset], inbounds=True))
         return found
 
@@ -138,13 +139,13 @@ class Memory:
     def port(self, ports: PortsView, name: str) -> tuple[Place, Any]:
         """Return the place of the signal behind a port, and what the port is."""
         if name in ("tick", "time_ms"):
-            offset = (TICK if name == "tick" else TIME_MS) * WIDTH
+            offset = (TICK if name == "tick" else TIME_MS) * self._width
             return Place(self._build.gep(ports.signals, [ir.Constant(I64, offset)])), "shared"
         if name not in ports.ports:
             raise Unsupported(f"no port {name}")
         number, seen = ports.ports[name]
         at = self._build.load(self._build.gep(ports.places, [ir.Constant(I64, number)]))
-        offset = self._build.mul(at, ir.Constant(I64, WIDTH))
+        offset = self._build.mul(at, ir.Constant(I64, self._width))
         return Place(self._build.gep(ports.signals, [offset])), seen
 
     def item(self, view: Any, index: Any) -> Any:

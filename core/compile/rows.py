@@ -11,8 +11,10 @@ from typing import Any
 
 from llvmlite import ir
 
-from core.lanes.code import PLACES, POINTER, begun, compiled, counted, loaded
-from core.lanes.numbers import DOUBLE, I64, WIDTH
+from core.compile.arrays import counted
+from core.compile.code import PLACES, POINTER, begun
+from core.compile.machine import WIDTH, compiled, loaded
+from core.compile.numbers import DOUBLE, I64
 
 LANES, BITS = ir.VectorType(DOUBLE, WIDTH), ir.VectorType(I64, WIDTH)
 

@@ -1,0 +1,141 @@
+"""Machine code of steps, for one board or for boards side by side."""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import sys
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+from llvmlite import ir
+
+from core.compile.arrays import counted
+from core.compile.frames import Kinds
+from core.compile.machine import compiled, loaded, target
+from core.compile.numbers import DOUBLE, I64, NAME, Unsupported
+from core.compile.places import PortsView, RecordView
+from core.compile.translate import Translation
+from core.kernel_cache import compiled_here, get, key, put
+
+MOST_PASSES = 30
+OTHERS = {"core.compile.rows"}
+"""Modules beside the translator, which some processes load and some do not."""
+POINTER, PLACES = DOUBLE.as_pointer(), I64.as_pointer()
+
+
+Block = Any
+"""A class with a step and the records and ports that it sees."""
+
+_addresses: dict[tuple[Block, int], int] = {}
+
+
+def address(block: Block, width: int = 1) -> int:
+    """Return where the C function of the step of a block is: pointers to parameters, state, all signals, and places."""
+    found = _addresses.get((block, width))
+    if found is None:
+        found = _addresses[block, width] = loaded(kept(block, width))
+    return found
+
+
+def kept(block: Block, width: int = 1) -> bytes:
+    """Return the machine code of a step; it is compiled, and put on the shelf, if it is not there."""
+    return kept_as(name_of(block, width), lambda: translated(block, width)[0], loops=width == 1)
+
+
+def kept_as(name: str, write: Callable[[], str], *, loops: bool) -> bytes:
+    """Return the machine code of a name on the shelf. Without it, the instructions are written and compiled."""
+    code = get(name)
+    if code is None:
+        code = compiled(write(), loops=loops)
+        compiled_here.append(name)
+        put(name, code)
+    return code
+
+
+def translated(block: Block, width: int) -> tuple[str, bool]:
+    """Return the instructions of a step, and whether for all boards at once."""
+    try:
+        return instructions(block, width, lanes=width > 1), True
+    except Unsupported:
+        if width == 1:
+            raise
+        return instructions(block, width, lanes=False), False
+
+
+def instructions(block: Block, width: int, *, lanes: bool) -> str:
+    """Return the instructions of a step for so many boards: for all at once, or for one after another.
+
+    Raises
+    ------
+    Unsupported
+        When the step says something that is not known.
+    """
+    return settled(lambda kinds: _written(block, kinds, width, lanes=lanes))
+
+
+def settled(write: Callable[[Kinds], tuple[ir.Module, bool]]) -> str:
+    """Return instructions, written again and again until the kinds of all variables are known."""
+    kinds: Kinds = {}
+    for _ in range(MOST_PASSES):
+        module, is_complete = write(kinds)
+        if is_complete:
+            return str(module)
+    raise Unsupported("variables whose kinds never settle")
+
+
+def _written(block: Block, kinds: Kinds, width: int, *, lanes: bool) -> tuple[ir.Module, bool]:
+    """Return the instructions as far as the kinds of variables are known, and whether that was enough."""
+    module, builder, (p, s, w, io) = begun([POINTER, POINTER, POINTER, PLACES])
+    start = builder.append_basic_block("start")
+    translation = Translation(builder, kinds, width, lanes=lanes)
+    ports = {port.name: (i, _seen(port)) for i, port in enumerate(block.Ports.declared)}
+
+    def board(p: Any, s: Any, w: Any) -> None:
+        records = RecordView(p, None, block.Packed.layout), RecordView(s, None, block.State.layout)
+        translation.call(block.step, (*records, PortsView(w, io, ports)))
+
+    with builder.goto_block(start):
+        if lanes or width == 1:
+            board(p, s, w)
+        else:
+            with counted(builder, ir.Constant(I64, width)) as k:  # one board after another
+                board(*(builder.gep(base, [k]) for base in (p, s, w)))
+        builder.ret_void()
+    builder.branch(start)
+    return module, translation.is_complete
+
+
+def _seen(port: Any) -> Any:
+    """Return what a step sees behind a port: a number, a vector, or records of a layout."""
+    return port.record.layout if port.record else port.vector
+
+
+def begun(kinds: list[Any]) -> tuple[ir.Module, ir.IRBuilder, tuple[Any, ...]]:
+    """Return a module with a function of such arguments, which lie apart, a builder at its beginning, the arguments."""
+    module = ir.Module(NAME)
+    function = ir.Function(module, ir.FunctionType(ir.VoidType(), kinds), NAME)
+    for argument in function.args:
+        argument.add_attribute("noalias")
+    return module, ir.IRBuilder(function.append_basic_block("entry")), function.args
+
+
+def name_of(block: Block, width: int) -> str:
+    """Return the name on the shelf of a step for so many boards, on this machine."""
+    return f"step-{width}-{block.__module__}-{hash_of(block, width, *target())}"
+
+
+def hash_of(block: Block, *machine: Any) -> str:
+    """Return a hash of a step, of what it sees, of this compiler and of what the code is for."""
+    ports = [(port.name, _seen(port)) for port in block.Ports.declared]
+    parts = key(block.step), block.Packed.layout, block.State.layout, ports, compiler(), machine
+    return hashlib.sha256("\n".join(map(str, parts)).encode()).hexdigest()[:24]
+
+
+@cache
+def compiler() -> str:
+    """Return a hash of this compiler."""
+    names = sorted(name for name in sys.modules if name.startswith("core.compile.") and name not in OTHERS)
+    text = "".join(inspect.getsource(sys.modules[name]) for name in names)
+    return hashlib.sha256(text.encode()).hexdigest()
