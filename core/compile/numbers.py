@@ -23,6 +23,13 @@ DOUBLE, I64, I1 = ir.DoubleType(), ir.IntType(64), ir.IntType(1)
 SCALARS = {BOOL: I1, INT: I64, UINT: I64, FLOAT: DOUBLE}
 
 
+NOTATION = (
+    "steps and kernels have assignments, if, while, for over range, arithmetic, comparisons, records, vectors, ports, "
+    "and calls of kernels and of abs, min, max, int, float and math.sqrt"
+)
+"""The way out for a step that says anything else."""
+
+
 class Unsupported(InputError):
     """Outside the notation; what only boards side by side cannot do runs for one board after another."""
 
@@ -33,7 +40,7 @@ class Unsupported(InputError):
         text, code = inspect.getsource(function), function.__code__
         line = code.co_firstlineno + node.lineno - 1
         column = len(text) - len(text.lstrip()) + node.col_offset + 1
-        return Unsupported(self.message, f"{code.co_filename}:{line}:{column}", self.hint)
+        return Unsupported(self.message, f"{code.co_filename}:{line}:{column}", self.hint or NOTATION)
 
 
 @dataclass(frozen=True)

@@ -268,8 +268,10 @@ def test_what_lanes_cannot_do_runs_one_board_after_another(arrays):
     with pytest.raises(Unsupported, match="begins"):
         code.instructions(unit(begins_anywhere), WIDTH, lanes=True)
     assert "double" in code.instructions(unit(begins_anywhere), WIDTH, lanes=False)
-    with pytest.raises(Unsupported, match="a call of"):
+    with pytest.raises(Unsupported, match="a call of") as raised:
         code.instructions(unit(says_too_much), 1, lanes=False)
+    line = says_too_much.__code__.co_firstlineno + 1
+    assert raised.value.field == f"{__file__}:{line}:11" and "calls of kernels" in raised.value.hint
 
 
 @pytest.mark.parametrize(
