@@ -14,8 +14,6 @@ the true one has no bound where fingers touch.
 
 from __future__ import annotations
 
-from typing import Any
-
 from core.kernel import kernel
 
 Z1, Z2 = 0.538469310105683091, 0.906179845938663993
@@ -86,8 +84,9 @@ def sums(
     )
 
 
-@kernel
-def co_energy(strength: float, square: float, limit: float, tips: Any, x: float, y: float, theta: float) -> float:
+def co_energy(
+    strength: float, square: float, limit: float, tips: tuple[float, ...], x: float, y: float, theta: float
+) -> float:
     r"""Return the co-energy of both combs, uN um, for checks: the loop needs only its derivatives.
 
     Parameters

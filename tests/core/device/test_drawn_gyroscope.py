@@ -231,7 +231,7 @@ def test_parts_that_do_not_fit_are_refused(values: dict[str, Any], field: str, w
 
 def test_a_gyroscope_is_given_in_one_way() -> None:
     given_too = device({"id": "gyro-c"}).gyroscope
-    with pytest.raises(ValueError, match="stand in its drawing; leave out gyroscope"):
+    with pytest.raises(ValueError, match="belong in its drawing; leave out gyroscope"):
         Device.model_validate({**device(LCR).model_dump(), "gyroscope": given_too})
     with pytest.raises(InputError, match="needs a geometry"):
         device({"id": "double-integrator", "transfer_function": None, "drawn_gyroscope": {}})

@@ -23,7 +23,10 @@ export function Search() {
       if (!(target as HTMLElement).closest("input")) setAsked((before) => before + key);
     };
     window.addEventListener("keydown", type);
-    return () => window.removeEventListener("keydown", type);
+    return () => {
+      window.removeEventListener("keydown", type);
+      spotlight.close(); // the keys are keys of the page again
+    };
   }, []);
   return (
     <Spotlight.Root

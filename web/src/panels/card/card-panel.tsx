@@ -37,10 +37,7 @@ export function CardPanel() {
   return (
     <section className="view-page" aria-label={`Block: ${found?.title ?? instance.name}`}>
       <div className={`row ${styles.head}`}>
-        <Button
-          leftSection={<IconChevronLeft size={15} />}
-          onClick={() => showPanel("schematic")}
-        >
+        <Button leftSection={<IconChevronLeft size={15} />} onClick={() => showPanel("schematic")}>
           Diagram
         </Button>
         <NativeSelect

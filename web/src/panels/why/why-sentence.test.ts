@@ -33,11 +33,17 @@ const sentence = (shares: number[], sigmas: number[], rest?: Partial<Account>, b
 
 describe("the verdict in one sentence", () => {
   it("sets the winner beside healthy", () =>
-    expect(sentence([0.1, 0.8, 0.1], [3.52, 0.88, 2])).toBe("Mass +5\u00a0% wins: it misses by 0.9 σ, healthy by 3.5 σ."));
+    expect(sentence([0.1, 0.8, 0.1], [3.52, 0.88, 2])).toBe(
+      "Mass +5\u00a0% wins: it misses by 0.9 σ, healthy by 3.5 σ.",
+    ));
   it("sets healthy beside its nearest rival", () =>
-    expect(sentence([0.8, 0.05, 0.15], [0.5, 3, 2.04])).toBe("healthy wins: it misses by 0.5 σ, mass +10\u00a0% by 2.0 σ."));
+    expect(sentence([0.8, 0.05, 0.15], [0.5, 3, 2.04])).toBe(
+      "healthy wins: it misses by 0.5 σ, mass +10\u00a0% by 2.0 σ.",
+    ));
   it("sets the winner beside what it has just beaten", () =>
-    expect(sentence([0.1, 0.3, 0.6], [5, 3, 1], {}, "m+5")).toBe("Mass +10\u00a0% wins: it misses by 1.0 σ, mass +5\u00a0% by 3.0 σ."));
+    expect(sentence([0.1, 0.3, 0.6], [5, 3, 1], {}, "m+5")).toBe(
+      "Mass +10\u00a0% wins: it misses by 1.0 σ, mass +5\u00a0% by 3.0 σ.",
+    ));
   it("says when the samples before decide", () => {
     expect(sentence([0.1, 0.8, 0.1], [0.4, 1.9, 2])).toBe(
       "Mass +5\u00a0% wins by the samples before: here it misses by 1.9 σ, healthy only by 0.4 σ.",
