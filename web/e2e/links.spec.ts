@@ -118,7 +118,7 @@ test("a visitor needs a token, has a bench, joins another by its address, and a 
   await page.goto(other.url());
   await expect(page.getByTestId("bench-state")).toHaveText("running");
   await server.advance(1);
-  await expect(page.getByText("2 watching")).toBeVisible();
+  await expect(page.getByTitle(/2 watching\./)).toBeVisible();
   await other.getByRole("button", { name: "Pause" }).click();
   await expect(page.getByTestId("bench-state")).toHaveText("paused");
 

@@ -37,7 +37,7 @@ test("a hidden page stays connected; a page outlives its server and continues wh
     await page.request.get(server.url);
     await expect(state).toHaveText("not connected");
     await expect(page.getByRole("button", { name: "Run", exact: true })).toBeDisabled();
-    await expect(page.getByText("watching")).toHaveCount(0);
+    await expect(page.getByTitle(/watching/)).toHaveCount(0);
     await page.getByRole("button", { name: "Start it again" }).click();
     await expect(state).toHaveText("running");
     const before = await clock.innerText();

@@ -36,9 +36,11 @@ export function BenchMenu() {
         <UnstyledButton
           className={styles.bench}
           aria-label={title ?? "No bench"}
-          title={`${title ?? "No bench"}: change bench. ${formatShort(rate ?? 0, "kHz")} board, ${watchers} watching.${
-            slow ? " The display lags, the simulation is on time." : ""
-          }`}
+          title={[
+            `${title ?? "No bench"}: change bench.`,
+            ...(stale ? [] : [`${formatShort(rate ?? 0, "kHz")} board, ${watchers} watching.`]),
+            ...(slow ? ["The display lags, the simulation is on time."] : []),
+          ].join(" ")}
         >
           <span data-lines={news ? 1 : 2}>{name} </span>
           <small data-slow={slow}>
