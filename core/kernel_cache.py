@@ -34,7 +34,7 @@ def keep_on(shelf: Shelf) -> None:
 
 
 compiled_here: list[str] = []
-"""The names of what this process has compiled because no shelf had it."""
+"""The names of kernels that this process compiled because no shelf had them."""
 
 
 def get(name: str) -> bytes | None:

@@ -150,7 +150,7 @@ def contiguous(arithmetic: Arithmetic, lengths: Sequence[Any]) -> tuple[Any, ...
 
 @contextmanager
 def counted(builder: ir.IRBuilder, count: Any, step: int = 1) -> Iterator[Any]:
-    """Repeat what is written inside for 0, step, ... below a count."""
+    """Repeat the instructions that are written inside for 0, step, ... below a count."""
     with builder.goto_entry_block():
         counter = builder.alloca(I64)
     builder.store(ir.Constant(I64, 0), counter)

@@ -129,7 +129,11 @@ def name_of(block: Block, width: int) -> str:
 def hash_of(block: Block, *machine: Any) -> str:
     """Return a hash of a step, of what it sees, of this compiler and of what the code is for."""
     ports = [(port.name, _seen(port)) for port in block.Ports.declared]
-    parts = key(block.step), block.Packed.layout, block.State.layout, ports, compiler(), machine
+    return digest(key(block.step), block.Packed.layout, block.State.layout, ports, compiler(), machine)
+
+
+def digest(*parts: Any) -> str:
+    """Return the part of a name on the shelf that differs with anything the code depends on."""
     return hashlib.sha256("\n".join(map(str, parts)).encode()).hexdigest()[:24]
 
 

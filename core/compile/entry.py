@@ -8,7 +8,6 @@ is not made for them. Records are the exception: their addresses are given, and 
 from __future__ import annotations
 
 import ctypes
-import hashlib
 from collections.abc import Callable, Sequence
 from types import FunctionType
 from typing import Any
@@ -18,7 +17,7 @@ import numpy as np
 from llvmlite import ir
 
 from core.compile.arrays import ELEMENTS, ArrayView, contiguous
-from core.compile.code import compiler, kept_as, settled
+from core.compile.code import compiler, digest, kept_as, settled
 from core.compile.machine import loaded, target
 from core.compile.numbers import BOOL, DOUBLE, FLOAT, I64, INT, NAME, UINT, Number, Unsupported, is_number
 from core.compile.places import RecordView
@@ -76,7 +75,7 @@ for _name, _object in OBJECTS.items():
 _new = ctypes.pythonapi.PyCFunction_NewEx
 _new.argtypes, _new.restype = [ctypes.POINTER(_Definition), ctypes.py_object, ctypes.py_object], ctypes.py_object
 _definitions: list[_Definition] = []
-"""What must live as long as the code."""
+"""Definitions that the code needs as long as it lives."""
 
 
 def kind_of(value: Any) -> Any:
@@ -112,9 +111,8 @@ def plain(value: Any) -> Any:
 def made(function: FunctionType, kinds: Kinds) -> Callable[..., Any]:
     """Return what Python calls: the function compiled for arguments of some kinds."""
     layouts = tuple(kind.layout if isinstance(kind, type) and issubclass(kind, Record) else kind for kind in kinds)
-    parts = key(function), layouts, compiler(), *target()
-    digest = hashlib.sha256("\n".join(map(str, parts)).encode()).hexdigest()[:24]
-    name = f"kernel-{function.__module__}.{function.__name__}-{digest}"
+    mark = digest(key(function), layouts, compiler(), *target())
+    name = f"kernel-{function.__module__}.{function.__name__}-{mark}"
     address = loaded(kept_as(name, lambda: instructions(function, kinds), loops=True))
     _definitions.append(_Definition(function.__name__.encode(), address, FASTCALL, None))
     return _new(ctypes.byref(_definitions[-1]), None, None)  # type: ignore[no-any-return]

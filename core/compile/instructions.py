@@ -26,7 +26,7 @@ def whole(n: int) -> int:
     """Return how many numbers whole vector registers hold, at least ``n``.
 
     A loop that fills vectors longer than what is in use may go so far: it has no rest then that goes number by number.
-    Nobody reads what it writes behind the n-th. Boards abreast fill registers with boards and go to ``n`` alone.
+    The numbers after the n-th are unused. Boards abreast fill registers with boards and go to ``n`` alone.
     """
     return (n + 7) >> 3 << 3
 

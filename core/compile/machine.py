@@ -39,7 +39,7 @@ def improved(text: str, *, loops: bool) -> Any:
 
 
 _loaded: list[tuple[Any, ...]] = []
-"""What must live as long as the code."""
+"""Engines, files and code of loaded functions: they are needed as long as the process lives."""
 
 
 def loaded(code: bytes) -> int:

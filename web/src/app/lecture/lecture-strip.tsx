@@ -117,7 +117,6 @@ export function LectureStrip() {
       </Popover>
       <ActionIcon
         size={28}
-        variant="subtle"
         aria-label="Leave the lecture"
         title="Leave the lecture"
         onClick={() => void leave()}

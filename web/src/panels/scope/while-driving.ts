@@ -7,7 +7,7 @@ export const drove = (spans: readonly Driven[], tick: number): boolean =>
 
 /** The signal of a controller while it drives; in shadow the device does not obey it. */
 export function whileDriving({ low, high }: Envelope, frame: PanelFrame, spans: readonly Driven[]): Envelope {
-  const only = (values: Envelope["low"]) =>
-    values.map((value, column) => (drove(spans, tickOf(frame, column)) ? value : Number.NaN));
+  const drives = Array.from(low, (_, column) => drove(spans, tickOf(frame, column)));
+  const only = (values: Envelope["low"]) => values.map((value, column) => (drives[column] ? value : Number.NaN));
   return { low: only(low), high: only(high) };
 }
