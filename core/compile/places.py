@@ -1,7 +1,7 @@
 """Records, vectors and ports of boards side by side: where their numbers are.
 
-The same number of two neighbouring boards has neighbouring places: of ``width`` boards, field ``offset`` of the board in
-lane ``k`` is at ``base[offset * width + k]``.
+The same number of two neighbouring boards has neighbouring places: of ``width`` boards, field ``offset`` of the board
+in lane ``k`` is at ``base[offset * width + k]``.
 """
 
 from __future__ import annotations
