@@ -115,12 +115,7 @@ export function LectureStrip() {
           <LectureClock />
         </Popover.Dropdown>
       </Popover>
-      <ActionIcon
-        size={28}
-        aria-label="Leave the lecture"
-        title="Leave the lecture"
-        onClick={() => void leave()}
-      >
+      <ActionIcon size={28} aria-label="Leave the lecture" title="Leave the lecture" onClick={() => void leave()}>
         <IconX size={17} />
       </ActionIcon>
     </section>
