@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from server.bench.session import Session
+from server.bench.bench import LiveBench
 
 EVERY_S = 5.0
 """Between two looks at the benches."""
@@ -38,21 +38,21 @@ class Idling:
         """Forget a bench that is gone."""
         self._seen.pop(bench_id, None)
 
-    def left_s(self, session: Session) -> float | None:
+    def left_s(self, session: LiveBench) -> float | None:
         """Return how long an unused bench still stays; None if it is needed."""
         if not self._patience_s or self._is_needed(session):
             return None
         seen = self._seen.setdefault(session.id, self.clock())
         return max(0.0, seen + self._patience_s - self.clock())
 
-    def due(self, sessions: list[Session]) -> list[Session]:
+    def due(self, sessions: list[LiveBench]) -> list[LiveBench]:
         """Return the benches that may be closed now; note that the needed benches are needed."""
         for session in sessions:
             if self._is_needed(session):
                 self.saw(session.id)
         return [session for session in sessions if self.left_s(session) == 0.0]
 
-    def _is_needed(self, session: Session) -> bool:
+    def _is_needed(self, session: LiveBench) -> bool:
         """Say whether a bench has a watcher, is to be kept, hides a fault, or has something to come or to lose.
 
         Waiting commands of a paused bench are kept with it; on a running bench their moment comes. Moments that were
@@ -65,5 +65,5 @@ class Idling:
             or self._watchers(session.id) > 0
             or bool(recordings.under_way or recordings.armed or session.snapshots.all())
             or (session.is_running and len(session.board.pending) > 0)
-            or bool(session.running.steps)
+            or bool(session.time.steps)
         )

@@ -7,10 +7,10 @@ import logging
 from collections.abc import Awaitable
 from typing import Protocol
 
+from server.bench.bench import LiveBench
 from server.bench.benches import Benches
 from server.bench.engine import Engine
 from server.bench.experiment import THIS_VERSION, experiment_of
-from server.bench.session import Session
 from server.bench.status import Opened
 from server.clock import Clock
 from server.errors import ApiError, not_found
@@ -23,7 +23,7 @@ log = logging.getLogger(__name__)
 class CloseBench(Protocol):
     """Closes a bench and its streams."""
 
-    def __call__(self, session: Session, *, comes_back: bool = False) -> Awaitable[None]:
+    def __call__(self, session: LiveBench, *, comes_back: bool = False) -> Awaitable[None]:
         """Close a bench; sharing of it ends too unless it comes back."""
 
 
@@ -59,7 +59,7 @@ class Reopening:
         self._idling, self._close_bench, self._turn = idling, close_bench, turn
         self._coming_back = asyncio.Lock()
 
-    async def open_link(self, link: LinkDetail, bench_id: str | None = None) -> Session:
+    async def open_link(self, link: LinkDetail, bench_id: str | None = None) -> LiveBench:
         """Make a bench that repeats the experiment of a link.
 
         Raises
@@ -80,7 +80,7 @@ class Reopening:
         async with self._turn:  # a class opens a link all at once
             return await self._benches.repeat(experiment, opened, bench_id)
 
-    async def bring_back(self, bench_id: str) -> Session:
+    async def bring_back(self, bench_id: str) -> LiveBench:
         """Return a bench; a closed idle bench is opened again as it was, under the same id."""
         async with self._coming_back:  # two pages may come back at once
             if found := self._benches.find(bench_id):
@@ -109,7 +109,7 @@ class Reopening:
             except Exception:
                 log.exception("bench %s could not be closed", session.id)
 
-    async def _let_go(self, session: Session) -> None:
+    async def _let_go(self, session: LiveBench) -> None:
         """Store the experiment of a bench, and close it unless it is in use again meanwhile."""
         is_kept = False
         if not session.replay_of:  # a recording is kept already

@@ -12,14 +12,12 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
+from server.bench.bench import LiveBench
 from server.bench.benches import Benches
 from server.bench.checkpoints import Checkpoints
 from server.bench.engine import Engine
 from server.bench.recording import Records
-from server.bench.safety import Safety
-from server.bench.session import Session
-from server.bench.staging import Staging
-from server.bench.watchdog import Watchdog
+from server.bench.watchdog import Safety, Watchdog
 from server.clock import Clock, ManualClock
 from server.computing.computing import Computing
 from server.idling import Idling
@@ -80,7 +78,7 @@ class Service:
         self.metrics = Metrics()
         self.lag = Lateness(self.metrics.loop_lag)
         self.clock = ManualClock() if settings.clock == "manual" else Clock()
-        self.hub = Hub(settings, self.metrics, self._lateness, self.clock)
+        self.hub = Hub(settings, self.metrics, self._lag, self.clock)
         self.engine = Engine(self.metrics, self._after_round, self.clock)
         place = settings.data / "combbench.sqlite3"
         self.database = self.shared = Database(settings.database_url or place)
@@ -93,11 +91,10 @@ class Service:
         self.people, self.audit = People(self.database, shard), Audit(self.database)
         self.computing = Computing(self.clock)
         self.benches = Benches(self.engine, settings, self.metrics, self.computing, self.audit.witness)
-        self.units = self.benches.maker.units
+        self.units = self.benches.builder.units
         self.driving = Driving(self.people, self.hub, self._note, self._go_without_driver, self.clock)
         self.hub.company = self.driving.company
         self.lesson = Lesson(self.database, self.people, self.audit, self.hub)
-        self.staging = Staging(self.benches, self.engine)
         self.checkpoints = Checkpoints(settings.data / "benches", self.engine, self._kept)
         self.student_benches = StudentBenches(
             self.database, self.people, self.benches, self.swap, self.close_benches, self.checkpoints
@@ -135,7 +132,13 @@ class Service:
         )
         self.keeping = Keeping(self.database, self.shared, settings)
         self.safety = Safety(
-            self.engine, self.records, self.keeping, self.metrics, self.hub.show_status, self.close_bench
+            self.engine,
+            self.records,
+            self.keeping,
+            self.metrics,
+            self.hub.show_status,
+            self.hub.renew,
+            self.checkpoints.record_hang,
         )
         self.watchdog = Watchdog(self.engine, self.safety)
         self.commands = Buckets(settings.command_rate_per_s, settings.command_burst, clock=self.clock)
@@ -202,27 +205,28 @@ class Service:
             self.computing.close()
             await self.queue.close()
             self.sweeps.close()
-            await self.checkpoints.write()
-            await self.benches.close()
-            await self.safety.stop()
+            if not self.watchdog.is_stuck:  # an engine that hangs does no job
+                await self.checkpoints.write()
+                await self.benches.close()
+            await self.safety.stop(at_once=self.watchdog.is_stuck)
             await self.audit.write()
             await asyncio.to_thread(self.watchdog.stop)
             await asyncio.to_thread(self.engine.stop)
             for database in self.databases:
                 await asyncio.to_thread(database.close)
 
-    async def close_bench(self, session: Session, *, comes_back: bool = False) -> None:
+    async def close_bench(self, session: LiveBench, *, comes_back: bool = False) -> None:
         """Close a bench, its streams and its 3D view; unless it comes back, links to watch it end too."""
         await self.database.keep(*self._leaving(session, comes_back))
         await self._shut(session, comes_back)
 
-    async def close_benches(self, sessions: Sequence[Session], *changes: Change) -> None:
+    async def close_benches(self, sessions: Sequence[LiveBench], *changes: Change) -> None:
         """Close benches for good as something else changes: all of it, or nothing where it cannot be kept."""
         await self.database.keep(*(change for one in sessions for change in self._leaving(one)), *changes)
         for session in sessions:
             await self._shut(session)
 
-    async def swap(self, made: Session, before: Sequence[Session], *changes: Change) -> None:
+    async def swap(self, made: LiveBench, before: Sequence[LiveBench], *changes: Change) -> None:
         """Let a bench that was just made take the place of others; where that cannot be kept, it is gone again."""
         try:
             await self.database.keep(*(change for one in before for change in self._leaving(one)), *changes)
@@ -232,7 +236,7 @@ class Service:
         for session in before:
             await self._shut(session)
 
-    def _leaving(self, session: Session, comes_back: bool = False) -> list[Change]:
+    def _leaving(self, session: LiveBench, comes_back: bool = False) -> list[Change]:
         """Return the changes as a bench closes."""
         changes = self.blinds.closing(session)
         if not comes_back:
@@ -240,7 +244,7 @@ class Service:
             changes += [*self.lesson.forgetting(session.id), *map(self.people.removal, watchers)]
         return changes
 
-    async def _shut(self, session: Session, comes_back: bool = False) -> None:
+    async def _shut(self, session: LiveBench, comes_back: bool = False) -> None:
         """Stop a bench for good, with its streams and its 3D view."""
         await self.benches.close_bench(session)
         if not comes_back:
@@ -251,16 +255,15 @@ class Service:
         if self.viewers is not None:
             await self.viewers.drop(session.id)
 
-    async def _turn_pages(self, session: Session) -> None:
+    async def _turn_pages(self, session: LiveBench) -> None:
         """Let the pages of a bench come back to its present view."""
         self.hub.turn_bench(session.id)
         if self.viewers is not None:
             await self.viewers.drop(session.id)
 
-    def _kept(self) -> list[Session]:
-        """List the benches that survive a crash: benches of students, and shown or lent benches."""
-        seen = self.people.seen_by_students()
-        return [one for one in self.benches.all() if one.class_id or (one.id in seen and not one.replay_of)]
+    def _kept(self) -> list[LiveBench]:
+        """List the benches that survive a crash: all but recordings that are played."""
+        return [one for one in self.benches.all() if not one.replay_of]
 
     async def _bring_back_seen(self) -> None:
         """Bring shown or lent benches back before the first request; end the sharing of deleted benches."""
@@ -273,9 +276,7 @@ class Service:
     async def come_back(self, person: Person, bench_id: str) -> None:
         """Revive the bench of a request, or the bench of the student who sends it, before all benches are back."""
         wanted = bench_id or self.people.bench_of(person)
-        if not wanted or self.benches.find(wanted) is not None or not self.student_benches.may_come(wanted):
-            return
-        if self.people.owner(wanted) is not None or wanted in self.people.seen_by_students():
+        if wanted and self.benches.find(wanted) is None and self.student_benches.may_come(wanted):
             await self.student_benches.bring_back(wanted)
 
     async def close_streams(self) -> None:
@@ -301,9 +302,13 @@ class Service:
         if bench is not None:
             self.engine.submit(go_without_driver, bench, why)
 
-    def _lateness(self) -> dict[str, float]:
-        """Return the lateness of the event loop and of the engine."""
-        return {"loop_lag_ms": self.lag.p99_ms(), "wake_late_ms": self.engine.lateness.p99_ms()}
+    def _lag(self) -> dict[str, float | bool]:
+        """Return the lateness of the event loop and of the engine, and whether the engine hangs for good."""
+        return {
+            "is_stuck": self.watchdog.is_stuck,
+            "loop_lag_ms": self.lag.p99_ms(),
+            "wake_late_ms": self.engine.lateness.p99_ms(),
+        }
 
     def _after_round(self) -> None:
         """Let the event loop publish the round of the engine; called on the engine thread."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 import logging
 from collections.abc import Awaitable, Callable
 
+from server.bench.bench import LiveBench, Seen
 from server.bench.benches import Benches
 from server.bench.blind import refusal
-from server.bench.session import Seen, Session
 from server.bench.status import Bench
 from server.idling import Idling
 from server.people.people import People
@@ -43,12 +43,12 @@ class Views:
         hub: Hub,
         idling: Idling,
         has_3d: bool,
-        close_bench: Callable[[Session], Awaitable[None]],
+        close_bench: Callable[[LiveBench], Awaitable[None]],
     ) -> None:
         self._benches, self._people, self._hub, self._idling = benches, people, hub, idling
         self._has_3d, self._close_bench = has_3d, close_bench
 
-    def seen(self, session: Session, person: Person) -> Seen:
+    def seen(self, session: LiveBench, person: Person) -> Seen:
         """Return a bench as a person may see it: all of it, or the view while a fault is hidden."""
         view = session.hiding.view
         return view if view is not None and session.hiding.hides_from(person) else session
@@ -58,13 +58,13 @@ class Views:
         session = self._benches.find(bench_id or self._people.bench_of(person))
         return session is not None and session.hiding.hides_from(person)
 
-    def whole(self, bench_id: str, person: Person) -> Session:
+    def whole(self, bench_id: str, person: Person) -> LiveBench:
         """Return a bench that a person may see completely, or refuse."""
         if self.is_blind(person, bench_id):
             raise refusal()
         return self._benches.get(bench_id)
 
-    def of(self, session: Session, person: Person) -> Bench:
+    def of(self, session: LiveBench, person: Person) -> Bench:
         """Describe a bench as a person may see it."""
         view3d = f"/benches/{session.id}/3d/" if self._has_3d else None
         bench = self.seen(session, person).describe(self._hub.around(session), view3d)
@@ -82,7 +82,7 @@ class Views:
                 log.exception("bench %s cannot be described", session.id)
         return descriptions
 
-    async def opened(self, session: Session, person: Person) -> Bench:
+    async def opened(self, session: LiveBench, person: Person) -> Bench:
         """Describe a bench just made; a bench that cannot be described is closed again."""
         try:
             return self.of(session, person)

@@ -145,6 +145,12 @@ class Track:
         other._marks, other._deeds = [*self._marks], [*self._deeds]
         return other
 
+    def lean(self) -> Track:
+        """Return the same track with the fewest checkpoints: the first, and those to which no deed leads."""
+        other = self.copy()
+        other._marks = [mark for mark in self._marks if mark.is_fixed]
+        return other
+
     def until(self, board: Board) -> Track:
         """Return the track of a copy of the board that goes on from a tick of this past by itself."""
         other = self.copy()

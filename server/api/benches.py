@@ -14,9 +14,9 @@ from server.api.bodies import StrictRoute
 from server.api.deps import CallerDep, PersonDep, RateLimited, SeenDep, ServiceDep, SessionDep
 from server.bench.blind import HINT
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Command
+from server.bench.description import document_of
 from server.bench.events import Event
 from server.bench.hiding import BlindView
-from server.bench.portrait import document_of
 from server.bench.status import Bench
 from server.errors import ApiError
 
@@ -238,11 +238,11 @@ async def fork_bench(
     body: ForkFrom, session: SessionDep, service: ServiceDep, person: PersonDep, response: Response
 ) -> Bench:
     """Make a second bench that continues from this moment, a snapshot or a tick of the past, bit for bit."""
-    forks = service.benches.forks
+    travels = service.benches.travels
     if body.tick is None:
-        twin = await forks.now(session, body.snapshot, paused=body.paused)
+        twin = await travels.fork(session, body.snapshot, paused=body.paused)
     else:
-        twin = await forks.at(session, body.tick, body.window_ticks, is_before=body.before, paused=body.paused)
+        twin = await travels.fork_at(session, body.tick, body.window_ticks, is_before=body.before, paused=body.paused)
     twin.name = body.name
     response.headers["Location"] = f"/api/v1/benches/{twin.id}"
     return await service.views.opened(twin, person)
@@ -256,7 +256,7 @@ async def vary_bench(
 
     With ``repeat`` it begins as this bench began, but with the values, and the commands to this bench are repeated.
     """
-    forks = service.benches.forks
-    made = await (forks.repeated if body.repeat else forks.variant)(session, body.set)
+    travels = service.benches.travels
+    made = await (travels.repeated if body.repeat else travels.variant)(session, body.set)
     response.headers["Location"] = f"/api/v1/benches/{made.id}"
     return await service.views.opened(made, person)

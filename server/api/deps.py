@@ -7,7 +7,7 @@ from typing import Annotated, cast
 from fastapi import Depends, Request, WebSocket
 from starlette.requests import HTTPConnection
 
-from server.bench.session import Seen, Session
+from server.bench.bench import LiveBench, Seen
 from server.computing.computing import Computing
 from server.errors import ApiError
 from server.people.person import Person
@@ -38,14 +38,14 @@ def get_identity(request: Request) -> Identity:
 IdentityDep = Annotated[Identity, Depends(get_identity)]
 
 
-def get_session(bench_id: str, service: ServiceDep) -> Session:
+def get_session(bench_id: str, service: ServiceDep) -> LiveBench:
     """Return the bench in the path and note its use, or refuse with 404."""
     session = service.benches.get(bench_id)
     service.idling.saw(bench_id)
     return session
 
 
-SessionDep = Annotated[Session, Depends(get_session)]
+SessionDep = Annotated[LiveBench, Depends(get_session)]
 
 
 def get_computing(service: ServiceDep) -> Computing:

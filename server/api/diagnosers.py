@@ -18,7 +18,7 @@ from core.errors import InputError, unknown
 from core.reference.waveform import Waveform
 from server.api.bodies import StrictRoute
 from server.api.deps import SessionDep
-from server.bench.session import Session
+from server.bench.bench import LiveBench
 from server.bench.tape import Tape
 
 router = APIRouter(prefix="/benches/{bench_id}/diagnosers/{name}", tags=["diagnosers"], route_class=StrictRoute)
@@ -83,7 +83,7 @@ def map_bench_aliases(
     return alias_map(hypotheses_of(section), context.device, tones, hidden_um(context.sensor_noise_um))
 
 
-def kept_tick(session: Session, tick: int | None) -> int:
+def kept_tick(session: LiveBench, tick: int | None) -> int:
     """Return the requested tick, or the last tick by default; an error if it is not kept."""
     first, end = session.history.first_tick, session.history.end_tick
     asked = end - 1 if tick is None else tick
@@ -94,7 +94,7 @@ def kept_tick(session: Session, tick: int | None) -> int:
     return asked
 
 
-def spec_and_section(session: Session, name: str) -> tuple[Spec, Section]:
+def spec_and_section(session: LiveBench, name: str) -> tuple[Spec, Section]:
     """Return the bench a diagnoser is on, the first or a twin, and its section."""
     source = session.board
     board = cast(Ensemble, source.recorded_board if isinstance(source, Tape) else source)

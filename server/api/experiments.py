@@ -24,8 +24,8 @@ from scenarios.measure.sweep_sine import sweep_sine
 from scenarios.measure.unstable_region import unstable_region
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, SeenDep, ServiceDep, SessionDep
+from server.bench.bench import LiveBench
 from server.bench.hiding import BlindView
-from server.bench.session import Session
 from server.bench.tape import REFUSAL
 from server.computing.computing import LONGEST_S
 from server.service import Service
@@ -154,7 +154,7 @@ async def flops(
     return await _on_copy(session, service, budget, board_mflops * 1e6, function_flops)
 
 
-async def _on_copy(session: Session, service: Service, work: Callable[..., T], *settings: Any) -> T:
+async def _on_copy(session: LiveBench, service: Service, work: Callable[..., T], *settings: Any) -> T:
     """Run one experiment at a time on a copy of a bench, in parallel with the event loop and the engine."""
     async with service.experiment_turn:
         with kept():
@@ -162,7 +162,7 @@ async def _on_copy(session: Session, service: Service, work: Callable[..., T], *
             return await service.computing.call(_with_board, copy, work, *settings, most_s=LONGEST_S)
 
 
-def _copied(session: Session) -> Stored:
+def _copied(session: LiveBench) -> Stored:
     """Return the board of a bench as plain data (a job of the engine)."""
     if not isinstance(session.board, Board):
         raise InputError(REFUSAL, "bench", "run its scenario to branch off", "conflict")

@@ -17,10 +17,13 @@ class Health(BaseModel):
     checks: dict[str, bool]
 
 
-@router.get("/live")
-async def live() -> Health:
-    """Answer as long as the event loop turns."""
-    return Health(ok=True, checks={"event_loop": True})
+@router.get("/live", responses={503: {"model": Health}})
+async def live(service: ServiceDep, response: Response) -> Health:
+    """Answer 200 unless the engine hangs for good; then the server has to be restarted."""
+    checks = {"event_loop": True, "engine": not service.watchdog.is_stuck}
+    ok = all(checks.values())
+    response.status_code = 200 if ok else 503
+    return Health(ok=ok, checks=checks)
 
 
 @router.get("/ready", responses={503: {"model": Health}})

@@ -101,7 +101,7 @@ async def put_cue(
     pace = None if cue.pace_ms_per_s is None else cue.pace_ms_per_s / 1e3
     text = f"cue {number} of {found.head.title}: {cue.title}"
     async with service.experiment_turn:
-        staged, digest = await service.staging.put(session, state, pace, caller, text)
+        staged, digest = await service.benches.travels.cue(session, state, pace, caller, text)
     return Staged(bench=await service.views.opened(staged, person), tick=state.from_tick, digest=digest)
 
 

@@ -9,7 +9,7 @@ from server.api.bodies import Body, StrictRoute
 from server.api.classes import Outcomes
 from server.api.deps import PersonDep, RateLimited, ServiceDep
 from server.api.students import student_of, students_of
-from server.bench.recordings import Layout
+from server.bench.recording import Layout
 from server.errors import ApiError, not_found
 from server.people.lesson import GivenLayout
 from server.people.together import start_together

@@ -10,9 +10,10 @@ from pydantic import BaseModel, Field
 
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import IdentityDep, PersonDep, RateLimited, ServiceDep
+from server.bench.build import prepare
 from server.bench.experiment import beginning_of, experiment_of
-from server.bench.making import prepare, usual_scale
-from server.bench.recordings import Layout
+from server.bench.pacing import usual_scale
+from server.bench.recording import Layout
 from server.bench.status import Bench
 from server.errors import ApiError
 from server.store.links import Content, Link, LinkDetail

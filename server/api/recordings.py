@@ -11,7 +11,7 @@ from pydantic import BaseModel, Field
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import CallerDep, PersonDep, RateLimited, ServiceDep, SessionDep
 from server.api.files import FORMAT_RESPONSES, CutDep, stored_trace
-from server.bench.recordings import Wanted
+from server.bench.recording import Wanted
 from server.bench.status import Bench
 from server.errors import not_found
 from server.people.person import Person

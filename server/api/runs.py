@@ -15,7 +15,7 @@ from scenarios.seeds import parse_seeds
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import FORMAT_RESPONSES, HTML, PYTHON, SVG, CutDep, file_name, report_response, stored_trace
-from server.bench.making import prepare
+from server.bench.build import prepare
 from server.runs.compare import MOST, RunComparison, RunTraces, compare_runs, traces
 from server.runs.listing import Run, RunFilter, clean_label
 from server.store.traces import Format

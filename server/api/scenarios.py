@@ -15,7 +15,7 @@ from scenarios.library import get, ids, library
 from scenarios.schema import Scenario
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import ComputingDep
-from server.bench.making import prepare
+from server.bench.build import prepare
 from server.errors import not_found
 from server.people.blind_class import check as check_hidden
 

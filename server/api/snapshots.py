@@ -50,5 +50,5 @@ async def restore_snapshot(
     snapshot_id: str, session: SessionDep, service: ServiceDep, person: PersonDep, caller: CallerDep
 ) -> Bench:
     """Go back to a moment; from there the bench computes the same bits again."""
-    await service.engine.call(session.restore, snapshot_id, caller)
+    await service.engine.call(session.snapshots.restore, snapshot_id, caller)
     return service.views.of(session, person)

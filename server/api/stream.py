@@ -15,8 +15,8 @@ from core.errors import InputError
 from core.format import format_short
 from server.api.bodies import strict_json
 from server.api.deps import SocketServiceDep, rate_limited
+from server.bench.bench import LiveBench, Seen
 from server.bench.events import Event
-from server.bench.session import Seen, Session
 from server.errors import ApiError, ErrorBody, body_of, clear_line, not_found
 from server.people.access import Need
 from server.people.person import Person
@@ -130,7 +130,7 @@ class Conversation:
     ----------
     client : Client
         The sending half.
-    bench : Session
+    bench : LiveBench
         The bench that commands go to.
     service : Service
         Benches and limits.
@@ -138,7 +138,7 @@ class Conversation:
         Whose page it is.
     """
 
-    def __init__(self, client: Client, bench: Session, service: Service, person: Person) -> None:
+    def __init__(self, client: Client, bench: LiveBench, service: Service, person: Person) -> None:
         self._client, self._bench, self._service, self._person = client, bench, service, person
         settings = service.settings
         self._messages = Bucket(FLOOD_RATE, FLOOD_BURST, service.clock)

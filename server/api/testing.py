@@ -12,8 +12,8 @@ from pydantic import BaseModel, Field, model_validator
 
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import ServiceDep
+from server.bench.bench import LiveBench
 from server.bench.engine import PERIOD_S
-from server.bench.session import Session
 from server.clock import ManualClock
 from server.errors import ApiError
 from server.service import Service
@@ -56,7 +56,7 @@ async def advance(body: Advance, service: ServiceDep) -> Advanced:
                 raise ApiError(409, "conflict", "the bench is paused", "bench")
             goal = session.board.tick + (body.ticks or 0)
             while session.is_running and session.board.tick < goal:
-                await _advance(service, clock, min(clock() + PERIOD_S, session.pacer.due(goal)))
+                await _advance(service, clock, min(clock() + PERIOD_S, session.time.pacer.due(goal)))
         benches = service.benches.all()
         await service.engine.call(_refresh, benches)
         service.hub.show_status(benches)
@@ -71,7 +71,7 @@ async def _advance(service: Service, clock: ManualClock, until: float) -> None:
         await service.engine.settle()
 
 
-def _refresh(benches: list[Session]) -> None:
+def _refresh(benches: list[LiveBench]) -> None:
     """Renew the status of benches (a job)."""
     for session in benches:
         session.refresh_status()

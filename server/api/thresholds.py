@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from scenarios.campaign.halving import Wanted
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import PersonDep, RateLimited, ServiceDep
-from server.bench.making import prepare
+from server.bench.build import prepare
 from server.runs.thresholds import ThresholdRun
 
 router = APIRouter(prefix="/thresholds", tags=["thresholds"], route_class=StrictRoute)

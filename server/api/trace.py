@@ -13,7 +13,7 @@ from core.errors import InputError
 from server.api.bodies import StrictRoute
 from server.api.deps import SeenDep, ServiceDep
 from server.api.files import Signals, Tick, table_response
-from server.bench.session import Seen
+from server.bench.bench import Seen
 from server.errors import ApiError
 from server.store.traces import MEDIA_TYPES, Format, asked, schema_of, table_of
 from server.stream.view import Span

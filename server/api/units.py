@@ -20,7 +20,7 @@ from scenarios.own import copies
 from scenarios.starters import starters
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import ComputingDep, RateLimited, ServiceDep
-from server.bench.making import prepare
+from server.bench.build import prepare
 from server.errors import not_found
 
 router = APIRouter(prefix="/units", tags=["units"], route_class=StrictRoute)

@@ -3,42 +3,84 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import secrets
 import time
 from collections import Counter
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Iterator
 from concurrent.futures import Future
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
 from core.board.board import Board
 from core.board.document import Document
 from core.errors import InputError
+from core.format import format_count
 from core.own.admission import kept_with
 from scenarios.schema import Scenario
+from server.bench.bench import LiveBench
 from server.bench.blind import Blind
+from server.bench.build import Builder, check, is_id, prepare
 from server.bench.checkpoints import Kept
 from server.bench.commands import Reset, Seek
 from server.bench.earlier import as_written
 from server.bench.engine import Engine
 from server.bench.events import Event
 from server.bench.experiment import Experiment, rebuilt, repeat
-from server.bench.forks import Forks
 from server.bench.hiding import STOPPED
-from server.bench.maker import Maker
-from server.bench.making import check, is_id, prepare, usual_scale
+from server.bench.pacing import usual_scale
 from server.bench.recorder import Recorder
-from server.bench.room import Room
-from server.bench.session import Session
 from server.bench.status import Opened
 from server.bench.tape import REFUSAL, Tape
+from server.bench.travel import Travels, reset
 from server.bench.watch import KeptWatch
 from server.computing.computing import Computing
 from server.errors import ApiError, not_found
 from server.metrics import Metrics
 from server.settings import Settings
 from server.store.recordings import RecordingDetail
+
+
+class Quota:
+    """Counts the live benches and the benches that are being made.
+
+    Parameters
+    ----------
+    settings : Settings
+        Limits.
+    live : callable
+        Counts the benches that are live.
+    """
+
+    def __init__(self, settings: Settings, live: Callable[[], int]) -> None:
+        self._settings, self._live = settings, live
+        self._coming = 0
+
+    @contextmanager
+    def taken(self) -> Iterator[None]:
+        """Take the room of one bench until it is live.
+
+        Raises
+        ------
+        ApiError
+            If there is none.
+        """
+        self._check()
+        self._coming += 1
+        try:
+            yield
+        finally:
+            self._coming -= 1
+
+    def _check(self) -> None:
+        most, minutes = self._settings.max_benches, self._settings.idle_minutes
+        if self._live() + self._coming < most:
+            return
+        after = format_count(math.ceil(minutes), "minute")
+        wait = f"; a bench without watchers is closed after {after}" if minutes else ""
+        text = f"the server is full: {most} of {most} benches are live (max_benches)"
+        raise ApiError(409, "too_many_benches", text, hint=f"use a running bench, or close one{wait}")
 
 
 class Benches:
@@ -64,27 +106,27 @@ class Benches:
         settings: Settings,
         metrics: Metrics,
         computing: Computing,
-        witness: Callable[[Session, Event], None] | None = None,
+        witness: Callable[[LiveBench, Event], None] | None = None,
     ) -> None:
         self._engine, self._settings, self._metrics, self._witness = engine, settings, metrics, witness
         self._computing = computing
-        self.maker = Maker(settings, metrics, engine.clock)
-        self._sessions: dict[str, Session] = {}
-        self.forks = Forks(self, engine, settings.max_run_ticks)
-        self._room = Room(settings, lambda: sum(not session.class_id for session in self.all()))
+        self.builder = Builder(settings, metrics, engine.clock)
+        self._sessions: dict[str, LiveBench] = {}
+        self.travels = Travels(self, engine, settings.max_run_ticks)
+        self._quota = Quota(settings, lambda: sum(not session.class_id for session in self.all()))
 
     def __len__(self) -> int:
         return len(self._sessions)
 
-    def all(self) -> list[Session]:
+    def all(self) -> list[LiveBench]:
         """List the benches, oldest first."""
         return list(self._sessions.values())
 
-    def find(self, bench_id: str) -> Session | None:
+    def find(self, bench_id: str) -> LiveBench | None:
         """Return a bench, or nothing."""
         return self._sessions.get(bench_id)
 
-    def get(self, bench_id: str) -> Session:
+    def get(self, bench_id: str) -> LiveBench:
         """Return a bench, or refuse with 404."""
         session = self._sessions.get(bench_id)
         if session is None:
@@ -97,7 +139,7 @@ class Benches:
         """Refuse a scenario that makes no bench, or takes too much, before this process reads it."""
         self._computing.check_budget()
         if values or not is_id(source):
-            await self._computing.call(check, source, values, self.maker.units.beside({}))
+            await self._computing.call(check, source, values, self.builder.units.beside({}))
 
     async def create(
         self,
@@ -111,7 +153,7 @@ class Benches:
         quiet_lead: bool = False,
         class_id: str = "",
         hide: Callable[[Board], Blind] | None = None,
-    ) -> Session:
+    ) -> LiveBench:
         """Make a bench from a library id, a TOML text or a document; with ``own_scale`` at the pace of its device.
 
         With ``quiet_lead`` it begins as fast as possible, to shortly before the first command of the scenario. The
@@ -126,11 +168,11 @@ class Benches:
             If there are too many benches.
         """
 
-        def made() -> Session:
-            scenario, board = self._prepared(source, values, seed, self.maker.units.beside)
+        def made() -> LiveBench:
+            scenario, board = self._prepared(source, values, seed, self.builder.units.beside)
             scale = usual_scale(board) if own_scale else time_scale
-            session = self.maker.around(scenario, board, scale, class_id)
-            session.running.fast_forward.leads = quiet_lead
+            session = self.builder.around(scenario, board, scale, class_id)
+            session.time.fast_forward.leads = quiet_lead
             if hide is not None:
                 session.hiding.begin(hide(board))
                 session.hiding.inject("teacher")
@@ -138,7 +180,7 @@ class Benches:
 
         return await self.admit(asyncio.to_thread(made), not paused, is_counted=not class_id)
 
-    async def replay(self, recording: RecordingDetail, path: Path, speed: float, paused: bool) -> Session:
+    async def replay(self, recording: RecordingDetail, path: Path, speed: float, paused: bool) -> LiveBench:
         """Make a bench that plays a recording, at a multiple of the pace it was recorded at.
 
         Raises
@@ -146,9 +188,9 @@ class Benches:
         ApiError
             If there are too many benches, or this version cannot read its scenario.
         """
-        return await self.admit(asyncio.to_thread(self.maker.replay, recording, path, speed), not paused)
+        return await self.admit(asyncio.to_thread(self.builder.replay, recording, path, speed), not paused)
 
-    async def repeat(self, experiment: Experiment, opened: Opened, bench_id: str | None = None) -> Session:
+    async def repeat(self, experiment: Experiment, opened: Opened, bench_id: str | None = None) -> LiveBench:
         """Make a bench with the state of an experiment, running or paused as the original was.
 
         Parameters
@@ -166,9 +208,9 @@ class Benches:
             If there are too many benches, or the experiment cannot be repeated.
         """
 
-        def made() -> Session:
+        def made() -> LiveBench:
             scenario, board = rebuilt(experiment, self._settings.max_run_ticks)
-            session = self.maker.around(scenario, board, experiment.time_scale)
+            session = self.builder.around(scenario, board, experiment.time_scale)
             session.id = bench_id or ""
             same = repeat(session, experiment)
             session.opened = opened.model_copy(update={"same_bits": same})
@@ -176,7 +218,7 @@ class Benches:
 
         return await self.admit(asyncio.to_thread(made), experiment.running)
 
-    async def revive(self, kept: Kept, before: Callable[[Session, KeptWatch | None], None]) -> Session:
+    async def revive(self, kept: Kept, before: Callable[[LiveBench, KeptWatch | None], None]) -> LiveBench:
         """Make a bench that continues from a checkpoint, under the same id; ``before`` is called before it continues.
 
         Raises
@@ -185,13 +227,13 @@ class Benches:
             If this version of the code cannot continue from it.
         """
 
-        def made() -> Session:
+        def made() -> LiveBench:
             scenario, board = kept.board_of()
-            session = self.maker.around(scenario, board, kept.head.time_scale, class_id)
+            session = self.builder.around(scenario, board, kept.head.time_scale, class_id)
             kept.put_into(session)
             return session
 
-        async def coming() -> Session:
+        async def coming() -> LiveBench:
             session = await asyncio.to_thread(made)
             before(session, kept.watch)
             return session
@@ -199,27 +241,27 @@ class Benches:
         class_id = kept.head.class_id
         return await self.admit(coming(), kept.head.running, is_counted=not class_id)
 
-    async def admit(self, coming: Coroutine[Any, Any, Session], start: bool, *, is_counted: bool = True) -> Session:
+    async def admit(self, coming: Coroutine[Any, Any, LiveBench], start: bool, *, is_counted: bool = True) -> LiveBench:
         """Take in a bench that is being made, if there is room; the number of students' benches is limited."""
         try:
-            with self._room.taken() if is_counted else nullcontext():
+            with self._quota.taken() if is_counted else nullcontext():
                 return await self._enter(await coming, start)
         finally:
             coming.close()  # without room it was never awaited
 
-    async def take_in(self, session: Session, start: bool) -> Session:
+    async def take_in(self, session: LiveBench, start: bool) -> LiveBench:
         """Take in a bench that is made already, if there is room."""
-        with self._room.taken():
+        with self._quota.taken():
             return await self._enter(session, start)
 
-    async def _enter(self, session: Session, start: bool) -> Session:
+    async def _enter(self, session: LiveBench, start: bool) -> LiveBench:
         session.id = session.id or f"{self._settings.shard}{secrets.token_hex(6)}"
         session.witness = self._witness
         await self._engine.call(self._open, session, start and session.board.trip is None)
         self._sessions[session.id] = session
         return session
 
-    async def close_bench(self, session: Session) -> None:
+    async def close_bench(self, session: LiveBench) -> None:
         """Stop a bench for good; its recordings are made whole."""
         self._sessions.pop(session.id, None)
         recorders = await self._engine.call(self._shut, session)
@@ -231,7 +273,7 @@ class Benches:
         for session in self.all():
             await self.close_bench(session)
 
-    async def command(self, session: Session, command: Any, actor: str) -> Event:
+    async def command(self, session: LiveBench, command: Any, actor: str) -> Event:
         """Carry out a command at the next tick edge, a step to its end.
 
         Raises
@@ -242,7 +284,7 @@ class Benches:
         outcome = await self.begin(session, command, actor)
         return outcome if isinstance(outcome, Event) else await asyncio.wrap_future(outcome)
 
-    async def begin(self, session: Session, command: Any, actor: str) -> Event | Future[Event]:
+    async def begin(self, session: LiveBench, command: Any, actor: str) -> Event | Future[Event]:
         """Carry out a command at the next tick edge; for a step, return a future that holds its event at its end."""
         kind = command.kind
         event: Event | Future[Event]
@@ -255,7 +297,7 @@ class Benches:
                 tick = session.board.first if command.before_tick is None else command.before_tick
                 event = await self._engine.call(session.execute, Seek(tick=tick), actor)
             elif isinstance(command, Seek) and session.origin is not None:
-                event = await self.forks.seek(session, command.tick, actor)
+                event = await self.travels.seek(session, command.tick, actor)
             elif isinstance(command, Reset):
                 seed = session.board.spec.seed
                 values = {"seed": seed, **command.values}
@@ -264,7 +306,7 @@ class Benches:
                     if command.values:
                         await self.check(session.scenario.document, values)
                     scenario, board = await asyncio.to_thread(self._prepared, session.scenario.document, values)
-                event = await self._engine.call(session.reset, scenario, board, actor, command.before_tick)
+                event = await self._engine.call(reset, session, scenario, board, actor, command.before_tick)
             else:
                 event = await self._engine.call(session.execute, command, actor)
         except (InputError, ApiError) as error:
@@ -297,12 +339,12 @@ class Benches:
         finally:
             self._computing.spend(time.thread_time() - begun)
 
-    def _open(self, session: Session, start: bool) -> None:
+    def _open(self, session: LiveBench, start: bool) -> None:
         """Give a bench to the engine (a job)."""
         self._engine.add(session)
         session.begin(start)
 
-    def _shut(self, session: Session) -> list[Recorder]:
+    def _shut(self, session: LiveBench) -> list[Recorder]:
         """Take a bench from the engine (a job)."""
         self._engine.remove(session.id)
         return session.close()

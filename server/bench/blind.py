@@ -13,8 +13,8 @@ from core.board.spec import Section, Spec
 from core.diagnose.hypothesis import ModelList, NamedModel
 from core.errors import InputError
 from server.bench import commands
-from server.bench.making import usual_scale
-from server.bench.tick_source import TickSource
+from server.bench.pacing import usual_scale
+from server.bench.tape import TickSource
 from server.errors import ApiError
 
 ACTOR = "board"

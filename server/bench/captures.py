@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import OrderedDict, deque
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 from weakref import WeakSet
 
 import numpy as np
@@ -13,25 +13,15 @@ import numpy as np
 from core.block import IntArray
 from core.board.history import Float32Array, History
 
+if TYPE_CHECKING:
+    from server.bench.bench import LiveBench
+
 MOST = 50
 """Captures of one trigger."""
 MOST_SETS = 16
 """Triggers whose captures a bench keeps at a time."""
 AT_ONCE = 100_000
 """Samples copied at once: a millisecond of the event loop."""
-
-
-class CapturedBench(Protocol):
-    """The bench whose history is captured."""
-
-    history: History
-
-    @property
-    def branch(self) -> int:
-        """The branch of time of now."""
-
-    def has_in_past(self, branch: int, tick: int) -> bool:
-        """Whether the ticks before a tick of a branch are in the past of the present state."""
 
 
 class Finder(Protocol):
@@ -144,13 +134,13 @@ class Captures:
 
     Parameters
     ----------
-    bench : CapturedBench
+    bench : LiveBench
         The bench.
     most_bytes : int
         Memory of all captures; where that is not enough, the trigger with the most gives its oldest.
     """
 
-    def __init__(self, bench: CapturedBench, most_bytes: int) -> None:
+    def __init__(self, bench: LiveBench, most_bytes: int) -> None:
         self._bench, self.most_bytes = bench, most_bytes
         self._sets: OrderedDict[Captured, CaptureSet] = OrderedDict()
         self._branch = self._head = 0

@@ -24,11 +24,11 @@ from core.board.stored import Stored, revived, stored
 from core.errors import InputError
 from core.own.admission import kept
 from scenarios.schema import Scenario
+from server.bench.bench import LiveBench
 from server.bench.blind import Blind
 from server.bench.engine import Engine
 from server.bench.events import KEPT, Event
 from server.bench.experiment import THIS_VERSION
-from server.bench.session import Session
 from server.bench.watch import KeptWatch
 from server.clock import Clock
 from server.errors import ApiError
@@ -36,7 +36,7 @@ from server.errors import ApiError
 log = logging.getLogger(__name__)
 
 EVERY_S = 0.7
-BOARD, EVENTS, PART, DOCUMENT, WATCH = ".npz", ".events", ".part", "document", "watch"
+BOARD, EVENTS, PART, HUNG, DOCUMENT, WATCH = ".npz", ".events", ".part", ".hung", "document", "watch"
 
 
 class Head(BaseModel):
@@ -44,6 +44,8 @@ class Head(BaseModel):
 
     id: str
     class_id: str
+    name: str = ""
+    keep: bool = False
     scenario: dict[str, Any]
     created: datetime
     time_scale: float | None
@@ -77,9 +79,10 @@ class Kept:
         with kept():
             return Scenario.load(self.head.scenario), revived(self.stored)
 
-    def put_into(self, session: Session) -> None:
+    def put_into(self, session: LiveBench) -> None:
         """Restore the stored state into a new bench."""
-        session.id, session.created = self.head.id, self.head.created
+        session.id, session.created, session.name = self.head.id, self.head.created, self.head.name
+        session.keep = session.keep or self.head.keep
         session.events.go_on(self.events)
         if (blind := self.head.blind) is not None:
             session.hiding.begin(blind, [event for event in self.events if event.seq >= self.head.hidden_since])
@@ -98,7 +101,7 @@ class Checkpoints:
         Lists the benches to keep.
     """
 
-    def __init__(self, folder: Path, engine: Engine, benches: Callable[[], list[Session]]) -> None:
+    def __init__(self, folder: Path, engine: Engine, benches: Callable[[], list[LiveBench]]) -> None:
         self._folder, self._engine, self._benches = folder, engine, benches
         self._written: dict[str, tuple[int, int, bool]] = {}
         self._turn = asyncio.Lock()
@@ -138,11 +141,20 @@ class Checkpoints:
                 log.exception("the checkpoint of bench %s cannot be read", bench_id)
                 return None
 
+    async def ids(self) -> list[str]:
+        """List the benches that were kept."""
+        paths = await asyncio.to_thread(lambda: sorted(self._folder.glob(f"*{BOARD}")))
+        return [path.name.removesuffix(BOARD) for path in paths]
+
+    def record_hang(self, bench_id: str) -> None:
+        """Note on disk that the engine hangs in a slice of a bench: it is not brought back (on any thread)."""
+        self._path(bench_id, HUNG).touch()
+
     async def forget(self, bench_id: str) -> None:
         """Delete the checkpoint of a bench."""
         async with self._turn:
             self._written.pop(bench_id, None)
-            for suffix in (BOARD, EVENTS, BOARD + PART):
+            for suffix in (BOARD, EVENTS, BOARD + PART, HUNG):
                 await asyncio.to_thread(self._path(bench_id, suffix).unlink, missing_ok=True)
 
     async def forget_others(self) -> None:
@@ -175,6 +187,8 @@ class Checkpoints:
         os.replace(part, self._path(head.id, BOARD))
 
     def _load(self, bench_id: str) -> Kept:
+        if self._path(bench_id, HUNG).exists():
+            raise InputError("the engine hung in it")
         with self._path(bench_id, BOARD).open("rb") as file, np.load(file, allow_pickle=False) as parts:
             document = json.loads(parts[DOCUMENT].tobytes())
             arrays = {name: parts[name] for name in parts.files if name != DOCUMENT}
@@ -196,16 +210,18 @@ class Checkpoints:
         return Kept(head, Stored(board, arrays), events[-KEPT:], watch)
 
 
-def _taken(session: Session) -> Kept:
+def _taken(session: LiveBench) -> Kept:
     """Return the present state of a bench, without its events (a job of the engine)."""
     session.must_be_open()
     watch = session.watch.kept(session) if session.watch is not None else None
     head = Head(
         id=session.id,
         class_id=session.class_id,
+        name=session.name,
+        keep=session.keep,
         scenario=session.scenario.document,
         created=session.created,
-        time_scale=session.pacer.scale,
+        time_scale=session.time.pacer.scale,
         running=session.is_started,
         tick=session.board.tick,
         last_event=session.events.last,

@@ -3,7 +3,7 @@
 The event loop serves clients; the engine thread advances boards. A busy loop or a slow client delays frames but no
 board. A command, a snapshot and a new bench are jobs: the engine runs them between two slices, and the loop awaits
 their results. The compiled ticks run without the interpreter's lock, so benches do not wait for each other. One thread
-at a time advances a bench. Where these threads hang, the watchdog gives their place to others.
+at a time advances a bench. All threads end with the process, however they hang.
 """
 
 from __future__ import annotations
@@ -15,12 +15,10 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
+from queue import SimpleQueue
 from typing import Any, Protocol, TypeVar
 
-from server.bench.crew import Crew, LeftBehind
-from server.bench.job import Job
 from server.clock import Clock
-from server.errors import ApiError
 from server.lag import Lateness
 from server.metrics import Metrics
 
@@ -41,10 +39,8 @@ PROCESSORS = os.cpu_count() or 1
 """How many benches are advanced side by side."""
 
 
-class Workload(Protocol):
-    """The part of a live bench that the engine uses."""
-
-    id: str
+class Turns(Protocol):
+    """The time of a live bench, as the engine uses it."""
 
     @property
     def is_running(self) -> bool:
@@ -63,8 +59,92 @@ class Workload(Protocol):
     def finish_round(self, target: int | None, now: float) -> None:
         """Account for the round."""
 
+
+class Workload(Protocol):
+    """The part of a live bench that the engine uses."""
+
+    id: str
+
+    @property
+    def time(self) -> Turns:
+        """Its time."""
+
     def fail(self, error: Exception) -> None:
         """Stop after an unexpected error."""
+
+
+class Job:
+    """A function that the engine runs between two slices, and its outcome.
+
+    Parameters
+    ----------
+    function : callable
+        The function.
+    """
+
+    def __init__(self, function: Callable[[], Any]) -> None:
+        self._function = function
+        self.future: Future[Any] = Future()
+
+    def __call__(self) -> None:
+        """Run it, unless its caller was cancelled."""
+        if not self.future.set_running_or_notify_cancel():
+            return
+        try:
+            self.future.set_result(self._function())
+        except BaseException as error:
+            self.future.set_exception(error)
+            if not isinstance(error, Exception):
+                raise
+
+
+class Helpers:
+    """Threads that share the work of another thread.
+
+    Parameters
+    ----------
+    count : int
+        How many.
+    """
+
+    def __init__(self, count: int) -> None:
+        self._tasks: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
+        self.threads = [
+            threading.Thread(target=self._run, name=f"combbench-bench-{number}", daemon=True) for number in range(count)
+        ]
+
+    def start(self) -> None:
+        """Start the threads."""
+        for thread in self.threads:
+            thread.start()
+
+    def stop(self) -> None:
+        """End the threads after the work in hand."""
+        for _ in self.threads:
+            self._tasks.put(None)
+
+    def together(self, work: Callable[[], None], count: int) -> None:
+        """Do the same work in this thread and in some helpers; return when all have ended."""
+        ended: SimpleQueue[BaseException | None] = SimpleQueue()
+
+        def help_along() -> None:
+            error: BaseException | None = None
+            try:
+                work()
+            except BaseException as raised:
+                error = raised
+            ended.put(error)
+
+        for _ in range(count):
+            self._tasks.put(help_along)
+        work()
+        for _ in range(count):
+            if (error := ended.get()) is not None:
+                raise error
+
+    def _run(self) -> None:
+        while (task := self._tasks.get()) is not None:
+            task()
 
 
 class Engine:
@@ -93,27 +173,45 @@ class Engine:
         self._urgent: deque[Callable[[], None]] = deque()
         self._wake = threading.Condition()
         self._stopping = False
-        self.crew: Crew[Workload | Job] = Crew(self._run, PROCESSORS - 1)
+        self._main = threading.Thread(target=self._run, name="combbench-engine", daemon=True)
+        self._helpers = Helpers(PROCESSORS - 1)
+        self._in_hand: dict[int, Workload] = {}
         self._settled: list[Future[None]] = []
         self._beat, self._due = self.clock(), 0.0
         self._silent_until = 0.0
 
     def start(self) -> None:
         """Start the threads."""
-        self.crew.start()
+        self._helpers.start()
+        self._main.start()
 
     def stop(self) -> None:
         """End the threads after the slice in hand; jobs still waiting are done first."""
         with self._wake:
             self._stopping = True
             self._wake.notify()
-        self.crew.main.join(timeout=5.0)
-        self.crew.leave()
+        self._main.join(timeout=5.0)
+        self._helpers.stop()
 
     @property
     def is_alive(self) -> bool:
         """Whether the thread turns: it wakes at least once a second."""
-        return self.crew.main.is_alive() and self.clock() - self._beat < 3.0
+        return self._main.is_alive() and self.clock() - self._beat < 3.0
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether the thread that keeps time has broken off."""
+        return not self._main.is_alive()
+
+    @property
+    def threads(self) -> list[threading.Thread]:
+        """The threads that have not ended."""
+        return [thread for thread in (self._main, *self._helpers.threads) if thread.is_alive()]
+
+    @property
+    def held(self) -> list[Workload]:
+        """The benches in whose slices the threads are."""
+        return list(self._in_hand.copy().values())
 
     @property
     def expected(self) -> float:
@@ -123,7 +221,7 @@ class Engine:
     @property
     def running(self) -> list[Workload]:
         """The benches whose time runs."""
-        return [work for work in list(self._work.values()) if work.is_running]
+        return [work for work in list(self._work.values()) if work.time.is_running]
 
     async def call(self, function: Callable[..., T], *arguments: Any) -> T:
         """Run a function between two slices and return its result.
@@ -159,27 +257,6 @@ class Engine:
         with self._wake:
             self._wake.notify()
 
-    def take_over(self, lost: Callable[[list[Workload]], None]) -> None:
-        """Continue with other threads; called by another thread, once the threads of the engine have ended or hang.
-
-        Parameters
-        ----------
-        lost : callable
-            Called with the benches of the lost threads, which are dropped, before any other job is done.
-        """
-        before = self.crew
-        held = before.held
-        before.leave()
-        for thing in held:
-            if isinstance(thing, Job):
-                thing.fail(ApiError(503, "engine_hung", "the engine hung at this and has given it up"))
-            else:
-                self._work.pop(thing.id, None)
-        lost([thing for thing in held if not isinstance(thing, Job)])
-        self.crew = Crew(self._run, PROCESSORS - 1)
-        self._beat, self._due = self.clock(), 0.0
-        self.crew.start()
-
     def add(self, workload: Workload) -> None:
         """Add a bench (a job)."""
         self._work[workload.id] = workload
@@ -189,11 +266,9 @@ class Engine:
         self._work.pop(workload_id, None)
 
     def _run(self) -> None:
-        """Turn until the end, or until another thread turns instead."""
+        """Turn until the end."""
         try:
             self._turn()
-        except LeftBehind:
-            log.warning("the thread that hung came back and ended; another turns the engine")
         except BaseException:
             log.critical("the thread of the engine broke off", exc_info=True)
 
@@ -202,7 +277,7 @@ class Engine:
         deadline = served = self.clock()
         while True:
             running = self.running
-            if self.clock.is_manual and (self.clock() > served or any(work.is_hurried for work in running)):
+            if self.clock.is_manual and (self.clock() > served or any(work.time.is_hurried for work in running)):
                 deadline = self.clock()
             stopping = self._wait(deadline if running else None)
             self._beat = self.clock()
@@ -248,13 +323,8 @@ class Engine:
             if self._urgent:
                 self._urgent.popleft()()
             else:
-                job = self._jobs.popleft()
-                self.crew.in_hand[threading.get_ident()] = job
                 self._beat = self.clock()
-                try:
-                    job()
-                finally:
-                    self.crew.in_hand.pop(threading.get_ident(), None)
+                self._jobs.popleft()()
             done = True
         return done
 
@@ -263,7 +333,7 @@ class Engine:
 
         A job may change the target of a bench, so the round ends after it (false) and another begins.
         """
-        targets = [(work, work.target(now)) for work in self._work.values() if work.is_running]
+        targets = [(work, work.time.target(now)) for work in self._work.values() if work.time.is_running]
         paced = [pair for pair in targets if pair[1] is not None]
         free = [pair for pair in targets if pair[1] is None]
         spare_from = now if self.clock.is_manual else end - SPARE_S  # one slice each where no time passes meanwhile
@@ -271,7 +341,7 @@ class Engine:
             return False
         done = self.clock()
         for work, target in targets:
-            work.finish_round(target, done)
+            work.time.finish_round(target, done)
         self._metrics.round_seconds.observe(done - now)
         return True
 
@@ -293,20 +363,20 @@ class Engine:
                 if self._slice(work, target):
                     waiting.append((work, target, False))
 
-        self.crew.together(share, max(0, min(len(pairs), PROCESSORS) - 1))
+        self._helpers.together(share, max(0, min(len(pairs), PROCESSORS) - 1))
         return not self._run_jobs()
 
     def _slice(self, work: Workload, target: int | None) -> bool:
         """Advance one bench; an unexpected error stops that bench alone."""
-        if self._urgent or not work.is_running:
+        if self._urgent or not work.time.is_running:
             return False
-        self.crew.in_hand[threading.get_ident()] = work
+        self._in_hand[threading.get_ident()] = work
         self._beat = self.clock()
         try:
-            return work.slice(target)
+            return work.time.slice(target)
         except Exception as error:
             log.exception("bench %s failed", work.id)
             work.fail(error)
             return False
         finally:
-            self.crew.in_hand.pop(threading.get_ident(), None)
+            self._in_hand.pop(threading.get_ident(), None)

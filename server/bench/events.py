@@ -13,7 +13,7 @@ from pydantic import Field
 
 from core.board.document import Document
 from core.board.log import Log, LogEntry
-from server.bench.tick_source import TickSource
+from server.bench.tape import TickSource
 
 KEPT = 4000
 
@@ -70,6 +70,8 @@ class EventLog(Log):
 
     def take_over(self, board: TickSource) -> None:
         """Add the past notes of a board, and let it note here from now on."""
+        if board.log is self:
+            return
         for entry in board.log:
             self.add(entry.tick, entry.actor, entry.kind, entry.text, entry.command, entry.old, entry.new)
         board.log = self

@@ -15,7 +15,7 @@ from scenarios.edit import with_values
 from scenarios.key import code_version
 from scenarios.run import build
 from scenarios.schema import Scenario
-from server.bench.session import Session
+from server.bench.bench import LiveBench
 from server.errors import ApiError
 from server.version import VERSION
 
@@ -34,7 +34,7 @@ class Experiment(BaseModel):
     time_scale: float | None
 
 
-def experiment_of(session: Session) -> Experiment:
+def experiment_of(session: LiveBench) -> Experiment:
     """Return the experiment of a bench (a job of the engine).
 
     Raises
@@ -56,7 +56,7 @@ def experiment_of(session: Session) -> Experiment:
         digest=board.digest(),
         version=THIS_VERSION,
         running=session.is_started,
-        time_scale=session.pacer.scale,
+        time_scale=session.time.pacer.scale,
     )
 
 
@@ -100,12 +100,17 @@ def rebuilt(experiment: Experiment, most_ticks: int, values: dict[str, Any] | No
         raise ApiError(409, "conflict", text, hint=f"it was made with {experiment.version}") from None
 
 
-def repeat(session: Session, experiment: Experiment) -> bool:
-    """Bring a new bench to the tick of an experiment; return whether its bits equal the original bits."""
+def forward(session: LiveBench, tick: int) -> bool:
+    """Bring a new bench to a tick, and carry out the commands that wait for it; return whether it came there."""
     board = session.board
-    while board.tick < experiment.tick and session.advance(experiment.tick - board.tick):
+    while board.tick < tick and session.advance(tick - board.tick):
         pass
-    if isinstance(board, Board) and board.tick == experiment.tick:
+    if isinstance(board, Board) and board.tick == tick:
         board.apply_due()
         session.done_otherwise()
-    return board.tick == experiment.tick and board.digest() == experiment.digest
+    return board.tick == tick
+
+
+def repeat(session: LiveBench, experiment: Experiment) -> bool:
+    """Bring a new bench to the tick of an experiment; return whether its bits equal the original bits."""
+    return forward(session, experiment.tick) and session.board.digest() == experiment.digest

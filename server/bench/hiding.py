@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from core.board.commands import Heal, Inject, Set, Switch, Trip
 from core.board.document import Document
@@ -15,13 +15,16 @@ from core.errors import unknown
 from core.signals import Signal
 from scenarios.narrator.doings import MEASURED
 from server.bench.blind import ACTOR, GAME_HINT, MAY_SET, Blind
-from server.bench.captures import CapturedBench, Captures
+from server.bench.captures import Captures
+from server.bench.description import bench_of, document_now
 from server.bench.events import Event, EventLog
 from server.bench.narration import Narration
-from server.bench.portrait import ShownBench, bench_of, document_now
 from server.bench.status import Bench, BenchStatus
 from server.errors import ApiError
 from server.people.person import Person
+
+if TYPE_CHECKING:
+    from server.bench.bench import LiveBench
 
 STOPPED = "the board has stopped itself"
 """The only words about a trip: its reason and its signal would reveal the fault."""
@@ -33,7 +36,7 @@ faults, the tried faults are visible too."""
 
 STATUS = (
     *("state", "tick", "first_tick", "time_scale", "achieved_scale", "capped", "overruns", "given_up_ms"),
-    *("controller", "slots", "watchers", "loop_lag_ms", "wake_late_ms"),
+    *("controller", "slots", "watchers", "is_stuck", "loop_lag_ms", "wake_late_ms"),
 )
 BENCH = (
     *("id", "title", "scenario_id", "source", "created", "dt_ms", "sample_rate_khz", "samples", "history_ticks"),
@@ -42,26 +45,16 @@ BENCH = (
 """The visible fields of a status and of a bench; all others are hidden."""
 
 
-class HidingBench(ShownBench, CapturedBench, Protocol):
-    """A bench on which a fault can be hidden."""
-
-    class_id: str
-    captures: Captures
-
-    def done_otherwise(self) -> None:
-        """Note for the past that the board has changed without a command."""
-
-
 class Hiding:
     """The hidden fault of a bench, if it has one.
 
     Parameters
     ----------
-    bench : HidingBench
+    bench : LiveBench
         The bench.
     """
 
-    def __init__(self, bench: HidingBench) -> None:
+    def __init__(self, bench: LiveBench) -> None:
         self._bench = bench
         self.view: BlindView | None = None
         """The view that people have while a fault is hidden."""
@@ -87,8 +80,8 @@ class Hiding:
     def clear(self) -> None:
         """Heal the device, drop waiting commands and end recordings: all could reveal the fault (an engine job)."""
         bench = self._bench
-        bench.running.fast_forward.end()
-        bench.running.fast_forward.leads = False
+        bench.time.fast_forward.end()
+        bench.time.fast_forward.leads = False
         bench.recordings.close("a fault was hidden")
         bench.board.pending.clear()
         bench.board.apply(Heal(heal="all"), ACTOR)
@@ -126,13 +119,13 @@ class BlindView:
 
     Parameters
     ----------
-    bench : HidingBench
+    bench : LiveBench
         The bench.
     blind : Blind
         The hidden fault.
     """
 
-    def __init__(self, bench: HidingBench, blind: Blind) -> None:
+    def __init__(self, bench: LiveBench, blind: Blind) -> None:
         self._bench, self.blind = bench, blind
         self.events = EventLog(lambda _event: None)
         signals = bench.board.signals

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from core.board.board import Board
 from core.board.track import Track
@@ -12,19 +12,14 @@ from scenarios.run import DEFAULT_SAMPLES, all_figures
 from scenarios.samples import Samples
 from scenarios.schema import Scenario
 from scenarios.signals import traced
-from server.bench.narration import Narration
-from server.bench.portrait import ShownBench
+
+if TYPE_CHECKING:
+    from server.bench.bench import LiveBench
 
 MOST_TICKS = 2_000_000
 """Longest run that is measured next to its bench."""
 AT_ONCE = 200_000
 """Ticks that are computed for one answer."""
-
-
-class MeasuredBench(ShownBench, Protocol):
-    """The part of a bench that measuring needs."""
-
-    narration: Narration
 
 
 @dataclass(frozen=True)
@@ -55,7 +50,7 @@ class Run:
     is_stopped: bool
 
     @classmethod
-    def of(cls, bench: MeasuredBench) -> Run:
+    def of(cls, bench: LiveBench) -> Run:
         """Look at a bench."""
         board, jumps = bench.board, bench.narration.mark.jumps
         stopped = board.trip is not None and not bench.is_running

@@ -41,6 +41,13 @@ class Told:
     last: int
     earlier: dict[int, tuple[Narrator, int]]
 
+    def at(self, tick: int) -> Told:
+        """Return the sentences up to a remembered tick, to continue from there."""
+        narrator, last = self.earlier[tick]
+        known = last - (self.last - len(self.sentences))
+        earlier = {one: then for one, then in self.earlier.items() if one <= tick}
+        return Told(narrator, self.sentences[: max(known, 0)], last, earlier)
+
 
 @dataclass(frozen=True)
 class Mark:
@@ -96,10 +103,6 @@ class Narration:
             self._sentences.extend(sentences)
             self.mark = Mark(self.mark.jumps, self.mark.last + len(sentences))
 
-    def begin(self, spec: Spec) -> None:
-        """Begin again with the bench."""
-        self._jump(Told(Narrator(spec, self._signals, self._outputs), (), 0, {}))
-
     def remember(self, tick: int, kept: Collection[int]) -> None:
         """Remember the sentences at a tick; of the ticks before, only the kept ticks."""
         earlier = {one: known for one, known in self._earlier.items() if one in kept and one < tick}
@@ -109,16 +112,12 @@ class Narration:
         """Return the sentences so far, to continue from."""
         return Told(self._narrator.copy(), tuple(self._sentences), self.mark.last, self._earlier)
 
-    def told_at(self, tick: int) -> Told:
-        """Return the sentences up to a remembered tick, to continue from there."""
-        narrator, last = self._earlier[tick]
-        known = last - (self.mark.last - len(self._sentences))
-        earlier = {one: then for one, then in self._earlier.items() if one <= tick}
-        return Told(narrator, tuple(islice(self._sentences, max(known, 0))), last, earlier)
-
-    def go_to(self, told: Told) -> None:
-        """Continue from the sentences at a moment."""
-        self._jump(replace(told, narrator=told.narrator.copy()))
+    def go_to(self, told: Told | None, spec: Spec) -> None:
+        """Continue from the sentences at a moment; without them, begin again with the bench."""
+        if told is None:
+            self._jump(Told(Narrator(spec, self._signals, self._outputs), (), 0, {}))
+        else:
+            self._jump(replace(told, narrator=told.narrator.copy()))
 
     def _jump(self, told: Told) -> None:
         with self._lock:

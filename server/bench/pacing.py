@@ -5,6 +5,12 @@ from __future__ import annotations
 import math
 from collections import deque
 
+from server.bench.commands import DEFAULT_SCALE, MAX_SCALE
+from server.bench.tape import TickSource
+
+AXES_SCALE = 0.1
+"""Device seconds per wall second of a plant with axes."""
+
 CATCH_UP_S = 0.05
 """Wall time a bench may be behind. More lag is dropped, counted and shown."""
 
@@ -139,3 +145,14 @@ class Pacer:
     def capped(self) -> bool:
         """Whether the machine has not kept up for some time."""
         return self._lags_since is not None and self._seen[-1][0] - self._lags_since >= CAPPED_AFTER_S
+
+
+def usual_scale(board: TickSource) -> float:
+    """Return the time scale that suits a device.
+
+    The scale of a resonator; near real time for a plant in seconds; between them for a plant with axes, whose amplitude
+    and rate take some hundred periods to settle.
+    """
+    if board.spec.axes:
+        return AXES_SCALE
+    return min(MAX_SCALE, DEFAULT_SCALE * max(1.0, board.spec.device.oscillator().time_unit_ms))

@@ -18,13 +18,12 @@ from scenarios.narrator.narrator import Narrator
 from scenarios.narrator.sentence import Sentence
 from scenarios.run import build
 from scenarios.schema import Scenario
+from server.bench.bench import LiveBench
 from server.bench.commands import DEFAULT_SCALE, Loop, RunsTime, Seek, Start
 from server.bench.events import Event
-from server.bench.live_bench import LiveBench
 from server.bench.narration import Narration
-from server.bench.running import Running
-from server.bench.session import Session
 from server.bench.tape import Tape
+from server.bench.time import DeviceTime
 from server.errors import ApiError
 from server.metrics import Metrics
 from server.store.recordings import RecordingDetail
@@ -75,7 +74,7 @@ def played(recording: RecordingDetail, path: Path) -> tuple[Scenario, Tape, floa
     return scenario, tape, about.get("time_scale") or DEFAULT_SCALE
 
 
-class Playing(Running):
+class Playing(DeviceTime):
     """How a recording plays: from any tick, to its end or a span of it again and again.
 
     Parameters
@@ -88,20 +87,11 @@ class Playing(Running):
         Device seconds per wall second.
     metrics : Metrics
         Where overruns are counted.
-    rewind_history : callable
-        Lets the history of the bench follow the tape.
     """
 
-    def __init__(
-        self,
-        bench: LiveBench,
-        tape: Tape,
-        time_scale: float | None,
-        metrics: Metrics,
-        rewind_history: Callable[[], None],
-    ) -> None:
+    def __init__(self, bench: LiveBench, tape: Tape, time_scale: float | None, metrics: Metrics) -> None:
         super().__init__(bench, time_scale, tape.end, metrics)
-        self._tape, self._rewind_history = tape, rewind_history
+        self._tape = tape
         self._loop_start: int | None = None
 
     def carry_out(self, command: RunsTime, actor: str) -> Event | Future[Event]:
@@ -143,7 +133,7 @@ class Playing(Running):
     def _jump(self) -> None:
         """Let history and clock follow the tape."""
         self.steps.end()
-        self._rewind_history()
+        self._bench.rewind()
         if self.ends_at is None:
             self.ends_at = self._tape.end
         self._anchor()
@@ -167,7 +157,7 @@ class Transcript(Narration):
         """Leave it as it is."""
 
 
-class Replay(Session):
+class Replay(LiveBench):
     """A recording in the place of a board.
 
     Parameters
@@ -202,7 +192,7 @@ class Replay(Session):
         sentences: list[Sentence],
     ) -> None:
         super().__init__(scenario, tape, time_scale, history_ticks, metrics, clock)
-        self.running = Playing(self, tape, time_scale, metrics, self._rewind_history)
+        self.time = Playing(self, tape, time_scale, metrics)
         self.replay_of = recording.id
         for event in recording.events or []:
             self.events.keep(**{name: event.get(name) for name in RECORDED})

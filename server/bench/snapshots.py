@@ -1,35 +1,39 @@
-"""Snapshots: moments a bench can go back to; taken and forgotten on the engine thread."""
+"""Snapshots: journals of a bench that are kept, so that it can go back to their ends; on the engine thread."""
 
 from __future__ import annotations
 
 import secrets
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from typing import TYPE_CHECKING
 
-from server.bench.changes import ChangingBench
-from server.bench.moment import Moment
+from server.bench.events import Event
+from server.bench.journal import Journal
 from server.bench.status import Snapshot
 from server.errors import ApiError, not_found
+
+if TYPE_CHECKING:
+    from server.bench.bench import LiveBench
 
 
 @dataclass(frozen=True)
 class Kept:
-    """A snapshot and the moment it holds."""
+    """A snapshot and its journal."""
 
     snapshot: Snapshot
-    moment: Moment
+    journal: Journal
 
 
 class Snapshots:
-    """The moments kept of a bench.
+    """The snapshots of a bench.
 
     Parameters
     ----------
-    bench : ChangingBench
+    bench : LiveBench
         The bench.
     """
 
-    def __init__(self, bench: ChangingBench) -> None:
+    def __init__(self, bench: LiveBench) -> None:
         self._bench = bench
         self._kept: dict[str, Kept] = {}
 
@@ -38,21 +42,27 @@ class Snapshots:
         return [kept.snapshot for kept in list(self._kept.values())]
 
     def take(self, name: str, actor: str, most: int) -> Snapshot:
-        """Keep this moment."""
+        """Keep the journal up to now."""
         if len(self._kept) >= most:
             raise ApiError(409, "too_many_snapshots", f"{most} snapshots are kept, the limit (max_snapshots)")
-        tick = self._bench.board.tick
-        snapshot = Snapshot(id=secrets.token_hex(6), tick=tick, name=name, created=datetime.now(UTC))
-        self._kept[snapshot.id] = Kept(snapshot, self._bench.moment())
+        journal = self._bench.journal(is_lean=True)
+        snapshot = Snapshot(id=secrets.token_hex(6), tick=journal.tick, name=name, created=datetime.now(UTC))
+        self._kept[snapshot.id] = Kept(snapshot, journal)
         self._bench.note(actor, "snapshot_taken", f"kept this moment as {name or snapshot.id}")
         return snapshot
 
     def get(self, snapshot_id: str) -> Kept:
-        """Return a kept moment."""
+        """Return a snapshot and its journal."""
         if snapshot_id not in self._kept:
             raise not_found("snapshot", snapshot_id)
         return self._kept[snapshot_id]
 
+    def restore(self, snapshot_id: str, actor: str) -> Event:
+        """Go back to a snapshot."""
+        kept = self.get(snapshot_id)
+        text = f"went back to {kept.snapshot.name or kept.snapshot.id}"
+        return self._bench.changes.stand(kept.journal, actor, "restored", text)
+
     def forget(self, snapshot_id: str) -> None:
-        """Forget a kept moment."""
+        """Forget a snapshot."""
         del self._kept[self.get(snapshot_id).snapshot.id]

@@ -123,6 +123,7 @@ class BenchStatus(BaseModel):
     )
     watchers: int = 0
     company: Company | None = Field(None, description="Its users; null while it is one person")
+    is_stuck: bool = Field(False, description="The engine hangs for good: the server has to be restarted")
     loop_lag_ms: float = Field(0.0, description="99th percentile of the event loop's lateness, last minute")
     wake_late_ms: float = Field(0.0, description="99th percentile of the engine's lateness, last minute")
 

@@ -144,3 +144,7 @@ class Tape:
 
     def _rows(self, samples: NDArray[np.float32]) -> Rows:
         return Rows.of(self.tick, samples, self._outputs)
+
+
+TickSource = Board | Tape
+"""A live bench advances one of these: a board computes its ticks, a tape reads them from a recording."""

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.board.document import Document
-from server.bench.live_bench import LiveBench
+
+if TYPE_CHECKING:
+    from server.bench.bench import LiveBench
 
 
 @dataclass(frozen=True)

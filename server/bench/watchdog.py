@@ -1,48 +1,64 @@
-"""The watchdog over the engine: it watches from a thread of its own and acts when the engine shows no activity.
+"""The watchdog over the engine: it watches from a thread of its own, and acts when the engine shows no activity.
 
-It adds up silence: the time after a round was due in which the threads of the engine neither ran nor wanted to. A busy
-machine delays the looks too, so a late look counts little, and a tenth of that while other threads of this process wait
-for a processor. Long work, such as to compile a kernel, has a larger bound.
+It adds up silence: the time after a round was due in which the threads of the engine did not run. A look that comes
+late counts little, because a busy machine delays the looks too. Benches that ran are taken to safe outputs, once for
+each silence; such a trip may be false. Without progress for longer, the server has to be restarted.
+
+Only the engine changes a bench. So the status shows the trip at once, and the outputs go to their safe values by a
+command, at the present tick of the bench and before any other tick: the run repeats with the same bits.
 """
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
+import faulthandler
 import logging
+import math
 import sys
+import tempfile
 import threading
-import traceback
-from collections.abc import Sequence
+import time
+from collections.abc import Awaitable, Callable, Sequence
 from typing import Protocol
 
+from core.board.commands import MakeSafe, Trip
+from core.errors import InputError
 from core.format import format_short
-from server.bench.crew import Crew
+from server.bench.bench import LiveBench
 from server.bench.engine import Engine, Workload
-from server.bench.job import Job
-from server.bench.pulse import Finger
+from server.bench.recording import Records, Wanted
+from server.errors import ApiError
+from server.metrics import Metrics
+from server.store.keeping import Keeping
 
 log = logging.getLogger(__name__)
 
 LOOK_S = 0.0125
-MOST_S = 2 * LOOK_S
-"""Most that a look counts, if it comes late."""
-CROWDED = 0.1
-"""Share that a look counts while other threads wait for a processor: one may hold the lock the engine waits for."""
+LATE_S = 4 * LOOK_S
+"""A look after this time is late: the machine is busy, or was suspended."""
+LATE_COUNTS_S = 0.1 * LOOK_S
+"""Silence that a late look counts."""
 SILENT_S = 0.1
 """Silence after which the engine hangs."""
-GIVEN_UP_S = 5.0
-"""Silence after which other threads take its place."""
-LONG_S = 60.0
-"""Work of one slice or job, without the waits for a processor, after which the engine hangs too."""
+STUCK_S = 30.0
+"""Time without progress, silent or at work, after which the server has to be restarted."""
+AT_WORK = ("llvmlite", "importlib", "_frozen_importlib", "_frozen_importlib_external", "pyarrow")
+"""Packages in which a thread sleeps while another works for it: it compiles, imports or reads a file."""
+KEPT_S = 2.0
+"""Wall time before a trip that a recording keeps."""
+MOST_KEPT = 8
+"""Most such recordings at a time; the other benches have that time in their history as long as they are live."""
 
 
-class Guarded(Protocol):
+class Guard(Protocol):
     """Takes care of the benches; called on the thread of the watchdog."""
 
     def hung(self, running: Sequence[Workload], held: Sequence[str], why: str) -> None:
         """Take benches to safe outputs that ran when the engine hung, in slices of the benches that are named."""
 
-    def given_up(self, benches: Sequence[Workload]) -> None:
-        """Let go of benches in whose slices the engine hangs for good."""
+    def stuck(self, held: Sequence[str]) -> None:
+        """Record the benches in whose slices the engine hangs for good."""
 
 
 class Watchdog:
@@ -52,20 +68,22 @@ class Watchdog:
     ----------
     engine : Engine
         The engine.
-    guarded : Guarded
+    guard : Guard
         Takes care of the benches.
-    finger : Finger, optional
-        Feels the pulse of the threads of the engine.
+    activity : Activity, optional
+        Measures the work of the threads of the engine.
     """
 
-    def __init__(self, engine: Engine, guarded: Guarded, finger: Finger | None = None) -> None:
-        self._engine, self._guarded, self._finger = engine, guarded, finger or Finger()
+    def __init__(self, engine: Engine, guard: Guard, activity: Activity | None = None) -> None:
+        self._engine, self._guard, self._activity = engine, guard, activity or Activity()
         self._looked = self._expected = engine.clock()
-        self._blocked_s = self._worked_s = 0.0
+        self._silent_s = self._idle_s = 0.0
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, name="combbench-watchdog", daemon=True)
         self.barks = False
         """Whether the engine hangs."""
+        self.is_stuck = False
+        """Whether the server has to be restarted."""
 
     def start(self) -> None:
         """Look from now on."""
@@ -83,28 +101,25 @@ class Watchdog:
 
     def look(self) -> None:
         """Look once."""
-        engine = self._engine
-        now = engine.clock()
+        engine, now = self._engine, self._engine.clock()
         passed, self._looked = now - self._looked, now
-        if not engine.crew.main.is_alive():
+        counts = passed if passed < LATE_S else LATE_COUNTS_S
+        if engine.has_ended:
             self._bark("the engine broke off")
-            self._blocked_s += passed
-            if not engine.crew.held or self._blocked_s >= GIVEN_UP_S:
-                self._take_over()
-            return
+            return self._get_stuck()
         expected = engine.expected
         if expected != self._expected or now <= expected:
             self._expected = expected
-            self._calm()
-            return
-        pulse = self._finger.feel(engine.crew.threads, passed)
-        counts = (CROWDED if pulse.is_crowded else 1.0) * min(passed, MOST_S)
-        self._blocked_s = self._blocked_s + counts if pulse.is_blocked else 0.0
-        self._worked_s += min(pulse.worked_s, MOST_S)
-        if self._blocked_s >= SILENT_S or self._worked_s >= LONG_S:
+            return self._calm()
+        worked_s = self._activity.measure(engine.threads)
+        self._silent_s = 0.0 if worked_s else self._silent_s + counts
+        if worked_s != math.inf:
+            self._idle_s += min(worked_s or counts, counts)
+        if self._silent_s >= SILENT_S:
             self._bark(f"the engine gave no sign for {format_short(now - expected, 's', 2)}")
-        if self._blocked_s >= GIVEN_UP_S or self._worked_s >= 2 * LONG_S:
-            self._take_over()
+        if self._idle_s >= STUCK_S:
+            self._bark(f"the engine has made no progress for {format_short(now - expected, 's', 2)}")
+            self._get_stuck()
 
     def _run(self) -> None:
         while not self._ended.wait(LOOK_S):
@@ -114,9 +129,9 @@ class Watchdog:
                 log.exception("the watchdog could not look at the engine; it is tried again")
 
     def _calm(self) -> None:
-        self._blocked_s = self._worked_s = 0.0
+        self._silent_s = self._idle_s = 0.0
         if self.barks:
-            self.barks = False
+            self.barks = self.is_stuck = False
             log.warning("the engine turns again")
 
     def _bark(self, why: str) -> None:
@@ -124,24 +139,193 @@ class Watchdog:
         if self.barks:
             return
         self.barks = True
-        running = self._engine.running
+        running, held = self._engine.running, [work.id for work in self._engine.held]
         if running:
-            held = [thing.id for thing in self._engine.crew.held if not isinstance(thing, Job)]
-            self._guarded.hung(running, held, why)
-        log.error("%s; benches that ran: %d; where its threads are:\n%s", why, len(running), _stacks(self._engine.crew))
+            self._guard.hung(running, held, why)
+        log.error("%s; benches that ran: %d; stacks of all threads:\n%s", why, len(running), _stacks())
 
-    def _take_over(self) -> None:
-        """Let other threads turn the engine."""
-        self._engine.take_over(self._guarded.given_up)
-        self._looked = self._expected = self._engine.clock()
-        self._blocked_s = self._worked_s = 0.0
-        self.barks = False
-        log.error("other threads turn the engine")
+    def _get_stuck(self) -> None:
+        """Say once that the server has to be restarted."""
+        if self.is_stuck:
+            return
+        self.is_stuck = True
+        held = [work.id for work in self._engine.held]
+        log.critical("the engine hangs for good: restart the server; benches in hand: %s", ", ".join(held) or "none")
+        self._guard.stuck(held)
 
 
-def _stacks(crew: Crew[Workload | Job]) -> str:
-    """Return the stacks of the busy threads of the engine, for the log."""
+class Activity:
+    """Measures the work of threads by their clocks."""
+
+    def __init__(self) -> None:
+        self._clocks: dict[int, float] = {}
+
+    def measure(self, threads: Sequence[threading.Thread]) -> float:
+        """Return the processor time of threads since the last look, s; infinite where they wait for a compilation.
+
+        Where a system has no clock of a thread, its threads are at work.
+        """
+        if not hasattr(time, "pthread_getcpuclockid") or _wait_for_others([thread.ident or 0 for thread in threads]):
+            return math.inf
+        before, self._clocks = self._clocks, {}
+        for thread in threads:
+            if (number := thread.ident) is not None and thread.is_alive():
+                self._clocks[number] = time.clock_gettime(time.pthread_getcpuclockid(number))
+        return sum(now - before.get(number, now) for number, now in self._clocks.items())
+
+
+def _wait_for_others(numbers: Sequence[int]) -> bool:
+    """Whether one of these threads is inside a package whose other threads work for it."""
     frames = sys._current_frames()
-    busy = [one for one in crew.threads if one is crew.main or one.ident in crew.in_hand]
-    found = [(one.name, frames[one.ident or 0]) for one in busy if one.ident in frames]
-    return "\n".join(f"{name}:\n{''.join(traceback.format_stack(frame))}" for name, frame in found)
+    for number in numbers:
+        frame = frames.get(number)
+        while frame is not None:
+            if str(frame.f_globals.get("__name__", "")).partition(".")[0] in AT_WORK:
+                return True
+            frame = frame.f_back
+    return False
+
+
+def _stacks() -> str:
+    """Return the stacks of all threads."""
+    with tempfile.TemporaryFile() as file:
+        faulthandler.dump_traceback(file, all_threads=True)
+        file.seek(0)
+        return file.read().decode(errors="replace")
+
+
+class Safety:
+    """Takes benches to safe outputs that ran when the engine hung.
+
+    Parameters
+    ----------
+    engine : Engine
+        Whose thread changes a bench.
+    records : Records
+        Records the last seconds.
+    keeping : Keeping
+        Knows the room for recordings.
+    metrics : Metrics
+        Where it is counted.
+    show : callable
+        Sends the status of some benches to their pages; called on the event loop.
+    renew : callable
+        Renews the status of every bench; called on the event loop.
+    record : callable
+        Records a bench that is not brought back after a restart.
+    """
+
+    def __init__(
+        self,
+        engine: Engine,
+        records: Records,
+        keeping: Keeping,
+        metrics: Metrics,
+        show: Callable[[Sequence[LiveBench]], None],
+        renew: Callable[[], None],
+        record: Callable[[str], None],
+    ) -> None:
+        self._engine, self._records, self._keeping, self._metrics = engine, records, keeping, metrics
+        self._show, self._renew, self._record = show, renew, record
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    def start(self) -> None:
+        """Begin, on the event loop that serves the pages."""
+        self._loop = asyncio.get_running_loop()
+
+    async def stop(self, *, at_once: bool) -> None:
+        """Wait for recordings under way, or give them up because the engine does no job."""
+        for task in self._tasks if at_once else ():
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+
+    def hung(self, running: Sequence[Workload], held: Sequence[str], why: str) -> None:
+        """Take benches to safe outputs; on the thread of the watchdog."""
+        sessions = sorted(_with_outputs(running), key=lambda one: one.id not in held)
+        reasons = {session: _reason(session, held, why) for session in sessions}
+        for session, reason in reasons.items():
+            show_trip(session, reason)
+
+        def make_all_safe() -> None:
+            for session, reason in reasons.items():
+                make_safe(session, reason)
+
+        if sessions:
+            self._engine.interrupt(make_all_safe)
+            self._metrics.watchdog_trips.inc()
+            self._on_loop(lambda: self._show(sessions))
+            self._on_loop(lambda: self._begin(self._keep(sessions, why)))
+
+    def stuck(self, held: Sequence[str]) -> None:
+        """Record the benches in whose slices the engine hangs for good; on the thread of the watchdog."""
+        for bench_id in held:
+            self._record(bench_id)
+        self._on_loop(self._renew)
+
+    def _on_loop(self, function: Callable[[], None]) -> None:
+        """Let the event loop do something."""
+        if self._loop is not None:
+            with contextlib.suppress(RuntimeError):  # the loop may be closing
+                self._loop.call_soon_threadsafe(function)
+
+    def _begin(self, coming: Awaitable[None]) -> None:
+        task = asyncio.ensure_future(coming)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _keep(self, sessions: Sequence[LiveBench], why: str) -> None:
+        """Record the last seconds of some benches, except where a fault is hidden, because a file would reveal it."""
+        kept = [one for one in sessions if one.hiding.view is None and one.history.end_tick > one.history.first_tick]
+        for session in kept[:MOST_KEPT]:
+            try:
+                wanted = Wanted(name=f"before the trip: {why}"[:100], past_ticks=_ticks(session), ticks=0)
+                await self._records.begin(session, wanted, "board", await self._keeping.room())
+            except ApiError as error:
+                log.warning("the last seconds of bench %s are not kept: %s", session.id, error.body.message)
+            except Exception:
+                log.exception("the last seconds of bench %s are not kept", session.id)
+
+
+def show_trip(session: LiveBench, reason: str) -> None:
+    """Show in the status of a bench that it has tripped, although the bench itself cannot be changed now."""
+    if session.status.trip is None:
+        tick = session.board.tick
+        trip = Trip(tick=tick, time_ms=tick * session.dt_ms, reason=reason, signal="", value=None)
+        session.status = session.status.model_copy(update={"state": "tripped", "trip": trip})
+
+
+def make_safe(session: LiveBench, reason: str) -> None:
+    """Take the outputs of a bench to their safe values at its present tick (urgent)."""
+    try:
+        if session.board.trip is None:
+            session.execute(MakeSafe(make_safe=reason), "board")
+        else:
+            session.refresh_status()
+    except (ApiError, InputError) as error:
+        log.warning("bench %s is not taken to safe outputs: %s", session.id, error)
+    except Exception as error:
+        log.exception("bench %s could not be taken to safe outputs", session.id)
+        session.fail(error)
+
+
+def _with_outputs(benches: Sequence[Workload]) -> list[LiveBench]:
+    """Return the benches that have outputs: a recording that is played has none."""
+    return [bench for bench in benches if isinstance(bench, LiveBench) and not bench.replay_of]
+
+
+def _reason(session: LiveBench, held: Sequence[str], why: str) -> str:
+    """Return why a bench trips, in words."""
+    held_up = ""
+    if session.id in held:
+        held_up = ", in a tick of this bench"
+    elif held:
+        held_up = f", held up by bench {held[0]}"
+    return f"{why}{held_up}; outputs were taken to safe values"
+
+
+def _ticks(session: LiveBench) -> int:
+    """Return the ticks of the last seconds."""
+    status = session.status
+    scale = max(status.achieved_scale, status.time_scale or 0.0)
+    return min(session.history.capacity, max(1, math.ceil(KEPT_S * scale * 1e3 / session.dt_ms)))

@@ -10,8 +10,8 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict
 from sqlalchemy import delete, func, select
 
+from server.bench.bench import LiveBench
 from server.bench.events import Event
-from server.bench.session import Session
 from server.clock import Clock
 from server.store.base import now
 from server.store.change import Change
@@ -55,7 +55,7 @@ class Audit:
         self._database = database
         self._waiting: deque[dict[str, Any]] = deque(maxlen=MOST)
 
-    def witness(self, bench: Session, event: Event) -> None:
+    def witness(self, bench: LiveBench, event: Event) -> None:
         """Keep an event of a bench that a person caused; called on the engine's thread too."""
         if event.actor not in OF_THE_BENCH:
             self.add(event.actor, event.kind, event.text, bench.class_id, bench.id, event.tick)

@@ -11,7 +11,7 @@ from core.device.drawn import device_of
 from core.errors import InputError
 from scenarios.schema import Scenario
 from server.bench.blind import Blind, bank_of, hide
-from server.bench.making import read_scenario
+from server.bench.build import read_scenario
 from server.errors import REFUSED, why
 from server.people.blinds import OF_DRAW, Blinds, hidden_on
 from server.people.classes import Classes

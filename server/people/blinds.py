@@ -13,10 +13,10 @@ from sqlalchemy import delete, select
 from sqlalchemy.orm import Session as DatabaseSession
 
 from core.errors import InputError, unknown
+from server.bench.bench import LiveBench
 from server.bench.blind import GAME_HINT, Blind, hide
 from server.bench.engine import Engine
 from server.bench.resonance import Resonance, resonance_of
-from server.bench.session import Session
 from server.errors import ApiError
 from server.people.brier import points
 from server.people.draw import draw
@@ -74,7 +74,7 @@ class Blinds:
         Closes the pages of a bench, so that they come back to its present view.
     """
 
-    def __init__(self, database: Database, engine: Engine, turn: Callable[[Session], Awaitable[None]]) -> None:
+    def __init__(self, database: Database, engine: Engine, turn: Callable[[LiveBench], Awaitable[None]]) -> None:
         self._database, self._engine, self._turn_pages = database, engine, turn
         self._answers: dict[str, Answer] = {}
         self._turn = asyncio.Lock()
@@ -102,7 +102,7 @@ class Blinds:
         found = (one for one in reversed(self._answers.values()) if one.person_id == person_id and one.exercise)
         return next(found, None)
 
-    async def begin(self, session: Session, person: Person, seed: int, shows: bool, secret: str = "") -> None:
+    async def begin(self, session: LiveBench, person: Person, seed: int, shows: bool, secret: str = "") -> None:
         """Hide a fault on an existing bench, by a seed; a student cannot know the fault of a seed beforehand.
 
         Raises
@@ -147,12 +147,12 @@ class Blinds:
                 await self._turn_pages(session)
 
     def noting(
-        self, session: Session, person: Person, blind: Blind, exercise: str = "", seed: int | None = None
+        self, session: LiveBench, person: Person, blind: Blind, exercise: str = "", seed: int | None = None
     ) -> Change:
         """Note a hidden fault."""
         return self._keeping(_unanswered(session, person, blind, exercise, seed))
 
-    async def commit(self, session: Session, person: Person, said: str, confidence: float) -> Answer:
+    async def commit(self, session: LiveBench, person: Person, said: str, confidence: float) -> Answer:
         """Take an answer, count it and reveal the fault; an answer from before a crash stays unchanged.
 
         Raises
@@ -171,7 +171,7 @@ class Blinds:
             worth = points(said == blind.truth, confidence, len(answers))
             return await self._end(session, person, {**given, "points": worth})
 
-    async def reveal(self, session: Session, person: Person) -> Answer:
+    async def reveal(self, session: LiveBench, person: Person) -> Answer:
         """Reveal a fault without an answer: no points.
 
         Raises
@@ -183,7 +183,7 @@ class Blinds:
             hidden_on(session)
             return await self._end(session, person, {"state": "revealed"})
 
-    def closing(self, session: Session) -> list[Change]:
+    def closing(self, session: LiveBench) -> list[Change]:
         """Note that the bench of a hidden fault goes without an answer."""
         blind = session.hiding.blind
         known = self._answers.get(blind.question.id) if blind is not None else None
@@ -200,7 +200,7 @@ class Blinds:
 
         return Change(lambda session: session.execute(statement), take)
 
-    async def _end(self, session: Session, person: Person, said: dict[str, object]) -> Answer:
+    async def _end(self, session: LiveBench, person: Person, said: dict[str, object]) -> Answer:
         """Keep how it ended, then serve everything again: a crash between the two reveals on the next try."""
         blind = hidden_on(session)
         answer = self._answers.get(blind.question.id) or _unanswered(session, person, blind)
@@ -246,7 +246,9 @@ def _deleted(ids: list[str]) -> Callable[[DatabaseSession], object]:
     return lambda session: session.execute(delete(BlindAnswerRow).where(BlindAnswerRow.id.in_(ids)))
 
 
-def _unanswered(session: Session, person: Person, blind: Blind, exercise: str = "", seed: int | None = None) -> Answer:
+def _unanswered(
+    session: LiveBench, person: Person, blind: Blind, exercise: str = "", seed: int | None = None
+) -> Answer:
     """Return the record of a hidden fault without an answer."""
     return Answer(
         id=blind.question.id,
@@ -264,7 +266,7 @@ def _unanswered(session: Session, person: Person, blind: Blind, exercise: str = 
     )
 
 
-def hidden_on(session: Session) -> Blind:
+def hidden_on(session: LiveBench) -> Blind:
     """Return the hidden part of a bench, or refuse."""
     if (blind := session.hiding.blind) is None:
         raise ApiError(409, "conflict", "no fault is hidden on this bench")
@@ -273,7 +275,7 @@ def hidden_on(session: Session) -> Blind:
     return blind
 
 
-def verdicts_of(session: Session) -> dict[str, str]:
+def verdicts_of(session: LiveBench) -> dict[str, str]:
     """Return the present verdict of each diagnoser (a job of the engine)."""
     return {
         name: score.names[score.winner] if 0 <= score.winner < len(score.names) else "none"

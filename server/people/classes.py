@@ -13,7 +13,7 @@ from pydantic import BaseModel, Field
 from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
-from server.bench.making import prepare
+from server.bench.build import prepare
 from server.clock import Clock
 from server.errors import REFUSED, ApiError, not_found, why
 from server.people.audit import Audit

@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable
 
 from core.board.commands import MakeSafe
-from server.bench.session import Session
+from server.bench.bench import LiveBench
 from server.bench.status import Company, Somebody
 from server.clock import Clock
 from server.errors import ApiError
@@ -286,7 +286,7 @@ class Driving:
         return lease
 
 
-def go_without_driver(session: Session, why: str) -> None:
+def go_without_driver(session: LiveBench, why: str) -> None:
     """Act on a bench without a driver: continue with its settings, or take its outputs to safe values (a job)."""
     board = session.board
     if board.spec.frame.without_driver == "safe" and board.trip is None and not session.replay_of:

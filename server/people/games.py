@@ -13,10 +13,10 @@ from scenarios.campaign.executor import LOST, Processes
 from scenarios.games import game_of, judged
 from scenarios.games.draw import BENCH
 from scenarios.games.game import DIAGNOSER, Fact, Game, Kind, Outcome
+from server.bench.bench import LiveBench
 from server.bench.benches import Benches
 from server.bench.blind import HINT, Blind, Played, play
 from server.bench.engine import Engine
-from server.bench.session import Session
 from server.errors import ApiError
 from server.people.classes import Classes
 from server.people.game_table import Attempt, GameTable, Standing, Turns
@@ -86,7 +86,7 @@ class Games:
         engine: Engine,
         processes: Processes,
         workers: int,
-        turn: Callable[[Session], Awaitable[None]],
+        turn: Callable[[LiveBench], Awaitable[None]],
         swap: Swap,
     ) -> None:
         self._table, self._classes, self._benches, self._engine = table, classes, benches, engine
@@ -233,7 +233,7 @@ class Games:
         await self._engine.call(session.hiding.reveal, person.name)
         await self._turn_pages(session)
 
-    def _benches_of(self, person: Person) -> list[Session]:
+    def _benches_of(self, person: Person) -> list[LiveBench]:
         """Return the benches on which a player plays."""
         if person.role == "student":
             found = self._classes.benches.find(person)
@@ -242,7 +242,7 @@ class Games:
             there = [session for session in self._benches.all() if not session.class_id]
         return [one for one in there if one.hiding.blind is not None and one.hiding.blind.question.game is not None]
 
-    def _bench_of(self, person: Person, played: Played) -> Session | None:
+    def _bench_of(self, person: Person, played: Played) -> LiveBench | None:
         """Return the bench on which a player plays a game at a seed."""
         for session in self._benches_of(person):
             if session.hiding.blind is not None and session.hiding.blind.question.game == played:

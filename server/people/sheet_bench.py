@@ -9,9 +9,9 @@ from typing import Any
 from core.board.board import Board
 from scenarios.sheets.begin import Beginning, begin
 from scenarios.sheets.sheet import Sheet
+from server.bench.bench import LiveBench
 from server.bench.benches import Benches
 from server.bench.blind import Blind
-from server.bench.session import Session
 from server.people.blind_class import quiet
 from server.people.classes import Classes
 from server.people.person import Person
@@ -48,7 +48,7 @@ class SheetBenches:
         sheet: Sheet,
         values: dict[str, Any],
         before: Work | None,
-        also: Callable[[Session], Sequence[Change]],
+        also: Callable[[LiveBench], Sequence[Change]],
         hide: Callable[[Board], Blind] | None = None,
     ) -> None:
         """Replace the bench of a sheet by a new one, with a hidden fault if ``hide`` chooses one.

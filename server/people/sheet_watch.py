@@ -19,8 +19,8 @@ from core.board.history import History
 from core.board.rows import Rows
 from scenarios.sheets.look import Finding, look, signals_of
 from scenarios.sheets.sheet import Hold
-from server.bench.live_bench import LiveBench
-from server.bench.tick_source import TickSource
+from server.bench.bench import LiveBench
+from server.bench.tape import TickSource
 from server.bench.watch import KeptWatch
 
 COLUMNS = 160

@@ -15,10 +15,10 @@ from scenarios.sheets.look import known_limits
 from scenarios.sheets.progress import Progress
 from scenarios.sheets.sheet import Blind as BlindStep
 from scenarios.sheets.sheet import Hold, Sheet
+from server.bench.bench import LiveBench
 from server.bench.benches import Benches
 from server.bench.blind import HINT, Blind, hide
 from server.bench.engine import Engine
-from server.bench.session import Session
 from server.bench.watch import KeptWatch
 from server.clock import Clock
 from server.errors import ApiError, not_found
@@ -163,7 +163,7 @@ class Sheets:
             progress = before.progress if before is not None else Progress(facts=beginning.facts)
             work = Work(person.id, person.class_id, sheet_id, "", now(), progress)
 
-            def kept(made: Session) -> list[Change]:
+            def kept(made: LiveBench) -> list[Change]:
                 work.bench_id = made.id
                 return [self._keeping(work)]
 
@@ -203,7 +203,7 @@ class Sheets:
             if bench is not None and bench.hiding.blind is not None:
                 raise ApiError(409, "blind", "a fault is hidden here already", hint=HINT)
 
-            def kept(made: Session) -> list[Change]:
+            def kept(made: LiveBench) -> list[Change]:
                 blind, progress = hidden_on(made), work.progress.model_copy(deep=True)
                 progress.of(step).hidden = blind.question.id
                 now_there = replace(work, bench_id=made.id, progress=progress)
@@ -272,7 +272,7 @@ class Sheets:
 
             await self._engine.call(put)
 
-    def _watch(self, work: Work, step: Hold, bench: Session) -> SheetWatch:
+    def _watch(self, work: Work, step: Hold, bench: LiveBench) -> SheetWatch:
         """Return a watch for a step, which looks at a bench from now on."""
 
         def done(found: Done) -> None:
@@ -282,7 +282,7 @@ class Sheets:
         limits = known_limits(step, work.progress.facts)
         return SheetWatch(step, limits, bench.board.tick, bench.dt_ms, done)
 
-    def _go_on(self, bench: Session, kept: KeptWatch | None) -> None:
+    def _go_on(self, bench: LiveBench, kept: KeptWatch | None) -> None:
         """Watch a bench again as before the crash, before it continues from its checkpoint."""
         for work in self._works.all():
             sheet = self._known(work.sheet_id) if work.bench_id == bench.id else None

@@ -11,10 +11,10 @@ from sqlalchemy import select
 
 from core.board.board import Board
 from core.own.admission import kept
+from server.bench.bench import LiveBench
 from server.bench.benches import Benches
 from server.bench.blind import Blind
 from server.bench.checkpoints import Checkpoints
-from server.bench.session import Session
 from server.bench.watch import KeptWatch
 from server.errors import not_found
 from server.people.people import People
@@ -33,14 +33,14 @@ async def _nothing(_: Person) -> None:
 class Swap(Protocol):
     """Lets a bench that was just made take the place of others."""
 
-    def __call__(self, made: Session, before: Sequence[Session], *changes: Change) -> Awaitable[None]:
+    def __call__(self, made: LiveBench, before: Sequence[LiveBench], *changes: Change) -> Awaitable[None]:
         """Change all of it, or close the bench again where it cannot be kept."""
 
 
 class CloseBenches(Protocol):
     """Closes benches and their streams."""
 
-    def __call__(self, sessions: Sequence[Session], *changes: Change) -> Awaitable[None]:
+    def __call__(self, sessions: Sequence[LiveBench], *changes: Change) -> Awaitable[None]:
         """Change all of it, or nothing where it cannot be kept."""
 
 
@@ -79,14 +79,14 @@ class StudentBenches:
         self._given_up: set[str] = set()
         self.welcome: Callable[[Person], Awaitable[None]] = _nothing
         """Called before a student gets the first bench; it may give one."""
-        self.on_revived: Callable[[Session, KeptWatch | None], None] = lambda *_: None
+        self.on_revived: Callable[[LiveBench, KeptWatch | None], None] = lambda *_: None
         """Called with a bench before it continues from its checkpoint, and with its watch."""
 
-    def find(self, person: Person) -> Session | None:
+    def find(self, person: Person) -> LiveBench | None:
         """Return the live bench of a student, if there is one."""
         return self._benches.find(self._people.bench_of(person))
 
-    async def get(self, person: Person) -> Session:
+    async def get(self, person: Person) -> LiveBench:
         """Return the bench of a student; a missing bench comes back, or is made as the class begins.
 
         Raises
@@ -113,8 +113,8 @@ class StudentBenches:
         person: Person,
         wanted: dict[str, Any],
         hide: Callable[[Board], Blind] | None = None,
-        also: Callable[[Session], Sequence[Change]] = lambda _: (),
-    ) -> Session:
+        also: Callable[[LiveBench], Sequence[Change]] = lambda _: (),
+    ) -> LiveBench:
         """Replace the bench of a student, with a hidden fault if ``hide`` chooses one.
 
         The old bench closes, and then the pages of the student go to the new one. The change that ``also`` returns for
@@ -137,13 +137,17 @@ class StudentBenches:
             await self._close([bench for one in people if (bench := self.find(one)) is not None], *changes)
 
     async def recover(self, students: list[Person]) -> None:
-        """Bring all benches back, as they were shortly before the server ended; forget those without an owner."""
+        """Bring all benches back, as they were shortly before the server ended; forget those that cannot come."""
         for person in students:
             try:
                 if self._people.bench_of(person):
                     await self.get(person)
             except Exception:
                 log.exception("the bench of %s could not be brought back", person.id)
+        for bench_id in await self._checkpoints.ids():
+            async with self._turn:
+                if self._benches.find(bench_id) is None:
+                    await self._revived(bench_id, of_nobody=True)
         self._all_back = True
         await self._checkpoints.forget_others()
 
@@ -152,14 +156,17 @@ class StudentBenches:
         return not self._all_back and bench_id not in self._given_up
 
     async def bring_back(self, bench_id: str) -> bool:
-        """Bring a shown or lent bench back; return whether it exists."""
+        """Bring a bench back; return whether it exists."""
         async with self._turn:
             return self._benches.find(bench_id) is not None or await self._revived(bench_id) is not None
 
-    async def _revived(self, bench_id: str) -> Session | None:
-        """Return a bench that continues from its checkpoint, if it has one that this version can read."""
+    async def _revived(self, bench_id: str, *, of_nobody: bool = False) -> LiveBench | None:
+        """Return a bench that continues from its checkpoint, if it has one that this version can read.
+
+        With ``of_nobody`` the bench of a student is left out: the student is gone.
+        """
         found = await self._checkpoints.load(bench_id) if bench_id else None
-        if found is None:
+        if found is None or (of_nobody and found.head.class_id):
             self._given_up.add(bench_id)
             return None
         try:
@@ -173,10 +180,10 @@ class StudentBenches:
         self,
         person: Person,
         wanted: dict[str, Any],
-        before: Sequence[Session],
+        before: Sequence[LiveBench],
         hide: Callable[[Board], Blind] | None = None,
-        also: Callable[[Session], Sequence[Change]] = lambda _: (),
-    ) -> Session:
+        also: Callable[[LiveBench], Sequence[Change]] = lambda _: (),
+    ) -> LiveBench:
         """Make a bench and give it to a student."""
         made = await self._benches.create(**wanted, class_id=person.class_id, hide=hide)
         await self._swap(made, before, self._people.giving(person, made.id), *also(made))

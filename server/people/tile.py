@@ -8,8 +8,8 @@ import numpy as np
 from pydantic import BaseModel, Field
 
 from core.loop.score import Scores
-from server.bench.portrait import factors_of
-from server.bench.session import Session
+from server.bench.bench import LiveBench
+from server.bench.description import factors_of
 from server.bench.status import ActiveFault, State
 from server.people.blinds import Answer
 from server.people.person import Person
@@ -51,7 +51,7 @@ class Tile(BaseModel):
     trace: list[tuple[float, float]] = Field([], description="Minimum and maximum of the displacement, um, by column")
 
 
-def tile_of(person: Person, bench: Session | None, watchers: int, *, hand: bool) -> Tile:
+def tile_of(person: Person, bench: LiveBench | None, watchers: int, *, hand: bool) -> Tile:
     """Show a student."""
     tile = Tile(id=person.id, name=person.name, hand=hand, bench=None, watchers=watchers, until=person.until)
     if bench is None:
@@ -84,7 +84,7 @@ def _verdict(diagnoser: str, score: Scores, factors: list[dict[str, float]]) -> 
     return Verdict(diagnoser=diagnoser, says=says, truth=truth, correct_fraction=score.correct_fraction, factors=told)
 
 
-def _trace(bench: Session) -> list[tuple[float, float]]:
+def _trace(bench: LiveBench) -> list[tuple[float, float]]:
     """Return the end of the displacement."""
     shown = [name for name in SHOWN if name in bench.column_of]
     history = bench.history

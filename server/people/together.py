@@ -6,15 +6,15 @@ import asyncio
 from collections.abc import Sequence
 
 from core.errors import InputError
+from server.bench.bench import LiveBench
 from server.bench.benches import Benches
 from server.bench.commands import Pause, Reset, Start
 from server.bench.engine import Engine
-from server.bench.session import Session
 from server.errors import ApiError
 
 
 async def start_together(
-    benches: Benches, engine: Engine, sessions: Sequence[Session | None], actor: str
+    benches: Benches, engine: Engine, sessions: Sequence[LiveBench | None], actor: str
 ) -> list[str | None]:
     """Bring benches to tick 0 and start all of them at once; return of each why not, if so.
 
@@ -27,13 +27,13 @@ async def start_together(
         Where commands are carried out.
     engine : Engine
         Starts all of them between two slices.
-    sessions : sequence of Session
+    sessions : sequence of LiveBench
         The benches; a missing bench stays out.
     actor : str
         Who starts them.
     """
 
-    async def stand(session: Session | None) -> str | None:
+    async def stand(session: LiveBench | None) -> str | None:
         if session is None:
             return "there is no bench"
         try:
@@ -46,7 +46,7 @@ async def start_together(
 
     why = await asyncio.gather(*map(stand, sessions))
 
-    def start(session: Session | None, before: str | None) -> str | None:
+    def start(session: LiveBench | None, before: str | None) -> str | None:
         if session is None or before is not None:
             return before
         try:

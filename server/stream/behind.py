@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from server.bench.session import Seen
+from server.bench.bench import Seen
 
 
 class Behind:

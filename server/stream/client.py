@@ -14,8 +14,8 @@ from collections.abc import Callable
 
 from pydantic import BaseModel
 
+from server.bench.bench import Seen
 from server.bench.narration import Mark
-from server.bench.session import Seen
 from server.metrics import Sent
 from server.people.person import TEACHER, Person
 from server.stream.codec import encode
@@ -46,7 +46,7 @@ class Client:
     ----------
     line : Line
         The accepted connection.
-    session : Session or BlindView
+    session : LiveBench or BlindView
         The bench it watches, as it may be seen.
     sent : Sent
         Where frames are counted.

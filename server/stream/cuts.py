@@ -9,8 +9,8 @@ from weakref import WeakKeyDictionary, WeakSet, WeakValueDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from server.bench.bench import Seen
 from server.bench.captures import Captured, CaptureSet
-from server.bench.session import Seen
 from server.stream.behind import Behind
 from server.stream.codec import Moment, Picture
 from server.stream.view import View, window_of
@@ -22,7 +22,7 @@ class SharedCuts:
 
     Parameters
     ----------
-    session : Session or BlindView
+    session : LiveBench or BlindView
         The bench as those pages see it; its history may be replaced by a reset.
     """
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, count
 from typing import Any
 
-from server.bench.session import Seen
+from server.bench.bench import Seen
 from server.bench.status import Company
 from server.errors import ApiError
 from server.metrics import Metrics
@@ -178,6 +178,11 @@ class Hub:
         for session in benches:
             for client in self._all(session.id):
                 client.offer(status=True)
+
+    def renew(self) -> None:
+        """Make the next status of every bench a new one, because the state of the server has changed."""
+        for room in self._rooms.values():
+            room.news.renew()
 
     def call(self, people: list[Person]) -> None:
         """Tell all pages of some persons to read their present rights."""

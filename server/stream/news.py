@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from server.bench.bench import Seen
 from server.bench.narration import Mark
-from server.bench.session import Seen
 from server.stream.line import text_message
 from server.stream.wire import Events, Narrated, Notice, Status
 
@@ -20,7 +20,7 @@ class News:
 
     Parameters
     ----------
-    session : Session or BlindView
+    session : LiveBench or BlindView
         The bench as those pages see it.
     around : callable
         Returns the fields of a status that the bench itself does not know.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from server.bench.session import Seen
+from server.bench.bench import Seen
 from server.stream.client import Client
 from server.stream.cuts import SharedCuts
 from server.stream.news import News
@@ -23,7 +23,7 @@ class Room:
 
     Parameters
     ----------
-    session : Session or BlindView
+    session : LiveBench or BlindView
         The bench as they see it.
     around : callable
         Returns the fields of a status that the bench itself does not know.

@@ -20,7 +20,7 @@ from core.faults.fault import Fault, FaultParams
 from core.format import format_in
 from core.plant.plane import PlaneParams
 from core.sense.dual_beam import DualBeam
-from server.bench.session import Session
+from server.bench.bench import LiveBench
 from server.view3d.layout import FloatArray, Layout
 from server.view3d.motion import (
     TURN_EXAGGERATIONS,
@@ -122,13 +122,13 @@ class Observer:
 
     Parameters
     ----------
-    session : Session
+    session : LiveBench
         The bench.
     layout : Layout
         Where the parts of its device are.
     """
 
-    def __init__(self, session: Session, layout: Layout) -> None:
+    def __init__(self, session: LiveBench, layout: Layout) -> None:
         self._session, self._layout = session, layout
         self._faults: dict[str, type[Any]] = faults_of(session.board.spec.axes, session.board.spec.library)
         self._bank = _bank(session)
@@ -228,7 +228,7 @@ def combs_of(shift_um: float, turn: float, tip_um: float, plant: BlockParams) ->
     return middle + angle * tip_um, middle - angle * tip_um
 
 
-def _bank(session: Session) -> tuple[str, ...]:
+def _bank(session: LiveBench) -> tuple[str, ...]:
     """Return the winner and the residuals of the first bank that runs at every sample, if there is one."""
     known = {signal.name for signal in session.signals}
     spec = session.board.spec
@@ -250,13 +250,13 @@ def kept(history: History, looked: int | None) -> int | None:
     return looked if looked is not None and history.first_tick <= looked < history.end_tick else None
 
 
-def when(session: Session, looked: int | None) -> str:
+def when(session: LiveBench, looked: int | None) -> str:
     """Return in words which moment is looked at."""
     return f"at {format_in(looked * session.dt_ms, 'ms', 3)}" if looked is not None else ""
 
 
 def acting(
-    session: Session,
+    session: LiveBench,
     faults: dict[str, type[Any]],
     known: dict[str, Any],
     severities: FloatArray,
@@ -273,7 +273,7 @@ def acting(
     )
 
 
-def _injected(session: Session, faults: dict[str, type[Any]], tick: int) -> dict[str, Any]:
+def _injected(session: LiveBench, faults: dict[str, type[Any]], tick: int) -> dict[str, Any]:
     """Return the parameters that each fault was last given by a tick, as the log has them."""
     found: dict[str, Any] = {}
     for event in session.events.after(0)[1]:

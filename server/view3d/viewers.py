@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 from typing import Any, Protocol
 
-from server.bench.session import Session
+from server.bench.bench import LiveBench
 from server.view3d.gyroscope.parts import Parts
 from server.view3d.gyroscope.pose import GyroscopeObserver
 from server.view3d.layout import Layout
@@ -62,11 +62,11 @@ class Show:
 
     Parameters
     ----------
-    session : Session
+    session : LiveBench
         The bench.
     """
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: LiveBench) -> None:
         self._session = session
         self._watchers = 0
         self._scene: Scene | None = None
@@ -155,7 +155,7 @@ class Viewers:
     def __init__(self) -> None:
         self._shows: dict[str, Show] = {}
 
-    def show_of(self, session: Session) -> Show:
+    def show_of(self, session: LiveBench) -> Show:
         """Return the show of a bench; made on the first visit."""
         if session.id not in self._shows:
             self._shows[session.id] = Show(session)
@@ -177,7 +177,7 @@ class Viewers:
             await self.drop(bench_id)
 
 
-def build_scene(session: Session) -> Scene:
+def build_scene(session: LiveBench) -> Scene:
     """Build the scene; viser is loaded here, so that nothing else waits for it."""
     from server.view3d.gyroscope.scene import GyroscopeScene
     from server.view3d.scene import ResonatorScene
@@ -186,13 +186,13 @@ def build_scene(session: Session) -> Scene:
     return ResonatorScene(layout) if isinstance(layout, Layout) else GyroscopeScene(layout)
 
 
-def observer_of(session: Session) -> Observing:
+def observer_of(session: LiveBench) -> Observing:
     """Return the observer of the poses that the scene of this bench shows."""
     layout = layout_of(session)
     return Observer(session, layout) if isinstance(layout, Layout) else GyroscopeObserver(session)
 
 
-def layout_of(session: Session) -> Layout | Parts:
+def layout_of(session: LiveBench) -> Layout | Parts:
     """Return where the parts are.
 
     A plant with axes is drawn as gyroscopes, any other as a resonator; a device without a drawing as the reference

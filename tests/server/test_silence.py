@@ -1,10 +1,11 @@
-"""When the engine hangs or dies: safe outputs, a trip on every page, the last seconds kept, and a way on."""
+"""When the engine hangs or breaks off: safe outputs, a trip on every page, the last seconds kept, and a restart."""
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -12,7 +13,7 @@ import pytest
 from core.board.stored import revived
 from scenarios.run import run
 from scenarios.schema import Scenario
-from server.bench import safety, watchdog
+from server.bench import watchdog
 from tests.server.bench.test_engine import until
 from tests.server.conftest import Live
 from tests.server.people.group import join, open_class
@@ -128,21 +129,17 @@ def test_a_recording_that_is_played_does_not_trip(live: Live) -> None:
     assert metrics(live)["combbench_watchdog_trips_total"] == 1
 
 
-def test_a_dead_thread_is_replaced_and_its_benches_are_safe(live: Live) -> None:
-    benches = [running(live), running(live)]
-    crew = live.service.engine.crew
+def test_a_dead_thread_trips_its_benches_and_asks_for_a_restart(live: Live) -> None:
+    bench = running(live)
 
     def die() -> None:
         raise SystemExit
 
     live.service.engine.submit(die)
-    for bench in benches:
-        live.until(bench, lambda one: one["state"] == "tripped")
-        assert live.get(bench)["trip"]["reason"] == "the engine broke off; outputs were taken to safe values"
-        goes_on(live, bench)
-    assert live.service.engine.crew is not crew
-    recordings(live, 2)
-    assert live.http.delete(f"/api/v1/benches/{benches[0]}").status_code == 204
+    live.until(bench, lambda one: one["state"] == "tripped" and one["is_stuck"])
+    assert live.get(bench)["trip"]["reason"] == "the engine broke off; outputs were taken to safe values"
+    health = live.http.get("/health/live")
+    assert health.status_code == 503 and health.json()["checks"] == {"event_loop": True, "engine": False}
 
 
 def stick(live: Live, bench: str) -> Callable[[], None]:
@@ -166,7 +163,7 @@ def stick(live: Live, bench: str) -> Callable[[], None]:
 def test_a_bench_whose_tick_hangs_is_named_kept_first_and_goes_on_once_it_comes_back(
     live: Live, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(safety, "MOST_KEPT", 1)
+    monkeypatch.setattr(watchdog, "MOST_KEPT", 1)
     other, stuck = running(live), running(live)
     free = stick(live, stuck)
     try:
@@ -181,41 +178,26 @@ def test_a_bench_whose_tick_hangs_is_named_kept_first_and_goes_on_once_it_comes_
     assert [one["bench_id"] for one in recordings(live, 1)] == [stuck]
 
 
-def test_a_bench_that_is_stuck_for_good_is_closed_and_the_others_go_on(
-    live: Live, monkeypatch: pytest.MonkeyPatch
+def test_a_bench_that_is_stuck_for_good_asks_for_a_restart_and_does_not_come_back(
+    serve: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(watchdog, "GIVEN_UP_S", 0.5)
-    stuck, other = running(live), running(live)
-    session = live.service.benches.get(stuck)
-    with live.stream(stuck) as stream:
-        stream.until_type("hello")
+    monkeypatch.setattr(watchdog, "STUCK_S", 0.5)
+    with serve(run_workers=0, clock="machine", data=tmp_path) as live:
+        stuck, other = running(live), running(live)
+        for bench in (stuck, other):
+            until((tmp_path / "benches" / f"{bench}.npz").exists)
         free = stick(live, stuck)
         try:
-            until(lambda: live.service.benches.find(stuck) is None)
-            goes_on(live, other)
-            kept = recordings(live, 2)
+            with live.stream(other) as stream:
+                stream.until_type("status", is_stuck=True)
+            assert live.http.get("/health/live").status_code == 503
+            until((tmp_path / "benches" / f"{stuck}.hung").exists)
         finally:
             free()
-        with pytest.raises(Exception, match="4404"):
-            while True:
-                stream.step(30)
-    assert {one["bench_id"] for one in kept} == {stuck, other} and all(one["ticks"] > 50 for one in kept)
-    tick = session.board.tick
-    assert live.http.get(f"/api/v1/benches/{stuck}").status_code == 404
-    live.until(other, lambda one: one["state"] == "running")
-    assert session.board.tick == tick and not session.is_running
-
-
-def test_what_is_asked_of_a_bench_that_is_given_up_is_refused(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(watchdog, "GIVEN_UP_S", 0.5)
-    stuck = running(live)
-    free = stick(live, stuck)
-    try:
-        live.until(stuck, lambda one: one["state"] == "tripped")
-        refused = live.command(stuck, fault="damping", severity=0.1)
-        assert refused.status_code == 404 and stuck in refused.json()["error"]["message"]
-    finally:
-        free()
+    with serve(run_workers=0, clock="machine", data=tmp_path) as live:
+        assert live.http.get(f"/api/v1/benches/{stuck}").status_code == 404
+        assert live.get(other)["tick"] > 100
+        assert live.http.get("/health/live").status_code == 200
 
 
 def test_benches_of_students_trip_too_and_their_checkpoints_say_so(live: Live) -> None:

@@ -13,7 +13,7 @@ from core.board.instances import faults_of
 from core.board.spec import Spec
 from core.control.sense_axis_sync import SenseAxisSync
 from core.format import format_short
-from server.bench.session import Session
+from server.bench.bench import LiveBench
 from server.view3d.gyroscope.orbit import caption, full_scale, magnified, met
 from server.view3d.layout import FloatArray
 from server.view3d.motion import SEEN_HZ, STROBE_HZ
@@ -68,11 +68,11 @@ class GyroscopeObserver:
 
     Parameters
     ----------
-    session : Session
+    session : LiveBench
         The bench.
     """
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: LiveBench) -> None:
         self._session = session
         axes = session.board.spec.axes
         self._faults: dict[str, type[Any]] = faults_of(axes, session.board.spec.library)

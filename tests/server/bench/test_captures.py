@@ -11,7 +11,7 @@ from core.board.history import History
 from core.board.rows import Rows
 from server.bench import captures as module
 from server.bench.captures import AT_ONCE, MOST, MOST_SETS, Captured, Captures, CaptureSet
-from server.bench.moment import Branches
+from server.bench.journal import Branches
 from server.stream.view import View
 from server.stream.wire import Subscribe, TriggerSpec
 

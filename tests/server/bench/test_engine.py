@@ -23,6 +23,10 @@ class Work:
         self._start = clock()
         self.breaks_at = 10**12
 
+    @property
+    def time(self) -> Work:
+        return self
+
     def target(self, now: float) -> int | None:
         return None if self._rate is None else int((now - self._start) * self._rate)
 

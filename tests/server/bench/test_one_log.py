@@ -11,11 +11,11 @@ from core.board.ensemble import Ensemble
 from core.errors import InputError
 from scenarios.run import build
 from scenarios.schema import Scenario
+from server.bench.bench import LiveBench
+from server.bench.build import Builder
 from server.bench.commands import parse
 from server.bench.events import Event
-from server.bench.forks import forked
-from server.bench.maker import Maker
-from server.bench.session import Session
+from server.bench.travel import forked, reset
 from server.metrics import Metrics
 from server.settings import Settings
 from tests.lab import document
@@ -26,24 +26,24 @@ EVENTS = [
     {"at_sample": 5000, "switch": "pid"},
 ]
 
-MAKER = Maker(Settings(), Metrics(), lambda: 0.0)
+MAKER = Builder(Settings(), Metrics(), lambda: 0.0)
 
 
-def session(**more: Any) -> Session:
+def session(**more: Any) -> LiveBench:
     scenario = Scenario.load({**document(), "id": "told", "events": EVENTS, **more})
-    found = Session(scenario, build(scenario), None, 1000, Metrics(), lambda: 0.0)
+    found = LiveBench(scenario, build(scenario), None, 1000, Metrics(), lambda: 0.0)
     found.begin(True)
     return found
 
 
-def told(bench: Session, after: int = 0) -> list[tuple[int, str]]:
+def told(bench: LiveBench, after: int = 0) -> list[tuple[int, str]]:
     """Return tick and kind of the events; the numbers have no gap."""
     lost, events = bench.events.after(after)
     assert not lost and [event.seq for event in events] == list(range(after + 1, bench.events.last + 1))
     return [(event.tick, event.kind) for event in events]
 
 
-def do(bench: Session, **command: Any) -> Event:
+def do(bench: LiveBench, **command: Any) -> Event:
     event = bench.execute(parse(command), "test")
     assert isinstance(event, Event) and event == bench.events.after(event.seq - 1)[1][0]
     return event
@@ -75,7 +75,7 @@ def test_going_back_goes_on_with_the_log_and_forgets_what_was_undone() -> None:
     do(bench, switch="mrac")
     bench.advance(25)
     saved = len(bench.board.save()["events"])
-    bench.restore(kept.id, "test")
+    bench.snapshots.restore(kept.id, "test")
     assert told(bench) == [
         *BEGUN,
         *[(20, "inject"), (25, "snapshot_taken"), (25, "switch"), (30, "refused"), (25, "restored")],
@@ -93,7 +93,7 @@ def test_going_back_goes_on_with_the_log_and_forgets_what_was_undone() -> None:
 def test_a_reset_says_so_before_what_the_new_board_waits_for() -> None:
     bench = session()
     bench.advance(25)
-    bench.reset(bench.scenario, build(bench.scenario), "test")
+    reset(bench, bench.scenario, build(bench.scenario), "test")
     bench.advance(25)
     assert told(bench) == [*BEGUN, (20, "inject"), (0, "reset"), *BEGUN[:3], (20, "inject")]
 

@@ -15,46 +15,46 @@ from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import build, run
 from scenarios.schema import Scenario
+from server.bench.bench import LiveBench
+from server.bench.build import Builder
 from server.bench.commands import parse
+from server.bench.description import document_of
 from server.bench.events import Event
-from server.bench.forks import forked
-from server.bench.maker import Maker
-from server.bench.portrait import document_of
-from server.bench.session import Session
+from server.bench.travel import forked, reset
 from server.metrics import Metrics
 from server.settings import Settings
 
-MAKER = Maker(Settings(), Metrics(), lambda: 0.0)
+MAKER = Builder(Settings(), Metrics(), lambda: 0.0)
 
 
-def session(name: str = "ch5-seven-step", scale: float | None = None, **values: Any) -> Session:
+def session(name: str = "ch5-seven-step", scale: float | None = None, **values: Any) -> LiveBench:
     scenario = with_values(get(name), values)
-    found = Session(scenario, build(scenario), scale, 20_000, Metrics(), lambda: 0.0)
+    found = LiveBench(scenario, build(scenario), scale, 20_000, Metrics(), lambda: 0.0)
     found.begin(True)
     return found
 
 
-def advance(bench: Session, tick: int) -> None:
+def advance(bench: LiveBench, tick: int) -> None:
     """Run up to a tick as the engine does."""
     while bench.is_running and bench.board.tick < tick:
-        end = bench.target(0.0)
-        bench.slice(tick if end is None else min(tick, end))
+        end = bench.time.target(0.0)
+        bench.time.slice(tick if end is None else min(tick, end))
 
 
-def step(bench: Session, kind: str = "step", **fields: Any) -> Future[Event]:
+def step(bench: LiveBench, kind: str = "step", **fields: Any) -> Future[Event]:
     """Ask for a step; it is not taken yet."""
     asked = bench.execute(parse({"kind": kind, **fields}), "test")
     assert isinstance(asked, Future)
     return asked
 
 
-def kinds(bench: Session) -> list[str]:
+def kinds(bench: LiveBench) -> list[str]:
     return [event.kind for event in bench.events.after(0)[1]]
 
 
 def test_it_pauses_once_at_the_end_of_its_scenario() -> None:
     bench = session(samples=1000)
-    assert bench.target(1e9) == 1000
+    assert bench.time.target(1e9) == 1000
     advance(bench, 5000)
     assert bench.board.tick == 1000 and not bench.is_running
     assert kinds(bench)[-1] == "finished"
@@ -67,7 +67,7 @@ def test_it_pauses_once_at_the_end_of_its_scenario() -> None:
 def test_a_trip_pauses_it_and_only_a_reset_leads_out() -> None:
     bench = session("ch3-mrac-spring-x2", **{"controllers.mrac.adaptation_gain": 30.0})
     if bench.scenario.samples is not None:
-        bench.running.ends_at = None
+        bench.time.ends_at = None
     bench.execute(parse({"set": {"guard.travel_um": 0.01}}), "test")
     advance(bench, 20_000)
     assert bench.status.state == "tripped" and not bench.is_running
@@ -102,7 +102,7 @@ def test_steps_are_exact() -> None:
     bench = session()
     asked = step(bench, ticks=7), step(bench, "step_period")
     while bench.is_running:
-        bench.slice(bench.target(1e9))
+        bench.time.slice(bench.time.target(1e9))
     assert bench.board.tick == 7 + 25  # 2 kHz at 50 kHz
     assert bench.history.end_tick == 32 and bench.status.state == "paused"
     assert [(event.result(0).tick, event.result(0).text) for event in asked] == [
@@ -115,12 +115,12 @@ def test_a_long_step_is_taken_in_slices_with_commands_between() -> None:
     """A pause ends it, and the log shows its length; the bits equal the bits of a running bench."""
     bench = session(samples=9000)
     asked, behind = step(bench, ticks=5000), step(bench, ticks=3)
-    bench.slice(bench.target(0.0))
+    bench.time.slice(bench.time.target(0.0))
     assert bench.board.tick == bench.board.chunk and bench.is_running and not bench.is_started
     bench.execute(parse_command({"fault": "damping", "severity": 0.3}), "test")
-    bench.slice(bench.target(0.0))
-    bench.finish_round(bench.target(0.0), 0.0)
-    assert (bench.pacer.overruns, bench.status.state, bench.status.achieved_scale) == (0, "running", 0.0)
+    bench.time.slice(bench.time.target(0.0))
+    bench.time.finish_round(bench.time.target(0.0), 0.0)
+    assert (bench.time.pacer.overruns, bench.status.state, bench.status.achieved_scale) == (0, "running", 0.0)
     assert not asked.done()
     bench.execute(parse({"kind": "pause"}), "test")
     assert asked.result(0).text == "stepped 1024 of 5000 ticks" and asked.result(0).tick == 0
@@ -136,10 +136,10 @@ def test_who_waits_for_a_step_hears_how_it_ended(how: str) -> None:
     bench = session()
     kept = bench.snapshots.take("here", "test", 8)
     asked = step(bench, ticks=5000)
-    bench.slice(None)
+    bench.time.slice(None)
     acts: dict[str, Callable[[], Any]] = {
-        "reset": lambda: bench.reset(bench.scenario, build(bench.scenario), "test"),
-        "restore": lambda: bench.restore(kept.id, "test"),
+        "reset": lambda: reset(bench, bench.scenario, build(bench.scenario), "test"),
+        "restore": lambda: bench.snapshots.restore(kept.id, "test"),
         "close": bench.close,
         "fail": lambda: bench.fail(RuntimeError("broken on purpose")),
         "start": lambda: bench.execute(parse({"kind": "start"}), "test"),
@@ -147,7 +147,7 @@ def test_who_waits_for_a_step_hears_how_it_ended(how: str) -> None:
     }
     acts[how]()
     while how == "trip" and bench.is_running:
-        bench.slice(None)
+        bench.time.slice(None)
     assert asked.result(0).text == f"stepped {asked.result(0).text.split()[1]} of 5000 ticks"
     assert bench.is_running == (how == "start")
 
@@ -167,7 +167,7 @@ def test_a_slice_of_a_slow_bench_is_short(steps: bool) -> None:
     """At 2^-16 s a tick 5 ms are 327 ticks; after a wait of 128 times that the next has a fourth, then all."""
     now = [0.0]
     scenario = get("ch5-seven-step")
-    bench = Session(scenario, build(scenario), None, 20_000, Metrics(), lambda: now[0])
+    bench = LiveBench(scenario, build(scenario), None, 20_000, Metrics(), lambda: now[0])
     board = bench.board
     ran: list[int] = []
 
@@ -182,7 +182,7 @@ def test_a_slice_of_a_slow_bench_is_short(steps: bool) -> None:
     if steps:
         step(bench, ticks=1600)
     for _ in range(5):
-        bench.slice(None)
+        bench.time.slice(None)
     assert ran == [512, 327, 327, 81, 327]
 
 
@@ -192,7 +192,7 @@ def test_going_back_and_on_gives_the_same_bits_and_keeps_the_past() -> None:
     snapshot = bench.snapshots.take("here", "test", 8)
     advance(bench, 4000)
     digest, past = bench.board.digest(), bench.history.read([0], 0, 1500)
-    bench.restore(snapshot.id, "test")
+    bench.snapshots.restore(snapshot.id, "test")
     assert bench.board.tick == 1500 and bench.history.end_tick == 1500
     np.testing.assert_array_equal(bench.history.read([0], 0, 1500), past)
     advance(bench, 4000)
@@ -221,13 +221,13 @@ def test_a_reset_begins_again_with_other_values() -> None:
     bench = session()
     advance(bench, 700)
     scenario = with_values(bench.scenario, {"sensor.noise_um": 0.2})
-    bench.reset(scenario, build(scenario), "test")
+    reset(bench, scenario, build(scenario), "test")
     assert bench.board.tick == 0 and bench.history.end_tick == 0
     advance(bench, 500)
     assert bench.board.digest() == run(with_values(scenario, {"samples": 500})).digest
     other = with_values(scenario, {"diagnosers": {}})
     with pytest.raises(InputError, match="other signals"):
-        bench.reset(other, build(other), "test")
+        reset(bench, other, build(other), "test")
 
 
 def test_what_happened_is_saved_as_a_scenario_with_the_same_bits() -> None:

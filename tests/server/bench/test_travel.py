@@ -11,10 +11,8 @@ from typing import Any
 import pytest
 
 from core.errors import InputError
-from server.bench import forks as module
-from server.bench.forks import Forks
-from server.bench.past import Past
-from server.bench.session import Session
+from server.bench import travel as module
+from server.bench.travel import Past, Travels
 from tests.server.bench.test_session import advance, session
 
 
@@ -22,15 +20,15 @@ class Slow:
     """A moment of the past whose last half waits until the test releases it."""
 
     def __init__(self, tick: int) -> None:
-        self.origin = SimpleNamespace(tick=tick)
+        self.passage = SimpleNamespace(tick=tick)
         self.half, self.goes_on = threading.Event(), threading.Event()
 
-    def session(self, maker: Any, on_share: Callable[[float], None]) -> str:
+    def journal(self, on_share: Callable[[float], None]) -> str:
         on_share(0.5)
         self.half.set()
         self.goes_on.wait()
         on_share(1.0)
-        return f"{maker}: {self.origin.tick}"
+        return f"made: {self.passage.tick}"
 
     def is_true(self) -> bool:
         return True
@@ -55,14 +53,14 @@ async def at_once(job: Callable[..., Any], *args: Any) -> Any:
 
 
 @pytest.fixture
-def forks(monkeypatch: pytest.MonkeyPatch) -> Any:
+def travels(monkeypatch: pytest.MonkeyPatch) -> Any:
     monkeypatch.setattr(module, "STATUS_S", 0.01)
-    return Forks(SimpleNamespace(maker="made"), SimpleNamespace(call=at_once), 1000)  # type: ignore[arg-type]
+    return Travels(SimpleNamespace(), SimpleNamespace(call=at_once), 1000)  # type: ignore[arg-type]
 
 
-def test_a_bench_says_how_far_the_moment_is_that_is_asked_for(forks: Any) -> None:
+def test_a_bench_says_how_far_the_moment_is_that_is_asked_for(travels: Any) -> None:
     async def ask() -> str:
-        computing = asyncio.create_task(forks._computed(past, bench, str))
+        computing = asyncio.create_task(travels._computed(past, bench, str))
         await asyncio.to_thread(past.half.wait)
         await asyncio.to_thread(bench.half_is_told.wait)
         past.goes_on.set()
@@ -76,14 +74,14 @@ def test_a_bench_says_how_far_the_moment_is_that_is_asked_for(forks: Any) -> Non
 
 
 @pytest.mark.parametrize("last_is_first", [True, False])
-def test_a_moment_is_given_up_when_another_is_sought(forks: Any, last_is_first: bool) -> None:
+def test_a_moment_is_given_up_when_another_is_sought(travels: Any, last_is_first: bool) -> None:
     async def ask() -> list[Any]:
         one, other, bench = Slow(1), Slow(2), Asked()
         wanted = one
-        first = asyncio.create_task(forks._computed(one, bench, str, lambda: wanted is one))
+        first = asyncio.create_task(travels._computed(one, bench, str, lambda: wanted is one))
         await asyncio.to_thread(one.half.wait)
         wanted = other
-        second = asyncio.create_task(forks._computed(other, bench, str, lambda: wanted is other))
+        second = asyncio.create_task(travels._computed(other, bench, str, lambda: wanted is other))
         await asyncio.to_thread(other.half.wait)
         for past, task in ((other, second), (one, first)) if last_is_first else ((one, first), (other, second)):
             past.goes_on.set()
@@ -96,10 +94,10 @@ def test_a_moment_is_given_up_when_another_is_sought(forks: Any, last_is_first: 
     assert isinstance(first, InputError) and first.code == "conflict" and first.field == "tick"
 
 
-def test_two_who_fork_a_bench_both_have_their_moment(forks: Any) -> None:
+def test_two_who_fork_a_bench_both_have_their_moment(travels: Any) -> None:
     async def ask() -> list[str]:
         bench, pasts = Asked(), [Slow(1), Slow(2)]
-        tasks = [asyncio.create_task(forks._computed(past, bench, str)) for past in pasts]
+        tasks = [asyncio.create_task(travels._computed(past, bench, str)) for past in pasts]
         for past in pasts:
             past.goes_on.set()
         return await asyncio.gather(*tasks)
@@ -112,12 +110,7 @@ def test_the_share_grows_to_the_whole_way() -> None:
     advance(bench, 9000)
     shares: list[float] = []
 
-    def around(scenario: Any, board: Any, _scale: Any) -> Session:
-        other = session("first-look", samples=100_000)
-        other.scenario, other.board = scenario, board
-        return other
-
-    way = Past.take(bench, 8000, 500)
-    made = way.session(SimpleNamespace(around=around), shares.append)  # type: ignore[arg-type]
-    assert made.board.tick == 8000 and way.passage.checkpoint.tick == 0
+    past = Past.take(bench, 8000, 500)
+    made = past.journal(shares.append)
+    assert made.tick == 8000 and past.passage.checkpoint.tick == 0
     assert shares == sorted(shares) and 0.0 < shares[0] < shares[-1] == 1.0

@@ -1,7 +1,9 @@
-"""The watchdog: a hang and a death are seen in time, load and long work never trip."""
+"""The watchdog: a hang and a broken thread are seen in time, load and long work never trip."""
 
 from __future__ import annotations
 
+import math
+import threading
 import time
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -9,13 +11,9 @@ from typing import Any
 import pytest
 
 from server.bench.engine import Engine, Workload
-from server.bench.pulse import Finger, Pulse
-from server.bench.watchdog import GIVEN_UP_S, LONG_S, LOOK_S, MOST_S, SILENT_S, Watchdog
+from server.bench.watchdog import LATE_COUNTS_S, LOOK_S, SILENT_S, STUCK_S, Activity, Watchdog
 from server.metrics import Metrics
 from tests.server.bench.test_engine import Work, until
-
-BLOCKED, STARVED = Pulse(True, 0.0), Pulse(False, 0.0)
-WORKING = Pulse(False, LOOK_S)
 
 
 class Clock:
@@ -28,34 +26,14 @@ class Clock:
         return self.now
 
 
-class Main:
-    """A thread whose life is set by a test."""
-
-    alive = True
-
-    def is_alive(self) -> bool:
-        return self.alive
-
-
-class FakeCrew:
-    """Threads that obey the test."""
-
-    def __init__(self) -> None:
-        self.main, self.threads, self.held, self.in_hand = Main(), [], [], {}
-
-
 class FakeEngine:
     """An engine that gives its signs of life as a test says."""
 
     def __init__(self) -> None:
-        self.clock, self.crew, self.expected = Clock(), FakeCrew(), 100.0
+        self.clock, self.expected, self.has_ended = Clock(), 100.0, False
         self.running: list[Any] = [Work("a", 1.0, lambda: 0.0)]
-        self.taken_over = 0
-
-    def take_over(self, lost: Callable[[list[Any]], None]) -> None:
-        self.taken_over += 1
-        lost(self.crew.held)
-        self.crew, self.expected = FakeCrew(), self.clock.now
+        self.threads: list[Any] = []
+        self.held: list[Any] = []
 
 
 class Heard:
@@ -63,26 +41,26 @@ class Heard:
 
     def __init__(self) -> None:
         self.hangs: list[tuple[list[str], list[str], str]] = []
-        self.lost: list[str] = []
+        self.stuck_benches: list[list[str]] = []
 
     def hung(self, running: Sequence[Workload], held: Sequence[str], why: str) -> None:
         self.hangs.append(([work.id for work in running], list(held), why))
 
-    def given_up(self, benches: Sequence[Workload]) -> None:
-        self.lost += [work.id for work in benches]
+    def stuck(self, held: Sequence[str]) -> None:
+        self.stuck_benches.append(list(held))
 
 
-class Told(Finger):
-    """Returns the pulse that a test sets."""
+class Told(Activity):
+    """Returns the work that a test sets."""
 
-    pulse = BLOCKED
+    worked_s = 0.0
 
-    def feel(self, threads: Any, passed_s: float) -> Pulse:
-        return self.pulse
+    def measure(self, threads: Any) -> float:
+        return self.worked_s
 
 
 class Yard:
-    """A watchdog, and all it looks at."""
+    """A watchdog, and its surroundings."""
 
     def __init__(self) -> None:
         self.engine, self.heard, self.told = FakeEngine(), Heard(), Told()
@@ -113,90 +91,79 @@ def test_a_hang_is_seen_within_150_ms_and_told_once(yard: Yard) -> None:
     assert yard.heard.hangs[0][2].startswith("the engine gave no sign for 1")
 
 
-def test_whoever_comes_back_may_hang_again(yard: Yard) -> None:
+def test_an_engine_that_comes_back_may_hang_again(yard: Yard) -> None:
     yard.look(0.5)
     yard.look(0.5, sign=lambda: True)
     assert not yard.dog.barks
     yard.look(0.5)
-    assert len(yard.heard.hangs) == 2 and yard.engine.taken_over == 0
+    assert len(yard.heard.hangs) == 2 and not yard.dog.is_stuck
 
 
 def test_looks_that_are_late_count_little(yard: Yard) -> None:
-    """A machine that stalls now and then delays the engine and the watchdog alike."""
-    late = SILENT_S / MOST_S
-    yard.look(10.0 * (late - 1), every=10.0)
+    """A machine that stalls now and then, or was suspended, delays the engine and the watchdog alike."""
+    late = round(SILENT_S / LATE_COUNTS_S)
+    yard.look(60.0 * (late - 1), every=60.0)
     assert yard.heard.hangs == []
-    yard.look(20.0, every=10.0)
-    assert len(yard.heard.hangs) == 1 and yard.engine.taken_over == 0
+    yard.look(120.0, every=60.0)
+    assert len(yard.heard.hangs) == 1 and not yard.dog.is_stuck
 
 
-@pytest.mark.parametrize("pulse", [STARVED, WORKING])
-def test_neither_a_wait_for_a_processor_nor_long_work_is_silence(yard: Yard, pulse: Pulse) -> None:
-    yard.told.pulse = pulse
-    yard.look(0.9 * LONG_S)
+@pytest.mark.parametrize("worked_s", [1e-6, LOOK_S, math.inf])
+def test_work_is_no_silence(yard: Yard, worked_s: float) -> None:
+    yard.told.worked_s = worked_s
+    yard.look(0.9 * STUCK_S)
     assert yard.heard.hangs == []
 
 
-def test_a_wait_beside_threads_that_want_a_processor_is_silence_only_when_it_lasts(yard: Yard) -> None:
-    """One of them may hold the lock that the engine waits for."""
-    yard.told.pulse = Pulse(True, 0.0, is_crowded=True)
-    yard.look(9 * SILENT_S)
-    assert yard.heard.hangs == []
-    yard.look(2 * SILENT_S)
-    assert len(yard.heard.hangs) == 1
-
-
-def test_blocks_that_add_up_are_no_silence(yard: Yard) -> None:
+def test_blocks_do_not_add_up_to_a_silence(yard: Yard) -> None:
     for _ in range(200):
-        yard.told.pulse = BLOCKED
+        yard.told.worked_s = 0.0
         yard.look(0.7 * SILENT_S)
-        yard.told.pulse = STARVED
+        yard.told.worked_s = 1e-6
         yard.look(LOOK_S)
     assert yard.heard.hangs == []
 
 
-def test_work_without_end_is_a_hang(yard: Yard) -> None:
-    yard.told.pulse = WORKING
-    yard.look(1.1 * LONG_S)
-    assert len(yard.heard.hangs) == 1 and yard.engine.taken_over == 0
-    yard.look(LONG_S)
-    assert yard.engine.taken_over == 1
+def test_work_without_end_makes_the_engine_stuck_but_a_compilation_does_not(yard: Yard) -> None:
+    yard.told.worked_s = math.inf
+    yard.look(3 * STUCK_S)
+    assert yard.heard.hangs == [] and not yard.dog.is_stuck
+    yard.told.worked_s = LOOK_S
+    yard.look(STUCK_S + 1.0)
+    assert len(yard.heard.hangs) == 1 and yard.dog.is_stuck
 
 
 def test_nothing_is_due_while_nothing_runs(yard: Yard) -> None:
     yard.engine.expected = yard.engine.clock.now + 1e6
-    yard.look(20.0)
-    assert yard.heard.hangs == [] and yard.engine.taken_over == 0
+    yard.look(2 * STUCK_S)
+    assert yard.heard.hangs == [] and not yard.dog.is_stuck
 
 
-def test_a_job_that_hangs_while_nothing_runs_trips_nothing_and_is_given_up(yard: Yard) -> None:
+def test_a_job_that_hangs_while_nothing_runs_trips_nothing_and_makes_the_engine_stuck(yard: Yard) -> None:
     yard.engine.running = []
-    yard.look(GIVEN_UP_S + 0.1)
-    assert yard.heard.hangs == [] and yard.engine.taken_over == 1
+    yard.look(STUCK_S + 0.1)
+    assert yard.heard.hangs == [] and yard.dog.is_stuck and yard.heard.stuck_benches == [[]]
 
 
-def test_a_bench_that_hangs_is_named_and_given_up_in_the_end(yard: Yard) -> None:
-    stuck = yard.engine.running[0]
-    yard.engine.crew.held = [stuck]
+def test_a_bench_that_hangs_is_named_and_recorded_once(yard: Yard) -> None:
+    yard.engine.held = [yard.engine.running[0]]
     yard.look(1.0)
-    assert yard.heard.hangs[0][1] == ["a"] and yard.heard.lost == []
-    yard.look(GIVEN_UP_S - 0.95)
-    assert yard.heard.lost == ["a"] and yard.engine.taken_over == 1 and not yard.dog.barks
+    assert yard.heard.hangs[0][1] == ["a"] and yard.heard.stuck_benches == []
+    yard.look(2 * STUCK_S)
+    assert yard.heard.stuck_benches == [["a"]] and yard.dog.is_stuck and len(yard.heard.hangs) == 1
 
 
-def test_a_thread_that_has_ended_is_replaced_at_once(yard: Yard) -> None:
-    yard.engine.crew.main.alive = False
+def test_an_engine_that_moves_again_is_stuck_no_longer(yard: Yard) -> None:
+    yard.look(STUCK_S + 1.0)
+    assert yard.dog.is_stuck
+    yard.look(LOOK_S, sign=lambda: True)
+    assert not yard.dog.is_stuck and not yard.dog.barks
+
+
+def test_a_thread_that_has_ended_is_told_at_once(yard: Yard) -> None:
+    yard.engine.has_ended = True
     yard.look(LOOK_S)
-    assert yard.heard.hangs == [(["a"], [], "the engine broke off")] and yard.engine.taken_over == 1
-
-
-def test_what_a_helper_has_in_hand_is_waited_for_when_the_thread_has_ended(yard: Yard) -> None:
-    yard.engine.crew.main.alive, yard.engine.crew.held = False, [yard.engine.running[0]]
-    yard.look(0.5)
-    assert len(yard.heard.hangs) == 1 and yard.engine.taken_over == 0
-    yard.engine.crew.held = []
-    yard.look(LOOK_S)
-    assert yard.engine.taken_over == 1 and yard.heard.lost == []
+    assert yard.heard.hangs == [(["a"], [], "the engine broke off")] and yard.dog.is_stuck
 
 
 class Slow(Work):
@@ -220,3 +187,38 @@ def test_an_engine_that_cannot_keep_up_never_trips() -> None:
     engine.stop()
     assert heard.hangs == []
     assert all(work.tick < work.target(engine.clock()) for work in works), "they do not keep up"
+
+
+def test_a_blocked_thread_has_no_activity_and_a_thread_that_computes_has() -> None:
+    over, activity = threading.Event(), Activity()
+
+    def spin() -> None:
+        while not over.is_set():
+            pass
+
+    waits, spins = (threading.Thread(target=work, daemon=True) for work in (over.wait, spin))
+    for thread in (waits, spins):
+        thread.start()
+    until(lambda: activity.measure([spins]) > 0.0)
+    measured: list[float] = []
+
+    def is_blocked() -> bool:
+        measured.append(activity.measure([waits]))
+        return measured[-3:] == [0.0, 0.0, 0.0]
+
+    until(is_blocked)
+    over.set()
+    for thread in (waits, spins):
+        thread.join(30)
+
+
+def test_a_thread_inside_an_import_waits_for_others() -> None:
+    inside, over = threading.Event(), threading.Event()
+    frames: dict[str, Any] = {"__name__": "llvmlite.binding", "inside": inside, "over": over}
+    exec("def compile_it():\n    inside.set()\n    over.wait()\n", frames)
+    thread = threading.Thread(target=frames["compile_it"], daemon=True)
+    thread.start()
+    assert inside.wait(30)
+    assert Activity().measure([thread]) == math.inf
+    over.set()
+    thread.join(30)

@@ -13,8 +13,9 @@ from scenarios.sheets.begin import begin
 from scenarios.sheets.look import limits_of
 from scenarios.sheets.progress import Progress
 from scenarios.sheets.sheet import Hold
-from server.bench.timeline import Timeline
+from server.bench.bench import LiveBench
 from server.clock import ManualClock
+from server.metrics import Metrics
 from server.people.draw import draw
 from server.people.sheet_view import view_of
 from server.people.sheet_watch import SheetWatch
@@ -29,7 +30,7 @@ class Offline(AtSheet):
         beginning = begin(self.lesson, lambda what: draw(word, sheet, what))
         self.facts, self.progress = beginning.facts, Progress(facts=dict(beginning.facts))
         scenario = with_values(get(self.lesson.head.bench.scenario), beginning.values)
-        self.line = Timeline(scenario, build(scenario), 100_000, ManualClock())
+        self.line = LiveBench(scenario, build(scenario), None, 100_000, Metrics(), ManualClock())
         self.watch: SheetWatch | None = None
         self.follow()
 
@@ -52,10 +53,10 @@ class Offline(AtSheet):
         end = self.line.board.tick + round(ms / self.line.dt_ms)
         while (left := end - self.line.board.tick) > 0:
             room = left if self.watch is None else self.watch.room(self.line.board.tick, left)
-            rows = self.line._advance_slice(room)
+            rows = self.line._advance(room)
             assert rows.count, self.line.board.trip
             if self.watch is not None:
-                self.watch.look(self.line)  # type: ignore[arg-type]
+                self.watch.look(self.line)
                 self.follow()
 
     def look(self) -> dict[str, Any]:

@@ -18,7 +18,7 @@ import pytest
 
 from scenarios.library import get
 from server.bench import blind
-from server.bench.session import Session
+from server.bench.bench import LiveBench
 from server.people.access import ALL, DOORS, OPEN_WHILE_BLIND, SOCKET, Need
 from server.people.classes import Classes
 from tests.server.conftest import Live
@@ -62,8 +62,8 @@ TIMES = re.compile(
 @pytest.fixture
 def live(serve: Any, monkeypatch: pytest.MonkeyPatch) -> Iterator[Live]:
     """A server whose students may ask as often as they like, and whose benches run by steps alone."""
-    begin = Session.begin
-    monkeypatch.setattr(Session, "begin", lambda self, _start: begin(self, False))
+    begin = LiveBench.begin
+    monkeypatch.setattr(LiveBench, "begin", lambda self, _start: begin(self, False))
     monkeypatch.setattr("server.security.gate.REQUESTS_PER_S", 1e9)
     monkeypatch.setattr("server.security.gate.REQUESTS_AT_ONCE", 10**9)
     monkeypatch.setattr("server.computing.computing.BUDGET_S", 1e9)

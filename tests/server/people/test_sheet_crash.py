@@ -9,9 +9,10 @@ from typing import Any
 import pytest
 
 from core.board.stored import Stored, revived, stored
-from server.bench.timeline import Timeline
+from server.bench.bench import LiveBench
 from server.bench.watch import KeptWatch
 from server.clock import ManualClock
+from server.metrics import Metrics
 from server.people.sheet_watch import SheetWatch
 from tests.server.people.group import Somebody, advance, join, open_class
 from tests.server.people.offline import Offline
@@ -39,10 +40,10 @@ class Crashing(Offline):
         super().run((ticks - before) * self.line.dt_ms)
 
     def crash(self) -> None:
-        kept = self.watch.kept(self.line) if self.watch is not None else None  # type: ignore[arg-type]
+        kept = self.watch.kept(self.line) if self.watch is not None else None
         board = stored(self.line.board)  # type: ignore[arg-type]
         again = revived(Stored(json.loads(json.dumps(board.document)), board.arrays))
-        self.line = Timeline(self.line.scenario, again, 100_000, ManualClock())
+        self.line = LiveBench(self.line.scenario, again, None, 100_000, Metrics(), ManualClock())
         self.watch = None
         self.follow()
         if kept is not None and self.watch is not None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pyarrow.parquet as pq
 
-from server.bench.session import Session
+from server.bench.bench import LiveBench
 from server.store.models import RecordingRow
 
 
@@ -99,7 +99,7 @@ def test_what_was_under_way_at_a_crash_is_marked_and_kept(serve: Any, tmp_path: 
         # As a power cut leaves it: the row says "recording", the file is a stream.
         path = live.service.recordings.path(finished["id"])
         table = pq.read_table(path)
-        session: Session = live.service.benches.get(bench["id"])
+        session: LiveBench = live.service.benches.get(bench["id"])
         assert len(session.recordings) == 0
     import pyarrow as pa
 

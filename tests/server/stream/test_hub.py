@@ -13,8 +13,8 @@ import pytest
 
 from scenarios.library import get
 from scenarios.run import build
+from server.bench.bench import LiveBench
 from server.bench.commands import parse
-from server.bench.session import Session
 from server.bench.status import Company, Somebody
 from server.metrics import Metrics
 from server.settings import Settings
@@ -64,7 +64,7 @@ class Bench:
 
     def __init__(self, **settings: Any) -> None:
         scenario = get("first-look")
-        self.session = Session(scenario, build(scenario), None, 20_000, Metrics(), lambda: 0.0)
+        self.session = LiveBench(scenario, build(scenario), None, 20_000, Metrics(), lambda: 0.0)
         self.session.begin(True)
         self.hub = Hub(Settings(**settings), Metrics(), dict)
 
@@ -129,12 +129,12 @@ async def pass_time(loop: Any, seconds: float) -> None:
 async def test_a_frame_comes_at_the_pace_of_frames_and_the_end_all_the_same() -> None:
     bench = Bench(frame_rate_hz=50.0)
     _, line = bench.page()
-    bench.session.slice(100)
+    bench.session.time.slice(100)
     bench.hub.publish()
     assert [frame.head for frame in line.frames()] == [100]
-    bench.session.slice(120)
+    bench.session.time.slice(120)
     bench.hub.publish()
-    bench.session.slice(137)
+    bench.session.time.slice(137)
     bench.session.execute(parse({"kind": "pause"}), "test")
     bench.hub.publish()
     assert not line.written  # its time has not come, and no later round of the engine will say so
@@ -152,7 +152,7 @@ async def test_all_that_is_due_goes_out_in_one_write() -> None:
     bench = Bench()
     _, line = bench.page()
     bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
-    bench.session.slice(100)
+    bench.session.time.slice(100)
     bench.hub.publish()
     assert len(line.written) == 1
     kinds = [message["type"] if isinstance(message, dict) else "frame" for message in line.messages()]
@@ -167,7 +167,7 @@ async def test_what_many_pages_see_is_made_once() -> None:
     assert len({id(client.panels[1].view) for client, _ in pages}) == 1
     assert other.panels[1].view is not pages[0][0].panels[1].view
     bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
-    bench.session.slice(100)
+    bench.session.time.slice(100)
     bench.hub.publish()
     assert len({bytes(line.written[0]) for _, line in pages}) == 1
     room = bench.hub.room(bench.session)
@@ -238,7 +238,7 @@ async def test_a_full_line_is_left_alone_until_it_has_drained() -> None:
     bench = Bench()
     client, line = bench.page()
     line.is_free = False
-    bench.session.slice(137)
+    bench.session.time.slice(137)
     bench.session.execute(parse({"kind": "pause"}), "test")
     bench.hub.publish()
     assert not line.written
@@ -252,7 +252,7 @@ async def test_words_are_not_taken_for_deeds() -> None:
     """A page that acknowledges everything, while nothing leaves for it, is closed like a silent page."""
     bench = Bench()
     client, line = bench.page()
-    bench.session.slice(100)
+    bench.session.time.slice(100)
     bench.hub.publish()
     line.waiting, now = 10_000, client._moved_at
     for step in range(60):
@@ -270,7 +270,7 @@ async def test_a_loop_that_was_blocked_blames_no_page() -> None:
     bench.hub.clock = loop.time
     client, line = bench.page()
     client._clock, client._taken_at, client._moved_at = loop.time, loop.time(), loop.time()
-    bench.session.slice(100)
+    bench.session.time.slice(100)
     client.offer(frame=True)
     watching = asyncio.ensure_future(bench.hub.run())
     await turns()
@@ -295,7 +295,7 @@ async def test_one_broken_stream_does_not_harm_the_others(hurt: str, monkeypatch
     _, line = bench.page()
     monkeypatch.setattr(bad, hurt, lambda: 1 / 0)
     bench.session.execute(parse({"kind": "time_scale", "value": 0.5}), "test")
-    bench.session.slice(100)
+    bench.session.time.slice(100)
     bench.hub.publish()
     assert bad.closing is not None and bad.closing[0] == 1011
     assert len(line.frames()) == 1
@@ -306,10 +306,10 @@ async def test_many_pages_are_served_with_breaks_and_each_once() -> None:
     """The loop may do other things meanwhile; the next picture begins when all have this one."""
     bench = Bench()
     pages = [bench.page() for _ in range(3 * PAGES_AT_ONCE)]
-    bench.session.slice(100)
+    bench.session.time.slice(100)
     bench.hub.publish()
     assert sum(bool(line.written) for _, line in pages) == PAGES_AT_ONCE
-    bench.session.slice(200)
+    bench.session.time.slice(200)
     bench.hub.publish()
     await turns(1)
     assert sum(bool(line.written) for _, line in pages) == 2 * PAGES_AT_ONCE
@@ -327,7 +327,7 @@ async def test_a_bench_that_cannot_be_shown_does_not_end_the_pictures(monkeypatc
     room = bench.hub.room(bench.session)
     with monkeypatch.context() as patched:
         patched.setattr(room.cuts, "refresh", lambda: 1 / 0)
-        bench.session.slice(100)
+        bench.session.time.slice(100)
         bench.hub.publish()
     assert not line.written
     bench.hub._show()

@@ -11,10 +11,11 @@ from core.board.commands import parse_command
 from core.errors import InputError
 from scenarios.run import run
 from scenarios.schema import Scenario
-from server.bench.changes import AT_ONCE_S, MOST_MOMENTS
+from server.bench.bench import LiveBench
 from server.bench.commands import parse
-from server.bench.portrait import document_of
-from server.bench.session import Session
+from server.bench.description import document_of
+from server.bench.travel import reset
+from server.bench.undo import AT_ONCE_S, MOST_JOURNALS
 from tests.server.bench.test_session import advance, kinds, session
 
 
@@ -27,19 +28,19 @@ class Clock:
         return self.now
 
 
-def bench_at(tick: int, clock: Clock | None = None) -> Session:
+def bench_at(tick: int, clock: Clock | None = None) -> LiveBench:
     bench = session("first-look", samples=100_000)
     if clock is not None:
-        bench.changes._clock = clock
+        bench.clock = clock
     advance(bench, tick)
     return bench
 
 
-def do(bench: Session, document: dict[str, Any]) -> Any:
+def do(bench: LiveBench, document: dict[str, Any]) -> Any:
     return bench.execute(parse(document), "test")
 
 
-def shown(bench: Session) -> tuple[str | None, str | None]:
+def shown(bench: LiveBench) -> tuple[str | None, str | None]:
     status = bench.status
     return status.undo and status.undo.text, status.redo and status.redo.text
 
@@ -117,7 +118,7 @@ def test_a_reset_is_taken_back_with_what_was_seen_before_it() -> None:
     advance(bench, 5000)
     seen, digest = bench.history.read([0, 1, 2], 1000, 5000), bench.board.digest()
     fresh = session("first-look", samples=100_000).board
-    bench.reset(bench.scenario, fresh, "test")  # type: ignore[arg-type]
+    reset(bench, bench.scenario, fresh, "test")  # type: ignore[arg-type]
     advance(bench, 6000)
     do(bench, {"kind": "undo"})
     assert bench.board.tick == 5000 and bench.board.digest() == digest and "added_mass" in bench.board.faults
@@ -133,21 +134,21 @@ def test_the_history_after_a_jump_holds_nothing_of_another_branch() -> None:
     """A snapshot before a reset and a run of another fault past its tick; then snapshots of two branches."""
     bench = bench_at(2000)
     kept, before = bench.snapshots.take("a", "test", 9), bench.history.read([0, 1, 2], 0, 2000)
-    bench.restore(kept.id, "test")
+    bench.snapshots.restore(kept.id, "test")
     np.testing.assert_array_equal(bench.history.read([0, 1, 2], 0, 2000), before)
-    bench.reset(bench.scenario, session("first-look", samples=100_000).board, "test")  # type: ignore[arg-type]
+    reset(bench, bench.scenario, session("first-look", samples=100_000).board, "test")  # type: ignore[arg-type]
     do(bench, {"fault": "added_mass", "severity": 0.5})
     advance(bench, 3000)
-    bench.restore(kept.id, "test")
+    bench.snapshots.restore(kept.id, "test")
     assert bench.board.tick == 2000 and bench.history.first_tick == bench.history.end_tick
     advance(bench, 2500)
     other, seen = bench.snapshots.take("b", "test", 9), bench.history.read([0, 1, 2], 2000, 2500)
-    bench.restore(kept.id, "test")
+    bench.snapshots.restore(kept.id, "test")
     advance(bench, 2600)
-    bench.restore(other.id, "test")
+    bench.snapshots.restore(other.id, "test")
     assert bench.board.tick == 2500 and bench.history.first_tick == bench.history.end_tick
     advance(bench, 2700)
-    bench.restore(other.id, "test")
+    bench.snapshots.restore(other.id, "test")
     assert bench.history.end_tick == 2500 and seen.shape == (3, 500)
 
 
@@ -185,9 +186,9 @@ def test_a_new_change_forgets_what_was_undone_and_moments_are_few() -> None:
     do(bench, {"fault": "added_mass", "severity": 0.05})
     with pytest.raises(InputError, match="nothing to redo"):
         do(bench, {"kind": "redo"})
-    for _ in range(MOST_MOMENTS + 2):
-        bench.reset(bench.scenario, session("first-look", samples=100_000).board, "test")  # type: ignore[arg-type]
-    for _ in range(MOST_MOMENTS):
+    for _ in range(MOST_JOURNALS + 2):
+        reset(bench, bench.scenario, session("first-look", samples=100_000).board, "test")  # type: ignore[arg-type]
+    for _ in range(MOST_JOURNALS):
         do(bench, {"kind": "undo"})
     with pytest.raises(InputError, match="nothing to undo"):
         do(bench, {"kind": "undo"})

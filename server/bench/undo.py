@@ -1,10 +1,9 @@
-"""Changes of a bench: taken back and made again, by commands at the tick of now or by going back in time."""
+"""Undo and redo: changes of a bench are taken back by commands at the tick of now, or by its journal before them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from core.board.commands import Command, ResetTrip, Set
 from core.board.inverse import inverse
@@ -12,31 +11,20 @@ from core.board.pending import Pending
 from core.board.track import Deed
 from core.errors import InputError
 from server.bench.events import Event
-from server.bench.live_bench import LiveBench
-from server.bench.moment import Moment
+from server.bench.journal import Journal
 from server.bench.status import Undoable
 
-MOST, MOST_MOMENTS = 100, 3
-"""Changes remembered; fewer of the changes that need a whole moment with a past."""
+if TYPE_CHECKING:
+    from server.bench.bench import LiveBench
+
+MOST, MOST_JOURNALS = 100, 3
+"""Changes remembered; fewer of the changes that need a journal with its samples."""
 AT_ONCE_S = 1.0
 """Values of the same parameters set within this time of each other, as by a slider, are one change."""
 
 
-class ChangingBench(LiveBench, Protocol):
-    """A bench whose changes can be taken back."""
-
-    def moment(self, with_past: bool = False) -> Moment:
-        """Return the present state of the bench, for a jump that empties the history with the past before it."""
-
-    def go_to(self, moment: Moment) -> None:
-        """Restore the state of the bench."""
-
-    def done(self, deed: Deed) -> None:
-        """Note an action on the board for the past."""
-
-
-Way = list[Command | Pending | Moment]
-"""The way from one side of a change to the other: commands, commands that wait no more, or a moment."""
+Way = list[Command | Pending] | Journal
+"""The way from one side of a change to the other: commands, commands that wait no more, or a journal to stand at."""
 
 
 @dataclass(frozen=True)
@@ -54,14 +42,12 @@ class Changes:
 
     Parameters
     ----------
-    bench : ChangingBench
+    bench : LiveBench
         The bench.
-    clock : callable
-        The engine's clock.
     """
 
-    def __init__(self, bench: ChangingBench, clock: Callable[[], float]) -> None:
-        self._bench, self._clock = bench, clock
+    def __init__(self, bench: LiveBench) -> None:
+        self._bench = bench
         self._done: list[Change] = []
         self._undone: list[Change] = []
 
@@ -82,9 +68,13 @@ class Changes:
         self._remember(event, way, paths)
         return event
 
-    def jumped(self, event: Event, before: Moment) -> None:
-        """Remember a reset or a return to another moment."""
-        self._remember(event, [before])
+    def stand(self, journal: Journal, actor: str, kind: str, text: str) -> Event:
+        """Let the bench stand at the end of a journal, and remember the way back."""
+        before = self._bench.journal(with_past=True)
+        event = self._bench.stand(journal, actor, kind, text)
+        self._remember(event, before)
+        self._bench.refresh_status()
+        return event
 
     def back(self, actor: str) -> Event:
         """Take the last change back.
@@ -104,69 +94,70 @@ class Changes:
         if not source:
             raise InputError(f"there is nothing to {kind}", "kind", code="conflict")
         change = source.pop()
+        text, way = f"{past}: {change.shown.text}", change.way
+        if isinstance(way, Journal):
+            before = self._bench.journal(with_past=True)
+            event = self._bench.stand(way, actor, "restored", text)
+            target.append(Change(change.shown, before))
+            return event
         try:
-            way = self._go(change.way, actor)
+            back = self._go(way, actor)
         except InputError as error:
-            text = f"{change.shown.text} can no more be {past}: {error}"
-            raise InputError(text, "kind", error.hint, "conflict") from None
-        target.append(Change(change.shown, way))
-        text = f"{past}: {change.shown.text}"
-        moments = [step for step in change.way if isinstance(step, Moment)]
-        if moments:
-            tick = self._bench.board.tick
-            return self._bench.events.add(tick, actor, "restored", text, new=moments[0].last_event)
+            refusal = f"{change.shown.text} can no more be {past}: {error}"
+            raise InputError(refusal, "kind", error.hint, "conflict") from None
+        target.append(Change(change.shown, back))
         return self._bench.note(actor, past, text)
 
-    def _go(self, way: Way, actor: str) -> Way:
-        """Go a way as far as it can be gone; return the way back."""
-        back: Way = []
+    def _go(self, way: list[Command | Pending], actor: str) -> Way:
+        """Carry out as much of a way as possible; return the way back."""
+        back: list[Command | Pending] = []
         refusal: InputError | None = None
         for step in way:
             try:
-                back = self._step(step, actor) + back
+                found = self._step(step, actor)
             except InputError as error:
                 refusal = error
+                continue
+            if isinstance(found, Journal):
+                return found
+            back = found + back
         if refusal is not None and not back:
             raise refusal
         return back
 
-    def _step(self, step: Command | Pending | Moment, actor: str) -> Way:
+    def _step(self, step: Command | Pending, actor: str) -> Way:
         bench = self._bench
-        if isinstance(step, Moment):
-            before = bench.moment(with_past=True)
-            bench.go_to(step)
-            return [before]
-        if isinstance(step, Pending):
-            if step not in bench.board.pending:
-                raise InputError("it waits no more")
-            bench.board.pending.remove(step)
-            bench.done(Deed(bench.board.tick, None, actor, step.number))
-            return [step.command]
-        return self._carry_out(step, actor)[1]
+        if not isinstance(step, Pending):
+            return self._carry_out(step, actor)[1]
+        if step not in bench.board.pending:
+            raise InputError("it waits no more")
+        bench.board.pending.remove(step)
+        bench.done(Deed(bench.board.tick, None, actor, step.number))
+        return [step.command]
 
     def _carry_out(self, command: Command, actor: str) -> tuple[Event, Way]:
         """Carry out a command; return its event and the way back."""
         board = self._bench.board
         before = board.spec.document
-        tripped: Moment | None = None
+        tripped: Journal | None = None
         if isinstance(command, ResetTrip) and board.trip is not None:
-            tripped = self._bench.moment(with_past=True)
+            tripped = self._bench.journal(with_past=True)
         event = board.apply(command, actor)
         self._bench.done(Deed(board.tick, command, actor))
         assert isinstance(event, Event)
         if event.kind == "scheduled":
             return event, [max(board.pending, key=lambda entry: entry.number)]
-        return event, [tripped] if tripped is not None else [*inverse(command, event, before)]
+        return event, tripped if tripped is not None else [*inverse(command, event, before)]
 
     def _remember(self, event: Event, way: Way, paths: frozenset[str] = frozenset()) -> None:
         """Put a change on top; changes that were undone before cannot be redone."""
         self._undone.clear()
         if not way:
             return
-        now, last = self._clock(), self._done[-1] if self._done else None
+        now, last = self._bench.clock(), self._done[-1] if self._done else None
         if last is not None and paths and last.paths == paths and now - last.at < AT_ONCE_S:
             way = self._done.pop().way
         self._done.append(Change(Undoable(seq=event.seq, text=event.text), way, paths, now))
-        moments = [i for i, change in enumerate(self._done) if isinstance(change.way[0], Moment)]
-        first = moments[-MOST_MOMENTS - 1] + 1 if len(moments) > MOST_MOMENTS else 0
+        journals = [i for i, change in enumerate(self._done) if isinstance(change.way, Journal)]
+        first = journals[-MOST_JOURNALS - 1] + 1 if len(journals) > MOST_JOURNALS else 0
         self._done = self._done[max(first, len(self._done) - MOST) :]

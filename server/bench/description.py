@@ -2,69 +2,30 @@
 
 from __future__ import annotations
 
-from datetime import datetime
 from itertools import islice
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from core.board.spec import Section
-from core.board.track import Track
 from core.board.words import describe
 from core.cards import card
 from core.faults.fault import FaultParams
-from scenarios.schema import Scenario
-from server.bench.changes import Changes
 from server.bench.commands import MAX_PENDING
-from server.bench.live_bench import LiveBench
-from server.bench.recordings import Recordings
-from server.bench.running import Running
 from server.bench.status import (
     ActiveFault,
     Bench,
     BenchStatus,
     DiagnoserInfo,
-    Opened,
-    Origin,
     Pending,
     State,
-    Travel,
 )
 
-
-class ShownBench(LiveBench, Protocol):
-    """The part of a live bench that its status, its description and its scenario are made from."""
-
-    id: str
-    scenario: Scenario
-    created: datetime
-    status: BenchStatus
-    running: Running
-    recordings: Recordings
-    changes: Changes
-    replay_of: str
-    recorded_scale: float | None
-    opened: Opened | None
-    name: str
-    keep: bool
-    origin: Origin | None
-    travel: Travel | None
-    track: Track | None
-
-    @property
-    def is_past(self) -> bool:
-        """Whether it shows the moment it was forked at still."""
-
-    @property
-    def is_running(self) -> bool:
-        """Whether time runs, until a pause or to the end of a step."""
-
-    @property
-    def is_started(self) -> bool:
-        """Whether time runs until it is paused."""
+if TYPE_CHECKING:
+    from server.bench.bench import LiveBench
 
 
-def status_of(bench: ShownBench) -> BenchStatus:
+def status_of(bench: LiveBench) -> BenchStatus:
     """Return the status, an object that is not changed afterwards."""
-    board, pacer = bench.board, bench.pacer
+    board, pacer = bench.board, bench.time.pacer
     faults: dict[str, Any] = dict(board.faults)
     state: State = "running" if bench.is_running else "paused"
     if board.trip is not None:
@@ -75,7 +36,7 @@ def status_of(bench: ShownBench) -> BenchStatus:
         first_tick=bench.history.first_tick,
         time_scale=pacer.scale,
         achieved_scale=pacer.achieved if bench.is_started else 0.0,
-        fast_forward=bench.running.fast_forward.reason,
+        fast_forward=bench.time.fast_forward.reason,
         capped=bench.is_started and pacer.capped,
         overruns=pacer.overruns,
         given_up_ms=pacer.given_up_s * 1e3,
@@ -114,12 +75,12 @@ def status_of(bench: ShownBench) -> BenchStatus:
     )
 
 
-def bench_of(bench: ShownBench, around: dict[str, Any], view3d: str | None) -> Bench:
+def bench_of(bench: LiveBench, around: dict[str, Any], view3d: str | None) -> Bench:
     """Describe a bench in full.
 
     Parameters
     ----------
-    bench : ShownBench
+    bench : LiveBench
         The bench.
     around : dict
         Fields of the status that the bench itself does not know.
@@ -168,7 +129,7 @@ def factors_of(section: Section) -> list[dict[str, float]]:
     return [item.model_dump(exclude_defaults=True, exclude={"name"}) for item in hypotheses]
 
 
-def document_of(bench: ShownBench) -> dict[str, Any]:
+def document_of(bench: LiveBench) -> dict[str, Any]:
     """Return the history of a bench as a scenario; run headless it gives the same bits."""
     title = bench.scenario.head.title or bench.scenario.id
     head = {
@@ -186,13 +147,13 @@ def document_of(bench: ShownBench) -> dict[str, Any]:
     return document
 
 
-def document_now(bench: ShownBench) -> dict[str, Any]:
+def document_now(bench: LiveBench) -> dict[str, Any]:
     """Return the document of the bench as it is now, its twins included."""
     board = bench.board
     twins = board.base.get("twins")
     return {**board.spec.document, **({"twins": twins} if twins else {})}
 
 
-def design_of(bench: ShownBench) -> dict[str, Any]:
+def design_of(bench: LiveBench) -> dict[str, Any]:
     """Return the scenario of a bench as it is set now, from tick 0: with live changes, without events."""
     return {**bench.scenario.document, **document_now(bench)}

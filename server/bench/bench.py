@@ -1,0 +1,425 @@
+"""One live bench: a board, its journal, the history of its signals, its events. Only the engine thread changes it.
+
+The event loop reads three parts at any time: the history (settled ticks), the events (locked) and `status`, an object
+that is replaced whole.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+from dataclasses import replace
+from datetime import UTC, datetime
+from typing import Any, get_args
+
+from core.board.board import Board
+from core.board.commands import MakeSafe
+from core.board.document import Document
+from core.board.history import History
+from core.board.rows import Rows
+from core.board.track import Deed, Track
+from core.device.geometry import Geometry
+from core.device.two_axis import TwoAxis
+from core.errors import InputError
+from core.signals import Signal
+from scenarios.schema import Scenario
+from server.bench import commands
+from server.bench.captures import Captures
+from server.bench.description import bench_of, document_now, status_of
+from server.bench.events import Event, EventLog
+from server.bench.hiding import BlindView, Hiding
+from server.bench.journal import Branches, Journal
+from server.bench.measuring import Measuring
+from server.bench.narration import Narration
+from server.bench.recorder import Recorder
+from server.bench.recording import ActiveRecordings
+from server.bench.snapshots import Snapshots
+from server.bench.status import Bench, Opened, Origin, Travel
+from server.bench.tape import TickSource
+from server.bench.time import DeviceTime
+from server.bench.undo import Changes
+from server.bench.watch import Watch
+from server.errors import not_found
+from server.metrics import Metrics
+
+PAST_TICKS = 20_000
+"""Samples before its end that a journal of the bench has."""
+TRACK_BYTES = 8_000_000
+"""Memory of the keyframes from which the past is computed again; it is subtracted from the memory of the history."""
+CAPTURE_BYTES = 2_500_000
+"""Memory of the captures of users who see all of the bench, and the same again for users from whom a fault is hidden;
+it is subtracted from the memory of the history."""
+STUDENT_PAST_TICKS = 2000
+STUDENT_TRACK_BYTES = 1_500_000
+STUDENT_CAPTURE_BYTES = 500_000
+"""The same limits on the bench of a student."""
+SLICE_S = 0.005
+"""Longest slice, by the time of a tick; other benches and commands wait for it."""
+MOST_SLOWER = 4.0
+"""Most by which the estimated time of a tick grows at once: a longer tick has waited for a processor."""
+
+
+class LiveBench:
+    """A live bench.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        The scenario of the bench.
+    board : TickSource
+        The board built from the scenario; or a recording that is played.
+    time_scale : float or None
+        Device seconds per wall second; none means as fast as possible.
+    history_ticks : int
+        Ticks every signal is kept for.
+    metrics : Metrics
+        Where ticks and overruns are counted.
+    clock : callable
+        The engine's clock.
+    """
+
+    id = ""
+    """Given when it is registered."""
+    name = ""
+    """Name given by users, in addition to the title of its scenario."""
+    replay_of = ""
+    """The recording it plays, if it does."""
+    recorded_scale: float | None = None
+    """Device seconds per wall second of the recording."""
+    origin: Origin | None = None
+    """The moment of another bench from which it continues."""
+    taken_over = 0
+    """Number of the last event that is of the bench whose past it shows."""
+    sought: object = None
+    """The moment of the past that was requested last."""
+    travel: Travel | None = None
+    """The moment of its past that is being computed, if one is."""
+    opened: Opened | None = None
+    """The experiment it was opened from, if it was."""
+    keep = False
+    """Never unload."""
+    class_id = ""
+    """The class whose student has it."""
+    witness: Callable[[LiveBench, Event], None] | None = None
+    """Called with every event."""
+    watch: Watch | None = None
+    """Looks at the bench for a step of a lab sheet."""
+    past_ticks = PAST_TICKS
+    track_bytes = TRACK_BYTES
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        board: TickSource,
+        time_scale: float | None,
+        history_ticks: int,
+        metrics: Metrics,
+        clock: Callable[[], float],
+    ) -> None:
+        self.scenario, self.board = scenario, board
+        self._history_ticks, self._metrics, self.clock = history_ticks, metrics, clock
+        self.created = datetime.now(UTC)
+        self._tick_s = SLICE_S / board.chunk
+        self.history = self.empty_history()
+        self._branches = Branches()
+        self.column_of = {signal.name: signal.index for signal in board.signals}
+        """Column of each signal in the history."""
+        self.track = Track(board, self.track_bytes) if isinstance(board, Board) else None
+        self.captures = Captures(self, CAPTURE_BYTES)
+        self.time: DeviceTime = DeviceTime(self, time_scale, scenario.samples, metrics)
+        self.changes, self.snapshots = Changes(self), Snapshots(self)
+        self.recordings, self.hiding, self.measuring = ActiveRecordings(self), Hiding(self), Measuring()
+        self.narration = Narration(board.spec, board.signals, board.signals.outputs)
+        self._remember()
+        self.events = EventLog(self._happened)
+        self._closed = False
+        self.refresh_status()
+
+    @property
+    def dt_ms(self) -> float:
+        """Device time of one tick."""
+        return self.board.dt_ms
+
+    @property
+    def signals(self) -> Sequence[Signal]:
+        """All signals, in the order of the history."""
+        signals: Sequence[Signal] = self.board.signals
+        return signals
+
+    @property
+    def geometry(self) -> Geometry:
+        """The drawing of the device with its own gap; the drawing of the reference device if it has none."""
+        return self.board.spec.device.drawing
+
+    @property
+    def drive_period_ticks(self) -> float | None:
+        """Period of the reference in ticks, if it has one; of the driven axis where the plant has axes."""
+        spec = self.board.spec
+        if isinstance(spec.nominal, TwoAxis):
+            return 2.0 * math.pi / (spec.nominal.drive_frequency * self.dt_ms)
+        frequency = getattr(spec.reference.params, "frequency_hz", None)
+        return 1e3 / (float(frequency) * self.dt_ms) if isinstance(frequency, int | float) and frequency else None
+
+    @property
+    def is_running(self) -> bool:
+        """Whether time runs, until a pause or to the end of a step."""
+        return self.time.is_running
+
+    @property
+    def is_started(self) -> bool:
+        """Whether time runs until it is paused."""
+        return self.time.is_started
+
+    @property
+    def is_past(self) -> bool:
+        """Whether it shows the moment it was forked at still: nothing was done, and no time has run."""
+        origin, track = self.origin, self.track
+        if origin is None or track is None:
+            return False
+        return self.board.tick == origin.tick and not track.has_deeds_since(origin.tick)
+
+    @property
+    def document(self) -> Document:
+        """The document of the bench as it is now."""
+        return document_now(self)
+
+    @property
+    def scenario_id(self) -> str:
+        """Id of its scenario, for the names of files."""
+        return self.scenario.id
+
+    @property
+    def about(self) -> Document:
+        """Description in a file of its trace."""
+        return {"scenario": self.scenario.document, "bench": self.id}
+
+    def describe(self, around: dict[str, Any], view3d: str | None) -> Bench:
+        """Describe the bench in full."""
+        return bench_of(self, around, view3d)
+
+    def refresh_status(self) -> None:
+        """Replace the status by the present status."""
+        self.status = status_of(self)
+
+    def indices(self, names: Sequence[str]) -> list[int]:
+        """Return the columns of signals; an unknown name is an `InputError` with suggestions."""
+        return [self.board.signals.index(name) for name in names]
+
+    def has_signals_of(self, board: TickSource) -> bool:
+        """Whether a board has the signals of this one, and could take its place."""
+        return [signal.name for signal in board.signals] == list(self.column_of)
+
+    def limit(self, class_id: str, most_ticks_per_s: float) -> None:
+        """Apply the limits of a student's bench: never unloaded, limited in pace, with less memory."""
+        self.class_id, self.keep = class_id, True
+        self.past_ticks, self.track_bytes = STUDENT_PAST_TICKS, STUDENT_TRACK_BYTES
+        self.captures.most_bytes = STUDENT_CAPTURE_BYTES
+        if isinstance(self.board, Board):
+            self.track = Track(self.board, self.track_bytes)
+            self._remember()
+        self.time.limit(most_ticks_per_s * self.dt_ms * 1e-3)
+
+    def begin(self, start: bool) -> None:
+        """Begin, running or paused."""
+        self.time.begin(start)
+        self.events.take_over(self.board)
+        self.note("board", "opened", "running" if start else f"paused at tick {self.board.tick}")
+        self.time.fast_forward.begin()
+        self.refresh_status()
+
+    def execute(self, command: Any, actor: str) -> Event | Future[Event]:
+        """Carry out a command at this tick edge; for a step, return a future that holds its event at its end.
+
+        Raises
+        ------
+        InputError
+            If the command cannot be carried out; nothing has changed then.
+        """
+        self.must_be_open()
+        if isinstance(command, get_args(commands.RunsTime)):
+            event = self.time.carry_out(command, actor)
+            if isinstance(event, Future):  # its end refreshes the status
+                return event
+        elif isinstance(command, commands.Undo | commands.Redo):
+            event = self.changes.back(actor) if isinstance(command, commands.Undo) else self.changes.again(actor)
+        else:
+            if len(self.board.pending) >= commands.MAX_PENDING and not isinstance(command, MakeSafe):
+                raise InputError(f"{commands.MAX_PENDING} commands wait for their moment already", code="limit")
+            event = self.changes.apply(command, actor)
+            self.narration.tell()
+            self.time.fast_forward.end()
+            self.time.stop_if_tripped()
+        self.refresh_status()
+        return event
+
+    def advance(self, ticks: int) -> int:
+        """Run ticks, at most one slice; keep them, record them, note the events; return their number."""
+        watch = self.watch if self.hiding.blind is None else None  # a condition would reveal hidden values
+        rows = self._advance(ticks if watch is None else watch.room(self.board.tick, ticks))
+        self.narration.look(rows)
+        self._remember()
+        if rows.count:
+            self._metrics.ticks.inc(rows.count)
+            self.recordings.take(rows)
+            self.hiding.look(rows)
+            if watch is not None:
+                watch.look(self)
+        if self.board.trip is not None and self.is_started and not self._has_due():
+            self.time.is_started = False
+            self.refresh_status()
+        return rows.count
+
+    def _advance(self, ticks: int) -> Rows:
+        """Run ticks, as many as a slice has, and keep their rows in the history."""
+        began = self.clock()
+        rows = self.board.advance(min(ticks, max(1, int(SLICE_S / self._tick_s))))
+        if rows.count:
+            took = max(self.clock() - began, 1e-9)
+            self._tick_s = min(took / rows.count, MOST_SLOWER * self._tick_s)
+            self.history.append(rows)
+            if self.track is not None and isinstance(self.board, Board):
+                self.track.follow(self.board)
+        return rows
+
+    def journal(self, *, with_past: bool = False, is_lean: bool = False) -> Journal:
+        """Return the journal of the bench up to now.
+
+        Parameters
+        ----------
+        with_past : bool
+            With the samples before its end.
+        is_lean : bool
+            With the fewest keyframes, for a journal that is kept.
+        """
+        keyframe = self.board.checkpoint()
+        assert self.track is not None
+        track = self.track.lean() if is_lean else self.track
+        past = self.history_before(self.board.tick) if with_past else None
+        branch, last_event = self._branches.current, self.events.last
+        return Journal(self.scenario, keyframe, track.copy(), self.narration.told(), past, branch, last_event)
+
+    def recalled(self, journal: Journal) -> Journal:
+        """Return a journal with all keyframes and samples that the bench still has, if it is in its present past."""
+        if self.track is None or not self._branches.share(journal.branch, journal.tick):
+            return journal
+        return replace(journal, track=self.track.copy(), past=self.history_before(journal.tick))
+
+    def stand(self, journal: Journal, actor: str, kind: str, text: str) -> Event:
+        """Stand at the end of a journal: the only way of a bench to a tick that does not follow; return its event."""
+        board, tick = journal.board(), journal.tick
+        is_own = self._branches.share(journal.branch, tick)
+        self.scenario, self.board = journal.scenario, board
+        self.track = (self.track if is_own and self.track is not None else journal.track).until(board)
+        if not (is_own and self._rewind()):
+            self._take_past(journal.past, tick)
+        self._branches.begin(journal.branch, tick)
+        self.narration.go_to(journal.told, board.spec)
+        self.time.jumped(journal.scenario.samples)
+        self.recordings.close(f"the bench was {'reset' if kind == 'reset' else 'restored'}")
+        self._remember()
+        if self.watch is not None:
+            self.watch.jumped(tick)
+        event = self.events.add(0 if kind == "reset" else tick, actor, kind, text, new=journal.last_event)
+        self.events.take_over(board)
+        self.refresh_status()
+        return event
+
+    def history_before(self, tick: int) -> History | None:
+        """Return copies of the last samples before a tick, as far as the history has them."""
+        first = max(self.history.first_tick, tick - self.past_ticks)
+        if not first < tick <= self.history.end_tick:
+            return None
+        past = self.empty_history(self.past_ticks)
+        past.adopt(self.history, first, tick)
+        return past
+
+    def rewind(self) -> None:
+        """Let the history follow a tape that went to another tick."""
+        if not self._rewind():
+            self.history = self.empty_history()
+
+    def _rewind(self) -> bool:
+        """End the history at the tick of the board; false if the history does not have this tick."""
+        if not self.history.first_tick <= self.board.tick <= self.history.end_tick:
+            return False
+        self.history.end_tick = self.board.tick
+        return True
+
+    def _take_past(self, past: History | None, tick: int) -> None:
+        """Begin the history again with the samples of another bench, or of a branch of this one."""
+        if past is not None and past.capacity == self.history.capacity:
+            self.history = past
+        else:
+            self.history = self.empty_history()
+            if past is not None:
+                self.history.adopt(past, past.first_tick, tick)
+
+    def empty_history(self, ticks: int | None = None) -> History:
+        """Return a history with nothing in it."""
+        signals = self.board.signals
+        return History(signals.outputs, len(signals.taps), self._history_ticks if ticks is None else ticks)
+
+    @property
+    def branch(self) -> int:
+        """The branch of time of now."""
+        return self._branches.current
+
+    def has_in_past(self, branch: int, tick: int) -> bool:
+        """Whether the ticks before a tick of a branch are in the past of the present state."""
+        return self._branches.share(branch, tick)
+
+    def done(self, deed: Deed) -> None:
+        """Add an action on the board to the journal."""
+        if self.track is not None:
+            self.track.note(deed)
+
+    def done_otherwise(self) -> None:
+        """Add a keyframe to the journal, because the board has changed without a command."""
+        if self.track is not None and isinstance(self.board, Board):
+            self.track.mark(self.board, is_fixed=True)
+        self._remember()
+
+    def _remember(self) -> None:
+        """Let the narrator remember this moment if the journal has a keyframe of it."""
+        if self.track is not None and self.track.last_tick == self.board.tick:
+            self.narration.remember(self.board.tick, self.track.ticks)
+
+    def _has_due(self) -> bool:
+        """Whether a command of the scenario is due at this very tick, such as the reset of a trip."""
+        due = self.board.pending.next_tick
+        return due is not None and due <= self.board.tick
+
+    def note(self, actor: str, kind: str, text: str, command: Document | None = None, tick: int | None = None) -> Event:
+        """Add an event of the bench itself, of now unless a tick is given."""
+        return self.events.add(self.board.tick if tick is None else tick, actor, kind, text, command)
+
+    def _happened(self, event: Event) -> None:
+        """Count an event, report it, and write it into the active recordings."""
+        if not self.hiding.hear(event):
+            self._metrics.events.labels(event.kind).inc()
+        self.narration.hear(event)
+        self.recordings.record(event)
+        if self.witness is not None:
+            self.witness(self, event)
+
+    def fail(self, error: Exception) -> None:
+        """Pause after an unexpected error, and note it."""
+        self.time.stop()
+        self.note("board", "failed", f"stopped by an internal error: {error}")
+        self.refresh_status()
+
+    def must_be_open(self) -> None:
+        """Raise an error if the bench is gone."""
+        if self._closed:
+            raise not_found("bench", self.id)
+
+    def close(self) -> list[Recorder]:
+        """Stop for good; return the recordings that were under way."""
+        self._closed = True
+        self.time.stop()
+        return self.recordings.close()
+
+
+Seen = LiveBench | BlindView
+"""A bench as a user sees it."""

@@ -1,0 +1,133 @@
+"""New benches: their scenario, their board, and the pace and the memory that suit them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any, TypeGuard
+
+from core.board.board import Board
+from core.board.document import Document
+from core.board.history import History
+from core.nesting import read_toml
+from core.own.admission import check_admitted, kept_with
+from scenarios.edit import with_values
+from scenarios.library import get
+from scenarios.own import beside
+from scenarios.run import build
+from scenarios.schema import Scenario
+from server.bench.bench import CAPTURE_BYTES, STUDENT_CAPTURE_BYTES, STUDENT_TRACK_BYTES, TRACK_BYTES, LiveBench
+from server.bench.commands import MAX_SCALE, MIN_SCALE
+from server.bench.replay import Replay, narrated, played
+from server.bench.tape import TickSource
+from server.metrics import Metrics
+from server.settings import Settings
+from server.store.recordings import RecordingDetail
+from server.store.units import FOLDER, Units
+
+
+class Builder:
+    """Makes benches within the limits of the settings.
+
+    Parameters
+    ----------
+    settings : Settings
+        Limits.
+    metrics : Metrics
+        Where the benches count their ticks.
+    clock : callable
+        The engine's clock.
+    """
+
+    def __init__(self, settings: Settings, metrics: Metrics, clock: Callable[[], float]) -> None:
+        self._settings, self._metrics, self._clock = settings, metrics, clock
+        self.units = Units(settings.data / FOLDER, settings.unit_files)
+        """Units that every new bench has in addition to the library's."""
+
+    def around(self, scenario: Scenario, board: Board, time_scale: float | None, class_id: str = "") -> LiveBench:
+        """Put a bench around a board; one for a student of a class has less room for its history."""
+        if class_id:
+            kept = self._kept(board, self._settings.student_history_mb, STUDENT_TRACK_BYTES + 2 * STUDENT_CAPTURE_BYTES)
+        else:
+            kept = self._kept(board, self._settings.history_mb, TRACK_BYTES + 2 * CAPTURE_BYTES)
+        session = LiveBench(scenario, board, time_scale, kept, self._metrics, self._clock)
+        if class_id:
+            session.limit(class_id, self._settings.student_ticks_per_s)
+        return session
+
+    def replay(self, recording: RecordingDetail, path: Path, speed: float) -> LiveBench:
+        """Make a bench that plays a recording, at a multiple of the pace it was recorded at.
+
+        Raises
+        ------
+        ApiError
+            If this version cannot read its scenario.
+        """
+        scenario, tape, recorded = played(recording, path)
+        pace = min(max(recorded * speed, MIN_SCALE), MAX_SCALE)
+        kept = self._kept(tape, self._settings.history_mb, 2 * CAPTURE_BYTES)
+        said = narrated(tape, path, recording.events or [])
+        session = Replay(recording, scenario, tape, pace, kept, self._metrics, self._clock, said)
+        session.recorded_scale = recorded
+        return session
+
+    def _kept(self, board: TickSource, megabytes: int, beside_bytes: int) -> int:
+        """Return for how many ticks the signals of a board are kept, in addition to the other memory of its past."""
+        affordable = History.ticks_within(
+            megabytes - beside_bytes * 1e-6, board.signals.outputs, len(board.signals.taps)
+        )
+        return min(self._settings.history_ticks, affordable)
+
+
+def prepare(
+    source: str | dict[str, Any],
+    values: dict[str, Any],
+    seed: int | None,
+    units: Callable[[Document], Document] | None = None,
+    *,
+    compiled: bool = True,
+) -> tuple[Scenario, Board]:
+    """Read a scenario, write values over it, give it those units of this server that are for it, wire its board."""
+    document = _document(source)
+    has_table = isinstance(document.get("units", {}), dict)  # else it is refused below
+    if units and has_table and (given := units({**document, "set": values})):
+        check_admitted(document)
+        with kept_with(values):
+            own = {**given, **document.get("units", {})}
+            scenario = with_values(Scenario.load({**document, "units": own}), values)
+            return scenario, build(scenario, seed, compiled=compiled)
+    scenario = with_values(read_scenario(source), values)
+    return scenario, build(scenario, seed, compiled=compiled)
+
+
+def check(source: str | dict[str, Any], values: dict[str, Any], units: Document) -> None:
+    """Refuse a scenario that makes no bench; nothing is compiled.
+
+    Parameters
+    ----------
+    source : str or dict
+        A document, a library id, or a TOML text.
+    values : dict
+        Written over it.
+    units : dict
+        Units of this server, in addition to the document's own.
+    """
+    prepare(source, values, None, partial(beside, units), compiled=False)
+
+
+def read_scenario(source: str | dict[str, Any]) -> Scenario:
+    """Read a scenario: a document, a library id, or a TOML text (which has an equals sign)."""
+    return get(source) if is_id(source) else Scenario.load(source)
+
+
+def _document(source: str | dict[str, Any]) -> Document:
+    """Return a scenario as it was written."""
+    if isinstance(source, dict):
+        return source
+    return get(source).document if is_id(source) else read_toml(source, "scenario")
+
+
+def is_id(source: str | dict[str, Any]) -> TypeGuard[str]:
+    """Say whether a scenario is named by its id in the library."""
+    return isinstance(source, str) and "=" not in source and "\n" not in source
