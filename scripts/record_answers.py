@@ -21,7 +21,7 @@ from websockets.sync.client import connect
 from websockets.sync.connection import Connection
 
 from server.app import create_app
-from server.serve import bind, make_server
+from server.cli.serve import bind, make_server
 from server.settings import Settings
 from server.stream.codec import Moment, decode, encode
 from server.stream.wire import SUBPROTOCOL

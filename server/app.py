@@ -9,7 +9,7 @@ from collections.abc import AsyncIterator
 from fastapi import FastAPI
 
 from scenarios import wall
-from server import document, errors
+from server import errors
 from server.api import (
     aliases,
     audit,
@@ -22,6 +22,7 @@ from server.api import (
     classes,
     devices,
     diagnosers,
+    document,
     driving,
     experiments,
     gallery,
@@ -52,10 +53,10 @@ from server.api import (
     votes,
     watchers,
 )
-from server.page import Page
+from server.api.gate import Gate
+from server.api.page import Page
 from server.security.body import BodyLimit
 from server.security.frames import Frames
-from server.security.gate import Gate
 from server.security.headers import SecurityHeaders
 from server.security.heads import Heads
 from server.security.identity import Identity, token_of
@@ -153,15 +154,15 @@ def create_app(settings: Settings) -> FastAPI:
     for module in (health, metrics, joining, places):
         app.include_router(module.router)
     if importlib.util.find_spec("server.view3d") is not None:
-        from server.view3d import proxy
+        from server.api import view3d
 
-        app.include_router(proxy.router)
+        app.include_router(view3d.router)
     if settings.clock == "manual":
         app.include_router(testing.router, prefix=API)
     if settings.lti:
-        from server.lti import routes
+        from server.api import lti
 
-        frames = routes.install(app, service)
+        frames = lti.install(app, service)
     app.router.default = app.state.page = Page(prefix=public.prefix)
     # A request passes the middleware that was added last first.
     app.add_middleware(Heads)

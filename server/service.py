@@ -16,36 +16,37 @@ from server.bench.bench import LiveBench
 from server.bench.benches import Benches
 from server.bench.checkpoints import Checkpoints
 from server.bench.engine import Engine
+from server.bench.idling import Idling
 from server.bench.recording import Records
+from server.bench.reopening import Reopening
 from server.bench.watchdog import Safety, Watchdog
+from server.classroom.audit import Audit
+from server.classroom.blinds import Blinds
+from server.classroom.classes import Classes
+from server.classroom.driving import Driving, go_without_driver
+from server.classroom.game_table import GameTable
+from server.classroom.games import Games
+from server.classroom.joining import Joining
+from server.classroom.lesson import Lesson
+from server.classroom.people import People
+from server.classroom.sheet_shelf import Shelf
+from server.classroom.sheets import Sheets
+from server.classroom.student_benches import StudentBenches
+from server.classroom.views import Views
+from server.classroom.votes import Votes
 from server.clock import Clock, ManualClock
 from server.computing.computing import Computing
-from server.idling import Idling
-from server.kernels import Kernels
 from server.lag import Lateness, probe
 from server.metrics import Metrics
-from server.people.audit import Audit
-from server.people.blinds import Blinds
-from server.people.classes import Classes
-from server.people.driving import Driving, go_without_driver
-from server.people.game_table import GameTable
-from server.people.games import Games
-from server.people.joining import Joining
-from server.people.lesson import Lesson
-from server.people.people import People
-from server.people.person import Person
-from server.people.sheet_shelf import Shelf
-from server.people.sheets import Sheets
-from server.people.student_benches import StudentBenches
-from server.people.votes import Votes
-from server.reopening import Reopening
 from server.runs.figures import Figures
 from server.runs.jobs import Jobs
+from server.runs.kernels import Kernels
 from server.runs.queue import Queue
 from server.runs.sweeps import Sweeps
 from server.runs.thresholds import Thresholds
 from server.security.callers import Callers
 from server.security.limits import Buckets
+from server.security.person import Person
 from server.security.public import PublicOrigin
 from server.settings import Settings
 from server.store.change import Change
@@ -55,7 +56,6 @@ from server.store.links import Links
 from server.store.parameter_sets import ParameterSets
 from server.store.recordings import Recordings
 from server.stream.hub import Hub
-from server.views import Views
 
 if TYPE_CHECKING:
     from server.view3d.viewers import Viewers

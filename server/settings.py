@@ -19,7 +19,7 @@ from pydantic_settings import (
 from core.errors import InputError
 from core.nesting import read_toml
 from scenarios.reading import read_text
-from server.platforms import Platform
+from server.security.platforms import Platform
 from server.security.public import PublicOrigin
 
 CONFIG_FILE = Path("combbench.toml")

@@ -9,7 +9,7 @@ from pydantic import BaseModel
 
 from server.api.bodies import StrictRoute
 from server.api.deps import ServiceDep
-from server.people.audit import AuditEntry
+from server.classroom.audit import AuditEntry
 
 router = APIRouter(tags=["classes"], route_class=StrictRoute)
 

@@ -12,9 +12,9 @@ from server.api.classes import Outcomes
 from server.api.deps import PersonDep, RateLimited, ServiceDep, SessionDep
 from server.api.students import students_of
 from server.bench.blind import HiddenQuestion
+from server.classroom.blind_class import begin_for
+from server.classroom.blinds import Answer
 from server.errors import REFUSED, ApiError, why
-from server.people.blind_class import begin_for
-from server.people.blinds import Answer
 
 router = APIRouter(tags=["blind"], route_class=StrictRoute)
 

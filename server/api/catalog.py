@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from core.cards import BlockCard
 from core.registry import catalog
 from server.api.bodies import StrictRoute
-from server.compression import takes_gzip
+from server.api.compression import takes_gzip
 from server.version import VERSION
 
 router = APIRouter(tags=["catalogue"], route_class=StrictRoute)

@@ -13,12 +13,12 @@ from server.api.deps import RateLimited, ServiceDep
 from server.api.joining import address_of, give_session
 from server.api.students import student_of, students_of
 from server.bench.commands import Command
-from server.classroom import join_addresses
+from server.classroom.addresses import join_addresses
+from server.classroom.classes import Class
+from server.classroom.sheet_work import brief
+from server.classroom.tile import Tile, tile_of
 from server.errors import REFUSED, why
-from server.people.classes import Class
-from server.people.person import Person
-from server.people.sheet_work import brief
-from server.people.tile import Tile, tile_of
+from server.security.person import Person
 from server.service import Service
 
 router = APIRouter(prefix="/classes", tags=["classes"], route_class=StrictRoute)

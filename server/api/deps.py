@@ -10,8 +10,8 @@ from starlette.requests import HTTPConnection
 from server.bench.bench import LiveBench, Seen
 from server.computing.computing import Computing
 from server.errors import ApiError
-from server.people.person import Person
 from server.security.identity import Identity
+from server.security.person import Person
 from server.service import Service
 from server.settings import Settings
 

@@ -12,9 +12,9 @@ from scenarios.games import GAMES
 from scenarios.games.game import MOST
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import PersonDep, RateLimited, ServiceDep
+from server.classroom.games import ClassGame, Play
 from server.errors import ApiError
-from server.people.games import ClassGame, Play
-from server.people.person import Person
+from server.security.person import Person
 
 router = APIRouter(tags=["games"], route_class=StrictRoute)
 

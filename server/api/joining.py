@@ -9,12 +9,12 @@ from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from server.api.deps import IdentityDep, ServiceDep
+from server.api.gate import lead_on, page, wants_page
+from server.classroom.code import shard_of
+from server.classroom.joining import join_page
 from server.errors import SHARD, ApiError, Elsewhere, reply
-from server.people.code import shard_of
-from server.people.joining import join_page
-from server.people.person import TEACHER, Person
-from server.security.gate import lead_on, page, wants_page
 from server.security.identity import Identity
+from server.security.person import TEACHER, Person
 from server.security.visitor import visitor_page
 from server.service import Service
 from server.store.base import now

@@ -10,9 +10,9 @@ from server.api.classes import Outcomes
 from server.api.deps import PersonDep, RateLimited, ServiceDep
 from server.api.students import student_of, students_of
 from server.bench.recording import Layout
+from server.classroom.lesson import GivenLayout
+from server.classroom.together import start_together
 from server.errors import ApiError, not_found
-from server.people.lesson import GivenLayout
-from server.people.together import start_together
 
 router = APIRouter(tags=["classes"], route_class=StrictRoute)
 

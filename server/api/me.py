@@ -7,9 +7,9 @@ from pydantic import BaseModel, Field
 
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import PersonDep, ServiceDep
+from server.classroom.votes import OpenVote
 from server.errors import ApiError
-from server.people.person import Role
-from server.people.votes import OpenVote
+from server.security.person import Role
 
 router = APIRouter(prefix="/me", tags=["classes"], route_class=StrictRoute)
 

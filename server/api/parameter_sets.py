@@ -12,8 +12,8 @@ from core.board.tuning import absent, difference, tuned
 from server.api.benches import CommandResult
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import CallerDep, PersonDep, RateLimited, ServiceDep, SessionDep
+from server.classroom.access import Need
 from server.errors import ApiError
-from server.people.access import Need
 from server.store.parameter_sets import ParameterSet, ParameterSetDetail
 
 router = APIRouter(tags=["parameter sets"], route_class=StrictRoute)

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Request, Response
 from core.device.catalogue import devices
 from scenarios.library import ids
 from server.api.deps import ServiceDep
-from server.page import Page
+from server.api.page import Page
 
 router = APIRouter(include_in_schema=False)
 

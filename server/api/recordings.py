@@ -14,7 +14,7 @@ from server.api.files import FORMAT_RESPONSES, CutDep, stored_trace
 from server.bench.recording import Wanted
 from server.bench.status import Bench
 from server.errors import not_found
-from server.people.person import Person
+from server.security.person import Person
 from server.service import Service
 from server.store.compare import Comparison, compare
 from server.store.recordings import Recording, RecordingDetail

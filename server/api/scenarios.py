@@ -16,8 +16,8 @@ from scenarios.schema import Scenario
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import ComputingDep
 from server.bench.build import prepare
+from server.classroom.blind_class import check as check_hidden
 from server.errors import not_found
-from server.people.blind_class import check as check_hidden
 
 router = APIRouter(prefix="/scenarios", tags=["scenarios"], route_class=StrictRoute)
 

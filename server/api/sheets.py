@@ -15,11 +15,11 @@ from server.api.bodies import Body, StrictRoute
 from server.api.classes import Outcomes
 from server.api.deps import PersonDep, RateLimited, ServiceDep
 from server.api.students import student_of, students_of
+from server.classroom.grades import Grade, grades_csv, grades_of
+from server.classroom.sheet_view import SheetView
+from server.classroom.sheet_work import SheetBrief, brief
 from server.errors import REFUSED, ApiError, not_found, why
-from server.people.grades import Grade, grades_csv, grades_of
-from server.people.person import Person
-from server.people.sheet_view import SheetView
-from server.people.sheet_work import SheetBrief, brief
+from server.security.person import Person
 from server.service import Service
 from server.store.recordings import Recording
 

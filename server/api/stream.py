@@ -17,10 +17,10 @@ from server.api.bodies import strict_json
 from server.api.deps import SocketServiceDep, rate_limited
 from server.bench.bench import LiveBench, Seen
 from server.bench.events import Event
+from server.classroom.access import Need
 from server.errors import ApiError, ErrorBody, body_of, clear_line, not_found
-from server.people.access import Need
-from server.people.person import Person
 from server.security.limits import Bucket
+from server.security.person import Person
 from server.service import Service
 from server.stream.behind import Behind
 from server.stream.client import CLOSE_FAILED, Client

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from server.errors import ApiError, not_found
-from server.people.person import Person
+from server.security.person import Person
 from server.service import Service
 
 

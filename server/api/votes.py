@@ -10,8 +10,8 @@ from pydantic import BaseModel, Field
 from scenarios.lecture import Span
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import PersonDep, RateLimited, ServiceDep
+from server.classroom.votes import Asked, Ballot, OpenVote, Vote
 from server.errors import ApiError
-from server.people.votes import Asked, Ballot, OpenVote, Vote
 
 router = APIRouter(tags=["votes"], route_class=StrictRoute)
 

@@ -24,10 +24,9 @@ from server.bench.blind import Blind
 from server.bench.build import Builder, check, is_id, prepare
 from server.bench.checkpoints import Kept
 from server.bench.commands import Reset, Seek
-from server.bench.earlier import as_written
 from server.bench.engine import Engine
 from server.bench.events import Event
-from server.bench.experiment import Experiment, rebuilt, repeat
+from server.bench.experiment import rebuilt, repeat
 from server.bench.hiding import STOPPED
 from server.bench.pacing import usual_scale
 from server.bench.recorder import Recorder
@@ -39,6 +38,8 @@ from server.computing.computing import Computing
 from server.errors import ApiError, not_found
 from server.metrics import Metrics
 from server.settings import Settings
+from server.store.earlier import as_written
+from server.store.experiment import Experiment
 from server.store.recordings import RecordingDetail
 
 

@@ -28,10 +28,10 @@ from server.bench.bench import LiveBench
 from server.bench.blind import Blind
 from server.bench.engine import Engine
 from server.bench.events import KEPT, Event
-from server.bench.experiment import THIS_VERSION
 from server.bench.watch import KeptWatch
 from server.clock import Clock
 from server.errors import ApiError
+from server.store.experiment import THIS_VERSION
 
 log = logging.getLogger(__name__)
 

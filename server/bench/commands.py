@@ -8,7 +8,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 
 from core.board.commands import COMMANDS, FIELDS, Heal, Inject, MakeSafe, ResetTrip, Set, Switch, parse_command
 from core.errors import InputError, from_validation, unknown
-from server.bench.earlier import KINDS, parse_earlier
+from server.store.earlier import KINDS, parse_earlier
 
 DEFAULT_SCALE = 0.002
 MIN_SCALE, MAX_SCALE = 1e-6, 1.0

@@ -1,37 +1,20 @@
-"""An experiment: a scenario and the commands to its bench up to a tick, which give the same bits again."""
+"""Experiments of benches: a bench is written as one, and stands at its tick again."""
 
 from __future__ import annotations
 
 import json
 from typing import Any
 
-from pydantic import BaseModel
-
 from core.board.board import Board
 from core.board.packages import TABLE, carried
 from core.errors import InputError
 from core.own.admission import kept_with
 from scenarios.edit import with_values
-from scenarios.key import code_version
 from scenarios.run import build
 from scenarios.schema import Scenario
 from server.bench.bench import LiveBench
 from server.errors import ApiError
-from server.version import VERSION
-
-THIS_VERSION = f"{VERSION} {code_version()}"
-
-
-class Experiment(BaseModel):
-    """The scenario of a bench, the commands to it, and its state."""
-
-    scenario: dict[str, Any]
-    events: list[dict[str, Any]]
-    tick: int
-    digest: str
-    version: str
-    running: bool
-    time_scale: float | None
+from server.store.experiment import THIS_VERSION, Experiment
 
 
 def experiment_of(session: LiveBench) -> Experiment:

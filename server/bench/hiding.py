@@ -21,7 +21,7 @@ from server.bench.events import Event, EventLog
 from server.bench.narration import Narration
 from server.bench.status import Bench, BenchStatus
 from server.errors import ApiError
-from server.people.person import Person
+from server.security.person import Person
 
 if TYPE_CHECKING:
     from server.bench.bench import LiveBench

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextvars import ContextVar
 
-from server.people.person import Person
+from server.security.person import Person
 
 _asker: ContextVar[str] = ContextVar("asker", default="")
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from server.people.person import Person
 from server.security.once import Once
+from server.security.person import Person
 
 TICKET = "ticket"
 """The name of a ticket in an address."""

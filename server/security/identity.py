@@ -12,8 +12,8 @@ from starlette.responses import Response
 
 from server.errors import SHARD
 from server.security.ends import is_from_this_machine
+from server.security.privacy import write_private
 from server.security.public import DIRECT, PublicOrigin
-from server.store.privacy import write_private
 
 TOKEN_FILE = "token"
 COOKIE_S = 30 * 86400

@@ -7,7 +7,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
-from server.people.person import hash_of, new_secret
+from server.security.person import hash_of, new_secret
 
 T = TypeVar("T")
 

@@ -11,9 +11,9 @@ from pydantic import BaseModel, ConfigDict
 from sqlalchemy import delete, func, select
 from sqlalchemy.orm import Session
 
-from server.bench.experiment import THIS_VERSION, Experiment
 from server.errors import ApiError, not_found
 from server.store.database import Database
+from server.store.experiment import THIS_VERSION, Experiment
 from server.store.models import LinkRow
 
 Kind = Literal["experiment", "layout", "bench"]

@@ -18,9 +18,9 @@ from sqlalchemy import Update, delete, select, update
 from sqlalchemy.exc import DBAPIError
 
 from scenarios.key import code_version
-from server.bench.earlier import in_this_notation
 from server.errors import ApiError, not_found
 from server.store.database import Database, reason_of
+from server.store.earlier import in_this_notation
 from server.store.models import RecordingRow
 from server.store.recording import EVENTS, PART, RecordingFile, events_of, first_tick, is_readable, rescue
 from server.version import VERSION

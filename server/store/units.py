@@ -14,7 +14,7 @@ from core.errors import InputError
 from core.own.unit import Unit, unit
 from scenarios.own import beside, with_units
 from server.errors import ApiError, not_found
-from server.store.privacy import write_private
+from server.security.privacy import write_private
 
 log = logging.getLogger(__name__)
 

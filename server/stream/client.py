@@ -17,7 +17,7 @@ from pydantic import BaseModel
 from server.bench.bench import Seen
 from server.bench.narration import Mark
 from server.metrics import Sent
-from server.people.person import TEACHER, Person
+from server.security.person import TEACHER, Person
 from server.stream.codec import encode
 from server.stream.cuts import SharedCuts
 from server.stream.line import Line, binary_head, text_message

@@ -13,7 +13,7 @@ from server.bench.bench import Seen
 from server.bench.status import Company
 from server.errors import ApiError
 from server.metrics import Metrics
-from server.people.person import Person
+from server.security.person import Person
 from server.settings import Settings
 from server.stream.client import CLOSE_SLOW, Client
 from server.stream.pace import Pace

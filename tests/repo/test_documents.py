@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from server.cli import app
+from server.cli.main import app
 
 PLACEHOLDER = re.compile(r"[<>{}…]|\.\.\.")
 

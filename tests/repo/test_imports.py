@@ -1,4 +1,7 @@
-"""The Python files import each other in one direction: no circle, in functions and for types neither."""
+"""The Python files import each other in one direction: no circle, not in functions and not for types.
+
+Only the parts of one folder may name each other for types, so that they need no protocols of each other.
+"""
 
 from __future__ import annotations
 
@@ -20,12 +23,21 @@ def module_of(path: Path, root: Path) -> str:
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
+def is_for_types(node: ast.AST) -> bool:
+    """Whether the imports under a node are for types alone."""
+    return isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"
+
+
 def imported(tree: ast.AST, module: str, is_package: bool, modules: set[str]) -> set[str]:
     """Return the modules of the tree that a file imports, at its top, in a function or for its types only."""
     names: set[str] = set()
+    own = module if is_package else module.rpartition(".")[0]
+    aside = {id(node) for block in ast.walk(tree) if is_for_types(block) for node in ast.walk(block)}
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and id(node) in aside and (node.module or "").rpartition(".")[0] == own:
+            continue
         elif isinstance(node, ast.ImportFrom):
             package = module.split(".") if is_package else module.split(".")[:-1]
             above = package[: len(package) - node.level + 1] if node.level else []
@@ -80,21 +92,25 @@ def test_a_circle_is_found_however_it_is_imported(tmp_path: Path) -> None:
     for package in PACKAGES:
         (tmp_path / package).mkdir()
         (tmp_path / package / "__init__.py").touch()
+    types = "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    "
     texts = {
         "core/top.py": "from core import middle\n",
-        "core/middle.py": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from core.bottom import Thing\n",
-        "core/bottom.py": "def main() -> None:\n    import core.top\n",
+        "core/middle.py": f"{types}from core.low.bottom import Thing\n",
+        "core/low/bottom.py": "def main() -> None:\n    import core.top\n",
+        "core/low/part.py": f"{types}from core.low.whole import Whole\n",
+        "core/low/whole.py": "from core.low.part import Part\n",
         "core/aside.py": "from core import top\nimport json\n",
         "server/near.py": "from .far import Thing\n",
         "server/far.py": "from . import near\n",
         "server/itself.py": "from server.itself import Thing\n",
     }
     for name, text in texts.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
     graph = graph_of(tmp_path)
     groups = circles(graph)
     assert groups == {
-        frozenset({"core.top", "core.middle", "core.bottom"}),
+        frozenset({"core.top", "core.middle", "core.low.bottom"}),
         frozenset({"server.near", "server.far"}),
         frozenset({"server.itself"}),
     }

@@ -20,8 +20,8 @@ from scenarios.campaign.single import run_seeds
 from scenarios.edit import with_values
 from scenarios.library import get, ids
 from scenarios.run import build, run
-from server import cli
-from server.cli import app
+from server.cli import main as cli
+from server.cli.main import app
 from tests import library_pass
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -232,7 +232,7 @@ def test_the_gallery_has_a_row_for_each_scenario_that_matches(call):
 
 def test_the_gallery_is_exit_1_when_an_expectation_is_missed(call, monkeypatch):
     missed = with_values(get("ch3-mrac-spring-x2"), {"controller.kind": "open_loop"})
-    monkeypatch.setattr("server.cli.get", lambda _: missed)
+    monkeypatch.setattr("server.cli.main.get", lambda _: missed)
     assert call("gallery", "--only", "ch3-mrac-spring-x2").exit_code == 1
 
 
@@ -275,7 +275,7 @@ def test_catalog_says_where_a_block_is_weak(call, monkeypatch):
 
 def program(*args: str, folder: Path, **options: Any) -> subprocess.CompletedProcess[str]:
     """Run the command line in a process of its own."""
-    command = [sys.executable, "-m", "server.cli", *args]
+    command = [sys.executable, "-m", "server.cli.main", *args]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     given = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
     return subprocess.run(command, cwd=folder, env=environment, text=True, check=False, **given)
@@ -315,7 +315,7 @@ def test_every_answer_that_a_full_disk_refuses_is_exit_2_and_one_line(args, monk
     ],
 )
 def test_a_closed_standard_output_is_no_failure(arguments: str, code: int) -> None:
-    command = f"exec {sys.executable} -m server.cli {arguments} >&-"
+    command = f"exec {sys.executable} -m server.cli.main {arguments} >&-"
     ended = subprocess.run(["sh", "-c", command], cwd=ROOT, capture_output=True, text=True, check=False)
     assert ended.returncode == code and "Traceback" not in ended.stderr
 

@@ -14,7 +14,7 @@ from core.errors import InputError
 from scenarios.lecture import Cue, Lecture, Panel
 from scenarios.lectures import lecture, lecture_ids
 from scenarios.run import build
-from server.cli import app
+from server.cli.main import app
 
 CUE = """
 [[cue]]

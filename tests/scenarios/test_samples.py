@@ -40,7 +40,7 @@ def carry_out(ticks):
     assert outcome(with_values(get("ch5-seven-step"), {"samples": ticks}), 1).ticks == ticks
 """,
     "command line": """
-from server import cli
+from server.cli import main as cli
 def carry_out(ticks):
     sys.argv = ["combbench", "run", "ch5-seven-step", "--set", f"samples={ticks}", "--out", sys.argv[-1]]
     try:

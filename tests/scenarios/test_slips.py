@@ -16,7 +16,7 @@ from scenarios.lecture import Lecture
 from scenarios.library import get, ids
 from scenarios.schema import Scenario
 from scenarios.sheets.read import read_sheet
-from server.examples import SHEET
+from server.api.examples import SHEET
 
 BENCH: dict[str, Any] = {
     "id": "slips",

@@ -15,7 +15,7 @@ from scenarios.library import get
 from scenarios.report.run import run_report
 from scenarios.run import run
 from scenarios.schema import Scenario
-from server.cli import app
+from server.cli.main import app
 from tests.lab import do, make, play
 
 SEVEN, SHORT = "ch5-seven-step", {"samples": 500}

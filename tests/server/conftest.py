@@ -19,8 +19,8 @@ from websockets.sync.client import ClientConnection, connect
 
 from scenarios.campaign.executor import Processes
 from server.app import create_app
+from server.cli.serve import bind, make_server
 from server.computing.computing import Computing
-from server.serve import bind, make_server
 from server.settings import Settings
 from server.stream.codec import Frame, decode
 from server.stream.wire import SUBPROTOCOL

@@ -91,8 +91,8 @@ def main() -> None:
     """Fork a server for each line."""
     from scenarios import kernels  # first: it gives compiled kernels their cache
     from server import app  # noqa: F401
+    from server.cli.serve import serve
     from server.computing.computing import Computing
-    from server.serve import serve
     from server.settings import Settings
 
     kernels.load()

@@ -12,8 +12,8 @@ from typer.testing import CliRunner
 from core.nesting import read_toml
 from scenarios.benchmark.seeds import hidden_list
 from scenarios.benchmark.track import tracks
-from server.cli import app
-from server.examples import SHEET, UNIT
+from server.api.examples import SHEET, UNIT
+from server.cli.main import app
 from server.settings import load_settings
 
 MARK = "\ufeff"

@@ -18,9 +18,11 @@ import segno
 from typer.testing import CliRunner
 
 from core.errors import InputError
-from server import classroom, cli, logs, serve
-from server.classroom import join_addresses, network_addresses, notice, qr_text
-from server.doctor import examine
+from server.classroom import addresses as classroom
+from server.classroom.addresses import join_addresses, network_addresses, notice, qr_text
+from server.cli import logs, serve
+from server.cli import main as cli
+from server.cli.doctor import examine
 from server.settings import Settings, load_settings
 from tests.server.test_process import TOKEN, client, process
 

@@ -16,6 +16,7 @@ from typing import Any
 
 import httpx
 import pytest
+from tests.server.classroom.group import join, open_class
 
 from core.errors import InputError
 from core.own.offered import PYTHON
@@ -25,11 +26,10 @@ from server.clock import ManualClock
 from server.computing.asker import asks
 from server.computing.computing import BUDGET_S, EARNED, Computing
 from server.errors import ApiError
-from server.people.person import Person
+from server.security.person import Person
 from tests.core.own.texts import PI, odd
 from tests.server.conftest import Live
 from tests.server.forks import Forks
-from tests.server.people.group import join, open_class
 
 ADA, BOB = Person("ada", "Ada", "student"), Person("bob", "Bob", "student")
 CHECK = "/api/v1/scenarios/check"

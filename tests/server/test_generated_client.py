@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from server.document import PARAMETERS
+from server.api.document import PARAMETERS
 from tests.server.conftest import TOKEN
 
 PACKAGE = "combbench_generated"

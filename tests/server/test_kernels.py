@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from scenarios import kernels
-from server import kernels as module
-from server.kernels import Kernels
+from server.runs import kernels as module
+from server.runs.kernels import Kernels
 
 COMPILER = """#!{python} -S
 import os, signal, sys
@@ -52,7 +52,7 @@ def compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         pid, program = tmp_path / "pid", tmp_path / "python"
         program.write_text(COMPILER.format(python=sys.executable, pid=str(pid), end=end))
         program.chmod(0o700)
-        monkeypatch.setattr("server.kernels.sys.executable", str(program))
+        monkeypatch.setattr("server.runs.kernels.sys.executable", str(program))
         monkeypatch.setattr(kernels, "complete", lambda: tmp_path / "complete")
         return pid
 

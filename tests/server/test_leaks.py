@@ -8,9 +8,9 @@ from pathlib import Path
 
 import psutil
 import pytest
+from tests.server.classroom.group import join, open_class
 
 from tests.server.conftest import serving
-from tests.server.people.group import join, open_class
 
 MANY = pytest.param(50, 8, marks=[pytest.mark.long, pytest.mark.timeout(900)])
 """Starts, and starts that may still load permanent objects, such as modules and kernels."""

@@ -7,7 +7,7 @@ from typing import Any
 
 from sqlalchemy import update
 
-from server.bench.experiment import THIS_VERSION
+from server.store.experiment import THIS_VERSION
 from server.store.links import ID_LENGTH
 from server.store.models import LinkRow
 from tests.lab import RICH, STORY

@@ -18,7 +18,7 @@ from tests.server.forks import ROOT, TOKEN, Forks, Served
 
 WORDS = """
 import gc, logging, sys, threading, warnings
-from server import logs
+from server.cli import logs
 from server.settings import Settings
 
 logs.configure(Settings(log_format="json"))

@@ -9,8 +9,8 @@ import pytest
 
 from core.errors import InputError
 from server.bench.engine import PERIOD_S
+from server.classroom.access import TESTING_DOORS
 from server.clock import ManualClock
-from server.people.access import TESTING_DOORS
 from server.settings import Settings, load_settings
 
 DOOR = "/api/v1/testing/advance"

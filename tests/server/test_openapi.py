@@ -13,9 +13,9 @@ from pydantic import TypeAdapter
 from core.nesting import read_toml
 from scenarios.campaign.sweep import Sweep
 from scenarios.sheets.read import read_sheet
+from server.api.document import REF
+from server.api.examples import EXAMPLES
 from server.app import create_app
-from server.document import REF
-from server.examples import EXAMPLES
 from server.settings import Settings
 from server.stream.wire import CLIENT_MESSAGE, ClientMessage, ServerMessage
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.server.classroom.group import join, open_class
 from typer.testing import CliRunner
 
 from core.compile import code
@@ -20,10 +21,9 @@ from scenarios.library import get
 from scenarios.run import run
 from scenarios.schema import Scenario
 from scenarios.speed import units
-from server.cli import app
+from server.cli.main import app
 from tests.core.own.price import PRICE_NS, priced
 from tests.core.own.texts import PI, ROOT, odd
-from tests.server.people.group import join, open_class
 from tests.server.runs.test_runs import wait
 
 LOOK = get("first-look").document
@@ -162,7 +162,7 @@ def test_everyone_may_bring_units_behind_the_wall_and_by_every_door(serve: Any) 
 def test_a_server_for_everyone_does_not_start_without_the_wall(tmp_path: Path) -> None:
     """The package is hidden by a module of its name that cannot be loaded."""
     (tmp_path / "wasmtime.py").write_text("raise ImportError('no wasmtime here')", "utf-8")
-    told = [sys.executable, "-m", "server.cli", "serve", "--port", "0", "--data", str(tmp_path / "data")]
+    told = [sys.executable, "-m", "server.cli.main", "serve", "--port", "0", "--data", str(tmp_path / "data")]
     environment = {**os.environ, "COMBBENCH_UNITS": "everyone", "PYTHONPATH": str(tmp_path)}
     ended = subprocess.run(told, cwd=ROOT, env=environment, capture_output=True, text=True, check=False, timeout=110)
     assert ended.returncode == 2 and ended.stdout == ""
@@ -222,7 +222,7 @@ def test_every_new_bench_of_a_server_has_its_units(serve: Any, tmp_path: Path) -
 
 def test_a_server_does_not_start_with_a_wrong_unit(tmp_path: Path) -> None:
     (tmp_path / "bad.py").write_text("import os", "utf-8")
-    told = [sys.executable, "-m", "server.cli", "serve", "--port", "0"]
+    told = [sys.executable, "-m", "server.cli.main", "serve", "--port", "0"]
     where = ["--data", str(tmp_path / "data"), "--unit", str(tmp_path / "bad.py")]
     ended = subprocess.run([*told, *where], cwd=ROOT, capture_output=True, text=True, check=False, timeout=110)
     assert ended.returncode == 2 and ended.stdout == ""

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from starlette.exceptions import HTTPException
 
-from server.page import Page
+from server.api.page import Page
 
 
 @pytest.fixture

@@ -26,9 +26,10 @@ import uvicorn
 from typer.testing import CliRunner
 from websockets.exceptions import ConnectionClosed
 
-from server import cli, logs
 from server.app import create_app
-from server.serve import make_server
+from server.cli import logs
+from server.cli import main as cli
+from server.cli.serve import make_server
 from server.settings import Settings
 from server.stream.wire import SUBPROTOCOL
 from tests.server.forks import Forks
@@ -48,7 +49,7 @@ def process(folder: Path, *arguments: str, **more: str) -> Iterator[Any]:
         "COMBBENCH_FIGURES": "false",
         **more,
     }
-    command = [sys.executable, "-m", "server.cli", "serve", "--port", "0", *arguments]
+    command = [sys.executable, "-m", "server.cli.main", "serve", "--port", "0", *arguments]
     errors = (folder / "stderr").open("wb")
     running = subprocess.Popen(command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=errors, text=True)
     try:
@@ -262,7 +263,7 @@ def test_a_data_folder_serves_one_server_until_that_has_ended(loaded: Forks, tmp
 def test_it_serves_with_its_standard_output_closed(tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
-    command = f"exec {sys.executable} -m server.cli serve --port {port} --data {tmp_path / 'data'} >&-"
+    command = f"exec {sys.executable} -m server.cli.main serve --port {port} --data {tmp_path / 'data'} >&-"
     environment = {**os.environ, "COMBBENCH_TOKEN": TOKEN}
     root = Path(__file__).resolve().parents[2]
     with (tmp_path / "stderr").open("wb") as errors:

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from server.people.access import DOORS, SOCKET
+from server.classroom.access import DOORS, SOCKET
 from server.runs.queue import Queue
 from tests.server.conftest import Live
 from tests.server.world import Injector, World

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.server.classroom.group import join, open_class
+from tests.server.classroom.test_blind import hide
 
 from core.board.stored import revived
 from scenarios.run import run
@@ -16,8 +18,6 @@ from scenarios.schema import Scenario
 from server.bench import watchdog
 from tests.server.bench.test_engine import until
 from tests.server.conftest import Live
-from tests.server.people.group import join, open_class
-from tests.server.people.test_blind import hide
 from tests.server.test_metrics import metrics
 
 LONG: dict[str, Any] = {"set": {"events": [], "samples": 10_000_000}, "time_scale": 0.01}

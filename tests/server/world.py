@@ -8,12 +8,12 @@ from typing import Any
 
 import pytest
 from sqlalchemy.exc import OperationalError
+from tests.server.classroom.group import Somebody, join, open_class, the_teacher
 
-from server.people.access import API
+from server.classroom.access import API
 from server.store.base import Base
 from server.store.database import Database
 from tests.server.conftest import Live
-from tests.server.people.group import Somebody, join, open_class, the_teacher
 
 SHEET = (Path(__file__).parents[2] / "scenarios" / "sheets" / "blind-diagnosis.md").read_text()
 CASE = (

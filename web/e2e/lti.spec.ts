@@ -44,7 +44,7 @@ test.beforeAll(async () => {
   bench = `http://localhost:${lab.port}`;
   platform = spawn(
     join(ROOT, ".venv", "bin", "python"),
-    ["-m", "tests.server.lti.platform", String(port), bench, "first-look"],
+    ["-m", "tests.server.classroom.lti.platform", String(port), bench, "first-look"],
     { cwd: ROOT, stdio: ["pipe", "pipe", "inherit"] },
   );
   if (!platform.stdout || !platform.stdin) throw new Error("the platform has no pipes");

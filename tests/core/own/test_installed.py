@@ -18,7 +18,7 @@ from core.errors import InputError
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
-from server.cli import app
+from server.cli.main import app
 from tests.core.own.installed import TEMPLATE, Installed
 from tests.core.own.test_own_units import with_unit
 
@@ -26,7 +26,7 @@ LEAD = {"controller.kind": "lead", "duration_ms": 5.0}
 CALLED = """
 import io, json
 from contextlib import redirect_stdout
-from server.cli import app
+from server.cli.main import app
 with redirect_stdout(io.StringIO()) as said:
     app(words, standalone_mode=False)
 answer = json.loads(said.getvalue())
@@ -105,7 +105,7 @@ def test_a_run_is_refused_in_one_line_where_a_package_cannot_be_loaded(broken: s
 def test_the_command_line_names_a_package_that_cannot_be_loaded(installed: Installed, tmp_path: Path) -> None:
     break_one(tmp_path, "control")
     path = f"{tmp_path}:{installed.environment['PYTHONPATH']}"
-    command = [sys.executable, "-m", "server.cli", "catalog", "control"]
+    command = [sys.executable, "-m", "server.cli.main", "catalog", "control"]
     environment = {**installed.environment, "PYTHONPATH": path}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 2 and done.stdout == ""

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from scenarios.benchmark import results, seeds
 from scenarios.benchmark.track import tracks
 from scenarios.report.benchmark import track_table
-from server.cli import app
+from server.cli.main import app
 
 ROOT = Path(__file__).resolve().parents[3]
 DEMONSTRATION = ("--seeds", "demonstration")

@@ -152,7 +152,7 @@ def test_a_case_in_which_the_board_stops_is_refused() -> None:
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize("machine", [{}, OLDER], ids=["this machine", "an older one"])
 def test_the_kept_table_is_recomputed_to_the_bit(machine: dict[str, str]) -> None:
-    command = [sys.executable, "-m", "server.cli", "benchmark", "--track", "severity", "--json"]
+    command = [sys.executable, "-m", "server.cli.main", "benchmark", "--track", "severity", "--json"]
     env = {**os.environ, **machine}
     again = results.read(subprocess.run(command, capture_output=True, text=True, env=env, check=True).stdout, "--json")
     assert len(again.rows) == len(registry.blocks("diagnose")) - 1

@@ -20,8 +20,8 @@ from scenarios.campaign.survey import listed
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
-from server import sweeping
-from server.cli import app
+from server.cli import sweep as sweeping
+from server.cli.main import app
 from server.store.lock import lock
 
 CAMPAIGN = """

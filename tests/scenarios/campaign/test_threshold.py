@@ -14,7 +14,7 @@ from core.errors import InputError
 from scenarios.campaign.halving import MOST_TURNS, ROUNDS, Halving, Threshold, Wanted
 from scenarios.campaign.threshold import Memory, Search
 from scenarios.schema import Scenario
-from server.cli import app
+from server.cli.main import app
 from tests.lab import QUIET
 
 

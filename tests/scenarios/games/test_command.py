@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from scenarios.games import GAMES
-from server.cli import app
+from server.cli.main import app
 
 
 @pytest.fixture

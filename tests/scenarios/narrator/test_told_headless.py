@@ -12,7 +12,7 @@ from core.format import MINUS
 from scenarios.library import get
 from scenarios.narrator.words import change, hypothesis_words, listed, uncapital
 from scenarios.run import run
-from server.cli import app
+from server.cli.main import app
 
 SHORT = ["run", "ch5-seven-step", "--set", "samples=3100", "--set", "expect=[]"]
 

@@ -22,7 +22,7 @@ from scenarios.outside.fmu import export
 from scenarios.outside.fmu_slave import CombBenchDevice
 from scenarios.run import run
 from scenarios.schema import Scenario
-from server.cli import app
+from server.cli.main import app
 
 SAMPLES = 600
 QUIET = {"samples": SAMPLES, "diagnosers": {}, "plant.drive_noise_v": 0.0, "plant.thermal_noise": False}

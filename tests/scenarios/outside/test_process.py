@@ -22,7 +22,7 @@ from scenarios.library import get
 from scenarios.outside.process import Process
 from scenarios.run import run
 from scenarios.schema import Scenario
-from server.cli import app
+from server.cli.main import app
 
 ROOT = Path(__file__).resolve().parents[3]
 EXAMPLES = ROOT / "docs" / "controllers"

@@ -8,7 +8,7 @@ import pytest
 
 from core.errors import InputError
 from server.bench.commands import parse
-from server.bench.earlier import in_this_notation
+from server.store.earlier import in_this_notation
 
 COMMANDS: list[tuple[dict[str, Any], dict[str, Any]]] = [
     ({"kind": "inject", "fault": "damping", "severity": 0.2}, {"fault": "damping", "severity": 0.2}),

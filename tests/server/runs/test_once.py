@@ -16,7 +16,7 @@ from scenarios.campaign.executor import Processes
 from scenarios.campaign.single import run_seeds
 from scenarios.edit import with_values
 from scenarios.library import get
-from server.cli import app
+from server.cli.main import app
 from server.store.database import Database
 from server.store.models import ResultRow
 from tests.server.conftest import serving

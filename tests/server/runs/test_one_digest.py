@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from scenarios.campaign.campaign import Campaign
 from scenarios.campaign.sweep import Sweep
-from server.cli import app
+from server.cli.main import app
 from tests.scenarios.campaign.cluster import Cluster
 from tests.scenarios.campaign.test_campaign import Memory
 from tests.server.runs.test_runs import wait

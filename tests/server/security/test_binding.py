@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from core.errors import InputError
+from server.cli.serve import bind, check_binding
 from server.security.identity import Identity, token_of
-from server.serve import bind, check_binding
 from server.settings import Settings
 
 TOKEN = "sixteen-characters-or-more"

@@ -15,7 +15,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 from server.app import create_app
-from server.classroom import network_addresses
+from server.classroom.addresses import network_addresses
 from server.security.identity import Identity
 from server.security.origin import OriginPolicy
 from server.settings import Settings

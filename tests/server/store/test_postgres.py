@@ -42,7 +42,7 @@ def test_a_database_serves_one_server_at_a_time(postgres_server: str, tmp_path: 
     first, second = Database(address), Database(address)
     first.claim()
     environment = os.environ | {"COMBBENCH_DATABASE_URL": address, "COMBBENCH_PORT": "0"}
-    command = [sys.executable, "-m", "server.cli", "serve", "--data", str(tmp_path)]
+    command = [sys.executable, "-m", "server.cli.main", "serve", "--data", str(tmp_path)]
     told = subprocess.run(command, env=environment, cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
     assert told.returncode == 2
     assert "database_url: the database is in use by another server" in told.stderr.splitlines()[-1]
@@ -95,7 +95,7 @@ def test_the_command_line_puts_a_campaign_into_postgresql(postgres_server: str, 
 
     def sweep(url: str) -> subprocess.CompletedProcess[str]:
         environment = {**os.environ, "PYTHONPATH": str(ROOT), "COMBBENCH_DATABASE_URL": url}
-        command = [sys.executable, "-m", "server.cli", "sweep", "small.toml", "--workers", "1", "--out", "out"]
+        command = [sys.executable, "-m", "server.cli.main", "sweep", "small.toml", "--workers", "1", "--out", "out"]
         return subprocess.run(
             [*command, "--resume"], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=90
         )

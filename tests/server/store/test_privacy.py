@@ -10,8 +10,8 @@ import pytest
 from sqlalchemy import text
 from sqlalchemy.exc import OperationalError
 
+from server.security.privacy import keep_private
 from server.store.database import Database
-from server.store.privacy import keep_private
 
 
 @pytest.fixture(autouse=True)

@@ -1,0 +1,113 @@
+"""The OpenAPI document of the application: also for generated clients, and with the messages of the stream in it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.openapi.utils import get_openapi
+from pydantic import TypeAdapter
+
+from server.api.examples import EXAMPLES
+from server.classroom.access import Need, need_of
+from server.errors import ErrorReply
+from server.stream.wire import ClientMessage, ServerMessage
+
+REF = "#/components/schemas/{model}"
+HERE = {
+    "url": "http://{host}:{port}",
+    "description": "Where `combbench serve` listens",
+    "variables": {"host": {"default": "127.0.0.1"}, "port": {"default": "8000"}},
+}
+BEARER = {
+    "type": "http",
+    "scheme": "bearer",
+    "description": "The access token printed at the start; of a student, the session that joining a class gives",
+}
+PARAMETERS = {
+    "after": "Number of the last known one",
+    "bench_id": "Id of a bench",
+    "benchmark_id": "Id of a benchmark",
+    "class_id": "Id of a class",
+    "columns": "Columns of the picture; each has its smallest and its largest value",
+    "descending": "The largest first",
+    "drive_v": "Voltage that is held, V",
+    "end_tick": "The tick behind the last; to the newest unless given",
+    "family": "Family of blocks, such as control or faults; all unless given",
+    "format": "Format of the answer",
+    "game_id": "Id of a game",
+    "kind": "Links of this kind alone",
+    "lecture_id": "Id of a lecture",
+    "limit": "At most so many",
+    "link_id": "Id of a link",
+    "member_id": "Id of a student",
+    "name": "Id of a diagnoser or a read-out; of a twin's: <twin>:<id>",
+    "number": "Number of the cue, from 0",
+    "recording_id": "Id of a recording",
+    "run_id": "Id of a run",
+    "scenario_id": "Id of a scenario of the library",
+    "set_id": "Id of a parameter set",
+    "sheet_id": "Id of a lab sheet",
+    "signal": "Name of a signal",
+    "snapshot_id": "Id of a snapshot",
+    "start_tick": "The first tick; the oldest unless given",
+    "step_id": "Id of a step of the sheet",
+    "sweep_id": "Id of a campaign",
+    "threshold_id": "Id of a search for a threshold",
+    "vote_id": "Id of a vote",
+    "watcher_id": "Id of a link to watch",
+}
+"""The meaning of parameters whose route does not give it."""
+
+
+def install(app: FastAPI) -> None:
+    """Replace the document of ``app`` by one with the messages of the stream."""
+
+    def document() -> dict[str, Any]:
+        if app.openapi_schema is None:
+            app.openapi_schema = build(app)
+        return app.openapi_schema
+
+    app.openapi = document  # type: ignore[method-assign]
+
+
+def build(app: FastAPI) -> dict[str, Any]:
+    """Build the document."""
+    schema = get_openapi(
+        title=app.title,
+        version=app.version,
+        description=app.description,
+        routes=app.routes,
+        servers=app.servers or [HERE],
+    )
+    components = schema.setdefault("components", {}).setdefault("schemas", {})
+    for name, kind, mode in (
+        ("ClientMessage", ClientMessage, "validation"),
+        ("ServerMessage", ServerMessage, "serialization"),
+        ("ErrorReply", ErrorReply, "validation"),
+    ):
+        described = TypeAdapter(kind).json_schema(mode=mode, ref_template=REF)  # type: ignore[arg-type]
+        for inner, definition in described.pop("$defs", {}).items():
+            components.setdefault(inner, definition)
+        components[name] = {"title": name, **described}
+    schema["components"]["securitySchemes"] = {"token": BEARER}
+    for path, operations in schema["paths"].items():
+        for method, operation in operations.items():
+            _complete(operation, is_open=need_of(method.upper(), path)[0] is Need.NOTHING)
+    components.pop("HTTPValidationError", None)
+    components.pop("ValidationError", None)
+    return schema
+
+
+def _complete(operation: dict[str, Any], is_open: bool) -> None:
+    """Add the permitted callers, the meaning of parameters, the shape of bodies, and the one shape of all failures."""
+    operation["security"] = [] if is_open else [{"token": []}]
+    for parameter in operation.get("parameters", []):
+        parameter.setdefault("description", PARAMETERS.get(parameter["name"], ""))
+    for name, content in operation.get("requestBody", {}).get("content", {}).items():
+        if name == "application/json":
+            values = EXAMPLES.get(operation["operationId"], ())
+            content["examples"] = {f"example-{number}": {"value": value} for number, value in enumerate(values, 1)}
+    operation["responses"].pop("422", None)
+    shape = {"application/json": {"schema": {"$ref": REF.format(model="ErrorReply")}}}
+    operation["responses"]["default"] = {"description": "Refused or failed", "content": shape}

@@ -1,0 +1,1 @@
+"""Classes: people and their rights, lessons, sheets, votes, games, hidden faults, grades, learning platforms."""

@@ -1,0 +1,184 @@
+"""Scores of lab sheets, sent to the platform when they change: never in the way of a board, again until it works."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+from pylti1p3.assignments_grades import AssignmentsGradesService
+from pylti1p3.exception import LtiException, LtiServiceException
+from pylti1p3.grade import Grade
+from pylti1p3.service_connector import ServiceConnector
+from requests import RequestException
+
+from server.classroom.audit import Audit
+from server.classroom.lti.launch import SCORE, Launch
+from server.classroom.lti.tool import Tool, Web
+from server.classroom.sheet_work import SheetBrief, Work
+from server.security.person import Person
+from server.store.base import now
+
+log = logging.getLogger(__name__)
+
+QUIET_S = 2.0
+"""How long a score has to stay before it is sent."""
+FIRST_WAIT_S, LONGEST_WAIT_S, MOST_TRIES = 5.0, 600.0, 12
+"""Between tries the wait doubles; after the last, some two hours later, the next change or launch tries again."""
+
+THREADS = 2
+"""That wait for platforms, and for nothing else."""
+
+Key = tuple[str, str]
+"""A person and a sheet."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """Where a score goes; the platform's id of the user is in memory alone."""
+
+    launch: Launch
+    person: Person
+
+
+@dataclass(frozen=True)
+class Score:
+    """A score, as it is sent."""
+
+    given: float
+    most: float
+    done: bool
+    comment: str
+    at: str
+
+
+class Scores:
+    """Sends scores.
+
+    Parameters
+    ----------
+    tool : Tool
+        Signs for this server.
+    audit : Audit
+        The log for the teacher about failed deliveries.
+    brief_of : callable
+        Returns the progress of a student.
+    quiet_s, first_wait_s : float
+        How long a score has to stay, and how long to wait after the first try.
+    """
+
+    def __init__(
+        self,
+        tool: Tool,
+        audit: Audit,
+        brief_of: Callable[[Work], SheetBrief],
+        quiet_s: float = QUIET_S,
+        first_wait_s: float = FIRST_WAIT_S,
+    ) -> None:
+        self._tool, self._audit, self._brief_of = tool, audit, brief_of
+        self._quiet_s, self._first_wait_s = quiet_s, first_wait_s
+        self._targets: dict[Key, Target] = {}
+        self._wanted: dict[Key, Score] = {}
+        self._sent: dict[Key, Score] = {}
+        self._tasks: dict[Key, asyncio.Task[None]] = {}
+        self._pool = ThreadPoolExecutor(THREADS, thread_name_prefix="combbench-scores")
+
+    def aim(self, person: Person, launch: Launch, work: Work | None) -> None:
+        """Send the score of a sheet to the address of a launch from now on, and the present score at once."""
+        if not launch.line_item or not launch.sheet:
+            return
+        key = (person.id, launch.sheet)
+        self._targets[key] = Target(launch, person)
+        self._sent.pop(key, None)
+        if work is not None and work.progress.steps:
+            self.changed(work)
+
+    def changed(self, work: Work) -> None:
+        """Note that a student's work has changed; it is sent when it is unchanged for a while."""
+        key = (work.person_id, work.sheet_id)
+        if key not in self._targets:
+            return
+        brief = self._brief_of(work)
+        where = "all steps" if brief.done else f"step {brief.step} of {brief.steps}"
+        at = now().isoformat(timespec="milliseconds")
+        score = Score(max(0.0, brief.earned), brief.points, brief.done, f"{brief.title}: {where}", at)
+        before = self._wanted.get(key)
+        if before is not None and _same(before, score) and (key in self._tasks or self._sent.get(key) == before):
+            return
+        self._wanted[key] = score
+        if key not in self._tasks:
+            self._tasks[key] = asyncio.get_running_loop().create_task(self._send(key))
+
+    async def close(self) -> None:
+        """Stop; unsent scores are sent at the next launch."""
+        for task in list(self._tasks.values()):
+            task.cancel()
+        await asyncio.gather(*self._tasks.values(), return_exceptions=True)
+        self._pool.shutdown(wait=False, cancel_futures=True)
+
+    async def _send(self, key: Key) -> None:
+        """Send the score of a sheet until the platform has it as it is."""
+        tries, wait_s = 0, self._first_wait_s
+        try:
+            while self._sent.get(key) != self._wanted[key] and tries < MOST_TRIES:
+                await asyncio.sleep(self._quiet_s)
+                score, target = self._wanted[key], self._targets[key]
+                try:
+                    await asyncio.get_running_loop().run_in_executor(self._pool, self._post, target, score)
+                except (LtiException, LtiServiceException, RequestException, ValueError, KeyError) as error:
+                    tries += 1
+                    self._note_failure(target, key[1], error, tries)
+                    await asyncio.sleep(wait_s)
+                    wait_s = min(2.0 * wait_s, LONGEST_WAIT_S)
+                else:
+                    if tries:
+                        self._audit.add("lti", "grade", _line(target, key[1], "sent after all"), target.person.class_id)
+                    self._sent[key] = score
+                    tries, wait_s = 0, self._first_wait_s
+        except Exception:
+            log.exception("the score of a sheet could not be sent")
+        finally:
+            self._tasks.pop(key, None)
+
+    def _note_failure(self, target: Target, sheet: str, error: Exception, tries: int) -> None:
+        """Tell the log every time, and the teacher at the first try and the last."""
+        status = (
+            f": the platform answered {error.response.status_code}" if isinstance(error, LtiServiceException) else ""
+        )
+        log.warning("the score of a sheet could not be sent (try %d): %s%s", tries, type(error).__name__, status)
+        if tries in (1, MOST_TRIES):
+            said = (
+                "not sent"
+                + (status or ": the platform does not answer")
+                + ("; it is tried again" if tries == 1 else "; the next change or launch tries again")
+            )
+            self._audit.add("lti", "grade", _line(target, sheet, said), target.person.class_id)
+
+    def _post(self, target: Target, score: Score) -> None:
+        """Send a score; in a thread."""
+        grade = (
+            Grade()
+            .set_score_given(score.given)
+            .set_score_maximum(score.most)
+            .set_timestamp(score.at)
+            .set_activity_progress("Completed" if score.done else "InProgress")
+            .set_grading_progress("FullyGraded" if score.done else "Pending")
+            .set_user_id(target.launch.user)
+            .set_comment(score.comment)
+        )
+        with Web() as web:
+            connector = ServiceConnector(self._tool.registration(target.launch.platform), web)
+            # the right to send scores, and no other
+            service = AssignmentsGradesService(connector, {"scope": [SCORE], "lineitem": target.launch.line_item})  # type: ignore[list-item]
+            service.put_grade(grade)
+
+
+def _same(one: Score, other: Score) -> bool:
+    """Whether the platform would show the same."""
+    return (one.given, one.done, one.comment) == (other.given, other.done, other.comment)
+
+
+def _line(target: Target, sheet: str, what: str) -> str:
+    return f"the score of {target.person.name} at {sheet} was {what}"

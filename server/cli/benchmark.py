@@ -1,0 +1,72 @@
+"""The command for the benchmark of fault diagnosis: measures, prints the table, recomputes submissions."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from core import registry
+from core.errors import InputError
+from scenarios.own import with_units
+from scenarios.reading import read_text
+from server.cli.terminal import JsonOption, plainly, say
+from server.cli.units import UnitOption
+
+
+@plainly
+def benchmark(
+    unit: Annotated[str | None, typer.Argument(help="A diagnoser; without one, all there are.")] = None,
+    track: Annotated[str | None, typer.Option(help="Only this track.")] = None,
+    seeds: Annotated[
+        str, typer.Option(metavar="LIST", help="public, demonstration, or the file of the hidden list.")
+    ] = "public",
+    check: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Recompute these results and compare them.")
+    ] = None,
+    units: UnitOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Measure diagnosers by mems-diag-1: 0 done, 1 results that were checked differ, 2 invalid input."""
+    from scenarios.benchmark import results as benchmark_results
+    from scenarios.benchmark.measure import measure
+    from scenarios.benchmark.seeds import LISTS, hidden_list, seed_list
+    from scenarios.benchmark.track import track as one_track
+    from scenarios.benchmark.track import tracks
+    from scenarios.report.benchmark import benchmark_text
+
+    if check is not None and (unit is not None or track is not None or units):
+        raise InputError("recomputes what the file has; give neither a unit nor a track", "--check")
+    own = with_units({}, units or ()).get("units", {})
+    if track is not None:
+        one_track(track)
+    names = tuple(tracks())
+    chosen = seed_list(seeds, names) if seeds in LISTS else hidden_list(read_text(Path(seeds), "--seeds"), names)
+
+    def told(name: str, done: int, runs: int) -> None:
+        if sys.stderr.isatty():
+            sys.stderr.write(f"\r{name}: {done} of {runs} runs" + ("\n" if done == runs else ""))
+
+    if check is None:
+        from scenarios.speed.diagnosers import diagnoser_costs
+
+        named = [unit] if unit is not None else [*own] or [*registry.blocks("diagnose")]
+        found = measure(named, [track] if track is not None else names, chosen, told, own)
+        found = found.model_copy(update={"costs": diagnoser_costs({row.unit: None for row in found.rows}, own)})
+        if unit is None and not own:
+            found = found.without_cases()  # a megabyte
+        say(benchmark_results.write(found).rstrip() if as_json else benchmark_text(found, tracks()))
+        return
+    given = benchmark_results.read(read_text(check, "--check"), "--check")
+    if given.seeds != chosen.name:
+        raise InputError(f"has results of the list {given.seeds}; name that list, or its file", "--seeds")
+    if not given.rows:
+        raise InputError("has no rows", "--check")
+    found = measure([*given.sources], [*{row.track: None for row in given.rows}], chosen, told, given.units)
+    differences = given.differences(found)
+    if differences and given.version != found.version:
+        differences.append(f"they were computed by version {given.version}, these by {found.version}")
+    say("\n".join(differences) or f"{len(given.rows)} rows are the same to the bit")
+    raise typer.Exit(1 if differences else 0)

@@ -1,0 +1,342 @@
+"""The command line: ``combbench``, followed by a command; without one it lists them."""
+
+from __future__ import annotations
+
+import errno
+import fnmatch
+import os
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
+from core.errors import InputError, one_line
+from core.format import format_si, unit_text
+from scenarios.edit import parse_assignment, with_values
+from scenarios.library import get, ids
+from scenarios.report.text import gallery_text, run_text
+from scenarios.report.traces import TraceFile
+from scenarios.run import run as run_scenario
+from scenarios.samples import temporary_folder
+from scenarios.schema import Scenario
+from scenarios.seeds import parse_seeds
+from server.cli.benchmark import benchmark
+from server.cli.blocks import blocks
+from server.cli.export import fmu
+from server.cli.games import game
+from server.cli.lessons import lectures, sheets
+from server.cli.terminal import JsonOption, load, plainly, say, say_json
+from server.cli.units import UnitOption, check
+from server.version import VERSION
+
+UsageError: Any = typer.BadParameter.__base__
+"""Every usage error of options and arguments; Typer exports only one kind of them."""
+
+
+class OneLine(TyperGroup):
+    """Commands that report usage errors in one line, like all bad input."""
+
+    def invoke(self, ctx: typer.Context) -> Any:  # type: ignore[override]
+        """Invoke a command; a usage error is exit code 2."""
+        try:
+            return super().invoke(ctx)
+        except UsageError as error:
+            parameter = getattr(error, "param", None)
+            where = f"{parameter.opts[0]}: " if parameter is not None and error.message else ""
+            text = error.message if where else error.format_message()
+            sys.stderr.write(f"combbench: {where}{one_line(text)}\n")
+            raise typer.Exit(2) from None
+
+
+app = typer.Typer(cls=OneLine, no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
+app.command()(benchmark)
+app.command()(lectures)
+app.command()(sheets)
+app.command()(check)
+app.command(name="catalog")(blocks)
+app.command()(fmu)
+app.command()(game)
+
+MOST_WORKERS = 1024
+NOT_WRITTEN = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE)
+"""Errors of a write to an open file."""
+
+
+def show_version(wanted: bool) -> None:
+    """Print the version and end."""
+    if wanted:
+        say(f"combbench {VERSION}")
+        raise typer.Exit
+
+
+@app.callback()
+def common(
+    version: Annotated[
+        bool, typer.Option("--version", callback=show_version, is_eager=True, help="Print the version and end.")
+    ] = False,
+) -> None:
+    """Run, measure and serve MEMS lateral comb resonators."""
+
+
+@app.command()
+@plainly
+def run(
+    scenario: Annotated[str, typer.Argument(help="Library id or file.")],
+    assign: Annotated[
+        list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Any field of the scenario.")
+    ] = None,
+    units: UnitOption = None,
+    seed: Annotated[int | None, typer.Option(help="Instead of the scenario's own, 0 or more.")] = None,
+    seeds: Annotated[str | None, typer.Option(metavar="A:B", help="One run for each seed from A to B.")] = None,
+    as_json: JsonOption = False,
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write trace, report and script here.")] = None,
+    everything: Annotated[
+        bool,
+        typer.Option(
+            "--all",
+            help="Also run the controllers that never drive, and write all signals to the trace, "
+            "also of sensors that are never in use. No figure and no digest depends on it.",
+        ),
+    ] = False,
+    narrate: Annotated[bool, typer.Option("--narrate", help="Also say in plain sentences what happens.")] = False,
+    controller_process: Annotated[
+        str | None,
+        typer.Option(metavar="COMMAND", help="A program that drives, asked over a pipe (docs/other-languages.md)."),
+    ] = None,
+    controller_timeout: Annotated[float, typer.Option(metavar="S", help="Longest time for one of its answers.")] = 10.0,
+    threshold: Annotated[
+        str | None, typer.Option(metavar="METRIC", help="Find where this claim holds, over the range of --over.")
+    ] = None,
+    over: Annotated[
+        str | None, typer.Option(metavar="PATH=LOW:HIGH[:log]", help="The number to turn for --threshold.")
+    ] = None,
+) -> None:
+    """Run a scenario headless: 0 all expectations hold, 1 some do not, 2 invalid input."""
+    from scenarios.campaign.single import beside, run_seeds  # each worker process loads this file, and not these
+    from scenarios.outside.process import Process
+    from scenarios.report.keeping import keep
+    from scenarios.report.traces import write_json
+
+    chosen = with_values(load(scenario, units), dict(parse_assignment(text) for text in assign or []))
+    if threshold is not None or over is not None:
+        _find(chosen if seed is None else with_values(chosen, {"seed": seed}), threshold, over, as_json)
+    if seed is not None and seeds is not None:
+        raise InputError("give --seed or --seeds, not both", "--seeds")
+    if seeds is not None and out is not None:
+        raise InputError("traces are written for one seed; use --seed", "--out")
+    if seeds is not None and everything:
+        raise InputError("is for the trace of one seed; use --seed", "--all")
+    if seeds is not None and narrate:
+        raise InputError("tells of one seed; use --seed", "--narrate")
+    if seeds is not None and controller_process is not None:
+        raise InputError("drives one run; use --seed", "--controller-process")
+    try:
+        with ExitStack() as stack:
+            law = None
+            if controller_process is not None:
+                law = stack.enter_context(Process(controller_process, controller_timeout))
+            if seeds is not None:
+                summary = run_seeds(chosen, parse_seeds(seeds))
+            elif out is None:
+                result = run_scenario(chosen, seed, figures_only=True, everything=everything, law=law, narrate=narrate)
+                summary = result.summary()
+            else:
+                stem = out / f"{chosen.id}-seed{chosen.spec.seed if seed is None else seed}"
+                with TraceFile(stem.with_suffix(".parquet"), chosen.document) as trace:
+                    result = run_scenario(
+                        chosen, seed, taps=True, everything=everything, trace=trace, law=law, narrate=True
+                    )
+                    if law is None:
+                        summary = beside(result)
+                        keep(result, summary, [result.seed], stem)
+                    else:  # no report and no script: they would describe the scenario's own controller
+                        summary = result.summary()
+                        write_json(stem.with_suffix(".json"), summary)
+            if narrate:
+                summary["narration"] = [said.model_dump() for said in result.narration]
+    except OSError as error:
+        folder, field = (temporary_folder(), "TMPDIR") if out is None else (out, "--out")
+        raise InputError(f"cannot write to {folder}: {error.strerror}", field) from None
+    if as_json:
+        say_json(summary)
+    else:
+        say(run_text(summary))
+    raise typer.Exit(0 if summary["ok"] else 1)
+
+
+def _find(scenario: Scenario, threshold: str | None, over: str | None, as_json: bool) -> None:
+    """Find where a claim holds, print it and end: 0 somewhere in the range, 1 nowhere."""
+    from server.cli.find import find, threshold_text
+
+    if threshold is None or over is None:
+        given, missing = ("--over", "--threshold") if threshold is None else ("--threshold", "--over")
+        raise InputError(f"goes with {missing}", given)
+    found = find(scenario, threshold, over)
+    if as_json:
+        say_json(found.model_dump())
+    else:
+        say(threshold_text(found))
+    raise typer.Exit(0 if any(one.holds for one in found.tried) else 1)
+
+
+@app.command()
+@plainly
+def gallery(
+    only: Annotated[str, typer.Option(metavar="GLOB", help="Only ids that match.")] = "*",
+    as_json: JsonOption = False,
+) -> None:
+    """Run every library scenario: published claim, expectation, measured, verdict, and the figure of the open loop."""
+    from scenarios.campaign.single import beside
+
+    chosen = [get(name) for name in ids() if fnmatch.fnmatch(name, only)]
+    if not chosen:
+        raise InputError(f"no scenario matches {only!r}", "--only")
+    summaries = [beside(run_scenario(entry, figures_only=True)) for entry in chosen]
+    if as_json:
+        say_json(summaries)
+    else:
+        say("\n".join(gallery_text(summary) for summary in summaries))
+    raise typer.Exit(0 if all(summary["ok"] for summary in summaries) else 1)
+
+
+@app.command()
+@plainly
+def sweep(
+    file: Annotated[Path, typer.Argument(help="Campaign in TOML.")],
+    workers: Annotated[
+        int | None, typer.Option(help="Processes of this machine, 1 to 1024; as many as it has processors.")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler instead, such as tcp://host:8786.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Where results go; sweeps/<id> if not given.")] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue the campaign in the folder.")] = False,
+    units: UnitOption = None,
+) -> None:
+    """Run a campaign: 0 every run was carried out, 1 some could not be, 2 invalid input."""
+    from scenarios.campaign.campaign import Stopped
+    from scenarios.campaign.executor import collect_seldom
+    from server.cli.sweep import carry_out, read_sweep
+    from server.settings import load_settings
+
+    if workers is not None and scheduler is not None:
+        raise InputError("give --workers or --scheduler, not both", "--scheduler")
+    if workers is not None and not 1 <= workers <= MOST_WORKERS:
+        raise InputError(f"must be from 1 to {MOST_WORKERS}, got {workers}", "--workers")
+    collect_seldom()
+    campaign = read_sweep(file, units or ())
+    folder = out or Path("sweeps") / campaign.head.id
+    address = load_settings().database_url
+    given = "".join(f" --unit {one}" for one in units or ())
+    again = f"; continue with: combbench sweep {file} --out {folder} --resume{given}"
+    try:
+        with ExitStack() as stack:
+            bars: list[Any] = []  # no progress bar before the first run: a refusal is one line
+
+            def show(done: int, total: int) -> None:
+                if not bars:
+                    bar = typer.progressbar(length=total, label=campaign.head.id, file=sys.stderr)
+                    bars.append(stack.enter_context(bar))
+                bars[0].update(done - bars[0].pos)
+
+            ended = carry_out(campaign, folder, address, resume, workers or os.cpu_count() or 1, scheduler or "", show)
+    except Stopped as error:
+        sys.stderr.write(f"combbench: {error}{again}\n")
+        raise typer.Exit(1) from None
+    except KeyboardInterrupt:
+        sys.stderr.write(f"combbench: interrupted{again}\n")
+        raise typer.Exit(130) from None
+    for text in ended.warnings:
+        sys.stderr.write(f"combbench: warning: {text}\n")
+    say(f"{ended.done} of {ended.total} runs, {ended.failed} could not be carried out; {ended.folder}/report.html")
+    raise typer.Exit(1 if ended.failed or ended.done < ended.total else 0)
+
+
+@app.command()
+@plainly
+def bench(as_json: JsonOption = False) -> None:
+    """Measure speed, each figure as a ratio to a peer in the same run."""
+    from scenarios.speed.ratios import speed
+
+    report = speed()
+    if as_json:
+        say_json(report)
+        return
+    for row in report["figures"]:
+        mark = "info" if row["target"] == "information" else "ok  " if row["ok"] else "MISS"
+        value, low, high = (format_si(row[name], "") for name in ("value", "low", "high"))
+        say(f"{mark} {value:>7} {unit_text(row['unit']):<3} [{low} to {high}]  {row['target']:<24} {row['name']}")
+    say("cost of each block, ns per tick:")
+    say("  " + "  ".join(f"{name} {format_si(value, '')}" for name, value in report["blocks_ns"].items()))
+    for text in report["missing"]:
+        say(text)
+
+
+@app.command()
+@plainly
+def serve(
+    host: Annotated[
+        str | None, typer.Option(help="Address to listen on; anything but loopback needs a token or --classroom.")
+    ] = None,
+    port: Annotated[int | None, typer.Option(help="Port to listen on; 0 for any free one.")] = None,
+    data: Annotated[Path | None, typer.Option(help="Folder for database and recordings.")] = None,
+    classroom: Annotated[
+        bool, typer.Option("--classroom", help="Serve a class on this network: students join by a code, without TLS.")
+    ] = False,
+    open_page: Annotated[bool, typer.Option("--open", help="Open the page in a browser.")] = False,
+    units: UnitOption = None,
+) -> None:
+    """Serve the dashboard."""
+    from server.cli.serve import serve as start
+    from server.settings import load_settings
+
+    flags = {"classroom": classroom or None, "open_page": open_page or None, "unit_files": units or None}
+    start(load_settings(host=host, port=port, data=data, **flags))
+
+
+@app.command()
+@plainly
+def doctor(as_json: JsonOption = False) -> None:
+    """Show effective settings and where each comes from, versions and the state of the kernel cache."""
+    from server.cli.doctor import examine
+
+    report = examine()
+    if as_json:
+        say_json(report)
+        return
+    for title, entries in report.items():
+        say(title)
+        for name, value in entries.items():
+            say(f"  {name:<28} {value}")
+
+
+def main() -> None:
+    """Run the command line; one line also reports an answer that cannot be written, as on a full disk."""
+    for number in (1, 2):  # the next file opened would take the number of a closed one
+        try:
+            os.fstat(number)
+        except OSError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), number)
+    sys.stdout, sys.stderr = sys.stdout or Path(os.devnull).open("w"), sys.stderr or Path(os.devnull).open("w")
+    try:
+        try:
+            app()
+        finally:
+            sys.stdout.flush()
+    except OSError as error:
+        if error.errno not in NOT_WRITTEN or error.filename is not None:
+            raise
+        # Python would try at its end to write the rest again.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if isinstance(error, BrokenPipeError):  # the reader has closed the pipe
+            sys.exit(1)
+        sys.stderr.write(f"combbench: cannot write to standard output: {error.strerror}\n")
+        sys.exit(2)
+
+
+if __name__ == "__main__":
+    main()

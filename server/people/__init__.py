@@ -1,1 +1,0 @@
-"""People: their identities, their rights, classes and the actions in them."""
