@@ -6,7 +6,6 @@ that is replaced whole.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from dataclasses import replace
@@ -19,8 +18,6 @@ from core.board.document import Document
 from core.board.history import History
 from core.board.rows import Rows
 from core.board.track import Deed, Track
-from core.device.geometry import Geometry
-from core.device.two_axis import TwoAxis
 from core.errors import InputError
 from core.signals import Signal
 from scenarios.schema import Scenario
@@ -122,7 +119,7 @@ class LiveBench:
         self.created = datetime.now(UTC)
         self._tick_s = SLICE_S / board.chunk
         self.history = self.empty_history()
-        self._branches = Branches()
+        self.branches = Branches()
         self.column_of = {signal.name: signal.index for signal in board.signals}
         """Column of each signal in the history."""
         self.track = Track(board, self.track_bytes) if isinstance(board, Board) else None
@@ -146,20 +143,6 @@ class LiveBench:
         """All signals, in the order of the history."""
         signals: Sequence[Signal] = self.board.signals
         return signals
-
-    @property
-    def geometry(self) -> Geometry:
-        """The drawing of the device with its own gap; the drawing of the reference device if it has none."""
-        return self.board.spec.device.drawing
-
-    @property
-    def drive_period_ticks(self) -> float | None:
-        """Period of the reference in ticks, if it has one; of the driven axis where the plant has axes."""
-        spec = self.board.spec
-        if isinstance(spec.nominal, TwoAxis):
-            return 2.0 * math.pi / (spec.nominal.drive_frequency * self.dt_ms)
-        frequency = getattr(spec.reference.params, "frequency_hz", None)
-        return 1e3 / (float(frequency) * self.dt_ms) if isinstance(frequency, int | float) and frequency else None
 
     @property
     def is_running(self) -> bool:
@@ -296,24 +279,24 @@ class LiveBench:
         assert self.track is not None
         track = self.track.lean() if is_lean else self.track
         past = self.history_before(self.board.tick) if with_past else None
-        branch, last_event = self._branches.current, self.events.last
+        branch, last_event = self.branches.current, self.events.last
         return Journal(self.scenario, keyframe, track.copy(), self.narration.told(), past, branch, last_event)
 
     def recalled(self, journal: Journal) -> Journal:
         """Return a journal with all keyframes and samples that the bench still has, if it is in its present past."""
-        if self.track is None or not self._branches.share(journal.branch, journal.tick):
+        if self.track is None or not self.branches.share(journal.branch, journal.tick):
             return journal
         return replace(journal, track=self.track.copy(), past=self.history_before(journal.tick))
 
     def stand(self, journal: Journal, actor: str, kind: str, text: str) -> Event:
         """Stand at the end of a journal: the only way of a bench to a tick that does not follow; return its event."""
         board, tick = journal.board(), journal.tick
-        is_own = self._branches.share(journal.branch, tick)
+        is_own = self.branches.share(journal.branch, tick)
         self.scenario, self.board = journal.scenario, board
         self.track = (self.track if is_own and self.track is not None else journal.track).until(board)
-        if not (is_own and self._rewind()):
-            self._take_past(journal.past, tick)
-        self._branches.begin(journal.branch, tick)
+        if not (is_own and self.rewind()):
+            self.begin_history(journal.past)
+        self.branches.begin(journal.branch, tick)
         self.narration.go_to(journal.told, board.spec)
         self.time.jumped(journal.scenario.samples)
         self.recordings.close(f"the bench was {'reset' if kind == 'reset' else 'restored'}")
@@ -334,40 +317,26 @@ class LiveBench:
         past.adopt(self.history, first, tick)
         return past
 
-    def rewind(self) -> None:
-        """Let the history follow a tape that went to another tick."""
-        if not self._rewind():
-            self.history = self.empty_history()
-
-    def _rewind(self) -> bool:
+    def rewind(self) -> bool:
         """End the history at the tick of the board; false if the history does not have this tick."""
         if not self.history.first_tick <= self.board.tick <= self.history.end_tick:
             return False
         self.history.end_tick = self.board.tick
         return True
 
-    def _take_past(self, past: History | None, tick: int) -> None:
-        """Begin the history again with the samples of another bench, or of a branch of this one."""
+    def begin_history(self, past: History | None = None) -> None:
+        """Begin the history again, with samples of the past if there are any."""
         if past is not None and past.capacity == self.history.capacity:
             self.history = past
         else:
             self.history = self.empty_history()
             if past is not None:
-                self.history.adopt(past, past.first_tick, tick)
+                self.history.adopt(past, past.first_tick, past.end_tick)
 
     def empty_history(self, ticks: int | None = None) -> History:
         """Return a history with nothing in it."""
         signals = self.board.signals
         return History(signals.outputs, len(signals.taps), self._history_ticks if ticks is None else ticks)
-
-    @property
-    def branch(self) -> int:
-        """The branch of time of now."""
-        return self._branches.current
-
-    def has_in_past(self, branch: int, tick: int) -> bool:
-        """Whether the ticks before a tick of a branch are in the past of the present state."""
-        return self._branches.share(branch, tick)
 
     def done(self, deed: Deed) -> None:
         """Add an action on the board to the journal."""

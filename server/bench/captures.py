@@ -164,7 +164,7 @@ class Captures:
 
     def follow(self) -> None:
         """Follow the bench: after it went back, captures ahead of it are not in its past."""
-        branch, head = self._bench.branch, self._bench.history.end_tick
+        branch, head = self._bench.branches.current, self._bench.history.end_tick
         if branch != self._branch or head < self._head:
             for one in self._sets.values():
                 one.retain([capture for capture in one.captures if self._is_past(capture, head)])
@@ -207,7 +207,7 @@ class Captures:
         return None
 
     def _is_past(self, capture: Capture, head: int) -> bool:
-        return capture.stop <= head and self._bench.has_in_past(capture.crossing.branch, capture.stop)
+        return capture.stop <= head and self._bench.branches.share(capture.crossing.branch, capture.stop)
 
     def _copy(self, one: CaptureSet, room: int) -> int:
         """Copy at most a number of samples; return how many more may be copied."""
@@ -219,7 +219,11 @@ class Captures:
             at = coming.start + coming.copied
             end = min(at + max(1, room // len(one.columns)), coming.stop)
             part = history.read(one.columns, at, end)
-            if at < history.first_tick or part.shape[1] != end - at or coming.crossing.branch != self._bench.branch:
+            if (
+                at < history.first_tick
+                or part.shape[1] != end - at
+                or coming.crossing.branch != self._bench.branches.current
+            ):
                 one.coming = None  # the bench was faster, or has gone back meanwhile
                 continue
             coming.samples[:, coming.copied : coming.copied + end - at] = part
@@ -234,7 +238,7 @@ class Captures:
         crossing = one.waiting.popleft()
         start = max(crossing.tick - one.what.before, 0)
         ticks = crossing.tick - one.what.before + one.what.window - start
-        if start < history.first_tick or crossing.branch != self._bench.branch:
+        if start < history.first_tick or crossing.branch != self._bench.branches.current:
             return None
         if len(one.captures) >= MOST:
             one.drop_oldest()

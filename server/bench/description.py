@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from core.board.spec import Section
 from core.board.words import describe
 from core.cards import card
+from core.device.two_axis import TwoAxis
 from core.faults.fault import FaultParams
 from server.bench.commands import MAX_PENDING
 from server.bench.status import (
@@ -100,7 +102,7 @@ def bench_of(bench: LiveBench, around: dict[str, Any], view3d: str | None) -> Be
         dt_ms=bench.dt_ms,
         sample_rate_khz=spec.frame.sample_rate_khz,
         samples=bench.scenario.samples,
-        drive_period_ticks=bench.drive_period_ticks,
+        drive_period_ticks=period_of(bench),
         history_ticks=bench.history.capacity,
         axes=list(spec.axes),
         signals=list(bench.signals),
@@ -121,6 +123,15 @@ def bench_of(bench: LiveBench, around: dict[str, Any], view3d: str | None) -> Be
         opened=bench.opened,
         keep=bench.keep,
     )
+
+
+def period_of(bench: LiveBench) -> float | None:
+    """Return the period of the reference in ticks, if it has one; of the driven axis where the plant has axes."""
+    spec = bench.board.spec
+    if isinstance(spec.nominal, TwoAxis):
+        return 2.0 * math.pi / (spec.nominal.drive_frequency * bench.dt_ms)
+    frequency = getattr(spec.reference.params, "frequency_hz", None)
+    return 1e3 / (float(frequency) * bench.dt_ms) if isinstance(frequency, int | float) and frequency else None
 
 
 def factors_of(section: Section) -> list[dict[str, float]]:

@@ -133,7 +133,8 @@ class Playing(DeviceTime):
     def _jump(self) -> None:
         """Let history and clock follow the tape."""
         self.steps.end()
-        self._bench.rewind()
+        if not self._bench.rewind():
+            self._bench.begin_history()
         if self.ends_at is None:
             self.ends_at = self._tape.end
         self._anchor()

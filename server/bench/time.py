@@ -12,6 +12,7 @@ from core.errors import InputError
 from core.format import format_short
 from server.bench import commands
 from server.bench.commands import MAX_PENDING, Step, StepPeriod
+from server.bench.description import period_of
 from server.bench.events import Event
 from server.bench.pacing import Pacer
 from server.metrics import Metrics
@@ -110,7 +111,7 @@ class Steps:
 
     def _period(self) -> int:
         """Return the drive period in ticks, at most the longest step allowed."""
-        period = self._bench.drive_period_ticks
+        period = period_of(self._bench)
         if period is None:
             raise InputError("the reference has no period", "kind", "step a number of ticks", "conflict")
         return max(1, min(LONGEST_PERIOD, round(period)))

@@ -21,6 +21,7 @@ from core.format import format_in
 from core.plant.plane import PlaneParams
 from core.sense.dual_beam import DualBeam
 from server.bench.bench import LiveBench
+from server.bench.description import period_of
 from server.view3d.layout import FloatArray, Layout
 from server.view3d.motion import (
     TURN_EXAGGERATIONS,
@@ -148,7 +149,7 @@ class Observer:
         head = history.end_tick if looked is None else looked + 1
         if head <= history.first_tick:
             return Pose()
-        period = session.drive_period_ticks
+        period = period_of(session)
         # A bench that runs as fast as possible is strobed like a bench in real time.
         rate = (session.status.achieved_scale if session.is_running else 0.0) / (session.dt_ms * 1e-3)
         at = moment(head, period, rate if looked is None else 0.0, time.monotonic())

@@ -199,4 +199,4 @@ def layout_of(session: LiveBench) -> Layout | Parts:
     device.
     """
     axes = session.board.spec.axes
-    return Parts(axes) if axes else Layout(session.geometry)
+    return Parts(axes) if axes else Layout(session.board.spec.device.drawing)

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.registry import catalog
-from server.bench.bench import LiveBench
+from server.bench import description
 from tests.server.test_bad_input import check
 
 EXTREMES = [5e-324, -5e-324, 1e-310, 2.3e-308, 1e-200, 1e-60, -0.0, 1e30, 2**63, 1e100, 1e200, -1.7e308, 1.7e308]
@@ -94,10 +94,10 @@ def test_every_parameter_at_its_extremes_is_refused_or_works(live: Any, examples
 def test_a_bench_that_cannot_be_described_hides_no_other(live: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     broken, other = live.bench("first-look"), live.bench("first-look")
 
-    def period(self: LiveBench) -> float:
-        return 1.0 / (self.id != broken["id"])
+    def period(bench: Any) -> float:
+        return 1.0 / (bench.id != broken["id"])
 
-    monkeypatch.setattr(LiveBench, "drive_period_ticks", property(period))
+    monkeypatch.setattr(description, "period_of", period)
     listed = live.http.get("/api/v1/benches")
     assert [bench["id"] for bench in listed.json()["benches"]] == [other["id"]]
     assert live.http.delete(f"/api/v1/benches/{broken['id']}").status_code == 204
@@ -105,6 +105,6 @@ def test_a_bench_that_cannot_be_described_hides_no_other(live: Any, monkeypatch:
 
 def test_a_bench_that_cannot_be_described_at_first_is_closed_again(live: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as patched:
-        patched.setattr(LiveBench, "drive_period_ticks", property(lambda _: 1.0 / 0.0))
+        patched.setattr(description, "period_of", lambda _: 1.0 / 0.0)
         assert live.http.post("/api/v1/benches", json={"scenario": "first-look"}).status_code == 500
     assert live.http.get("/api/v1/benches").json() == {"benches": []}

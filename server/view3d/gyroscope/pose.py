@@ -14,6 +14,7 @@ from core.board.spec import Spec
 from core.control.sense_axis_sync import SenseAxisSync
 from core.format import format_short
 from server.bench.bench import LiveBench
+from server.bench.description import period_of
 from server.view3d.gyroscope.orbit import caption, full_scale, magnified, met
 from server.view3d.layout import FloatArray
 from server.view3d.motion import SEEN_HZ, STROBE_HZ
@@ -88,7 +89,7 @@ class GyroscopeObserver:
         session, history = self._session, self._session.history
         looked = kept(history, looked)
         head = history.end_tick if looked is None else looked + 1
-        period = session.drive_period_ticks or 1.0
+        period = period_of(session) or 1.0
         first = max(head - math.ceil(PERIODS * period), history.first_tick)
         if head <= history.first_tick:
             return GyroscopePose()

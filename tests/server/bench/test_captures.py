@@ -29,15 +29,8 @@ class Bench:
     """A bench of two signals, the second the negative of the first; its views look at it as pages do."""
 
     def __init__(self, capacity: int = 4096, most_bytes: int = 10**6) -> None:
-        self.history, self._branches = History(1, 1, capacity), Branches()
+        self.history, self.branches = History(1, 1, capacity), Branches()
         self.captures = Captures(self, most_bytes)
-
-    @property
-    def branch(self) -> int:
-        return self._branches.current
-
-    def has_in_past(self, branch: int, tick: int) -> bool:
-        return self._branches.share(branch, tick)
 
     def run(self, ticks: int, sign: float = 1.0) -> None:
         part = sign * wave(np.arange(self.history.end_tick, self.history.end_tick + ticks))[:, None]
@@ -45,7 +38,7 @@ class Bench:
 
     def go_back(self, tick: int) -> None:
         self.history.end_tick = tick
-        self._branches.begin(self.branch, tick)
+        self.branches.begin(self.branches.current, tick)
 
     # what views ask of a bench
 

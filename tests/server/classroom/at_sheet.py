@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from tests.server.classroom.group import Somebody, the_teacher
-
 from scenarios.sheets.progress import Progress
+from tests.server.classroom.group import Somebody, the_teacher
 from tests.server.conftest import Live
 
 API = "/api/v1"

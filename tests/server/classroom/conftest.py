@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.server.classroom.group import open_class
 
+from tests.server.classroom.group import open_class
 from tests.server.conftest import Live, serving
 from tests.server.forks import forks
 

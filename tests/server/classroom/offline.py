@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from tests.server.classroom.at_sheet import AtSheet
-
 from core.board.commands import parse_command
 from scenarios import sheets
 from scenarios.edit import with_values
@@ -21,6 +19,7 @@ from server.classroom.sheet_view import view_of
 from server.classroom.sheet_watch import SheetWatch
 from server.clock import ManualClock
 from server.metrics import Metrics
+from tests.server.classroom.at_sheet import AtSheet
 
 
 class Offline(AtSheet):

@@ -6,9 +6,6 @@ import re
 from typing import Any
 
 import pytest
-from tests.server.classroom.group import Somebody, advance, closed_with, join, open_class, the_teacher, watcher
-from tests.server.classroom.test_blind_doors import ENDING
-from tests.server.classroom.test_doors import code_of
 
 from core.board.commands import parse_command
 from core.device.drawn import device_of
@@ -17,6 +14,9 @@ from server.api.view3d import SUBPROTOCOL as SCENE
 from server.bench.hiding import STOPPED
 from server.classroom.access import DOORS, OPEN_WHILE_BLIND, SOCKET, Need
 from server.stream.hub import CLOSE_TURNED
+from tests.server.classroom.group import Somebody, advance, closed_with, join, open_class, the_teacher, watcher
+from tests.server.classroom.test_blind_doors import ENDING
+from tests.server.classroom.test_doors import code_of
 from tests.server.conftest import Live
 
 

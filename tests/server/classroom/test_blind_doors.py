@@ -15,14 +15,14 @@ from urllib.parse import urlsplit
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from tests.server.classroom.group import Somebody, join, open_class, the_teacher
-from tests.server.classroom.test_doors import COMMANDS
 
 from scenarios.library import get
 from server.bench import blind
 from server.bench.bench import LiveBench
 from server.classroom.access import ALL, DOORS, OPEN_WHILE_BLIND, SOCKET, Need
 from server.classroom.classes import Classes
+from tests.server.classroom.group import Somebody, join, open_class, the_teacher
+from tests.server.classroom.test_doors import COMMANDS
 from tests.server.conftest import Live
 
 BEFORE, AFTER = 50, 450

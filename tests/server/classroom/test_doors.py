@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, get_args
 
 import pytest
-from tests.server.classroom.group import Somebody, join, on_loop, open_class, the_teacher, watcher
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 from websockets.typing import Subprotocol
@@ -18,6 +17,7 @@ from server.bench.commands import RUN_KINDS
 from server.classroom.access import DOORS, SOCKET, TESTING_DOORS, Need, need_of
 from server.settings import Settings
 from server.stream.wire import SUBPROTOCOL
+from tests.server.classroom.group import Somebody, join, on_loop, open_class, the_teacher, watcher
 from tests.server.security.test_auth import routes
 
 ROLES = ("teacher", "student", "other student", "borrower", "onlooker", "watcher", "other watcher", "stranger")

@@ -11,14 +11,14 @@ from typing import Any
 
 import pytest
 from sqlalchemy import select
-from tests.server.classroom.group import Somebody, join, open_class, the_teacher, watcher
-from tests.server.classroom.test_blind_doors import BEFORE, LONG, fetched, run, streamed
-from tests.server.classroom.test_blind_doors import live as still  # noqa: F401  (a fixture)
 
 from scenarios.campaign.executor import Processes
 from scenarios.games import GAMES, states
 from scenarios.games.states import Hidden
 from server.store.people import GameAttemptRow
+from tests.server.classroom.group import Somebody, join, open_class, the_teacher, watcher
+from tests.server.classroom.test_blind_doors import BEFORE, LONG, fetched, run, streamed
+from tests.server.classroom.test_blind_doors import live as still  # noqa: F401  (a fixture)
 from tests.server.conftest import Live
 
 FILTER, FOOL = "/api/v1/games/be-the-filter", "/api/v1/games/fool-the-bank"

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from tests.server.classroom.group import Somebody, advance, closed_with, join, on_loop, the_teacher, watcher
 
 from server.classroom.people import People
+from tests.server.classroom.group import Somebody, advance, closed_with, join, on_loop, the_teacher, watcher
 from tests.server.conftest import Live
 
 

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from tests.server.classroom.at_sheet import API, AtSheet
-from tests.server.classroom.group import join, open_class
-from tests.server.classroom.test_blind_doors import plain
 
 from server.bench import blind
 from server.classroom.access import DOORS, Need, serves_blind
 from server.classroom.classes import Classes
+from tests.server.classroom.at_sheet import API, AtSheet
+from tests.server.classroom.group import join, open_class
+from tests.server.classroom.test_blind_doors import plain
 from tests.server.conftest import Live
 
 SHEET = """+++

@@ -7,11 +7,6 @@ import random
 from typing import Any
 
 import pytest
-from tests.server.classroom.group import Somebody, advance, join, open_class
-from tests.server.classroom.offline import Offline
-from tests.server.classroom.test_sheet_lessons import LESSONS
-from tests.server.classroom.test_sheets import OWN
-from tests.server.classroom.test_survival import LEFT_OR_KILLED, Servers
 
 from core.board.stored import Stored, revived, stored
 from server.bench.bench import LiveBench
@@ -19,6 +14,11 @@ from server.bench.watch import KeptWatch
 from server.classroom.sheet_watch import SheetWatch
 from server.clock import ManualClock
 from server.metrics import Metrics
+from tests.server.classroom.group import Somebody, advance, join, open_class
+from tests.server.classroom.offline import Offline
+from tests.server.classroom.test_sheet_lessons import LESSONS
+from tests.server.classroom.test_sheets import OWN
+from tests.server.classroom.test_survival import LEFT_OR_KILLED, Servers
 
 
 class Crashing(Offline):

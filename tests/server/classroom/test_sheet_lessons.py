@@ -8,13 +8,13 @@ from contextlib import suppress
 from typing import Any
 
 import pytest
-from tests.server.classroom.at_sheet import AtSheet, response
-from tests.server.classroom.offline import Offline
 
 from core.errors import InputError
 from scenarios import sheets
 from scenarios.sheets.judge import judge
 from scenarios.sheets.sheet import Prediction, Question
+from tests.server.classroom.at_sheet import AtSheet, response
+from tests.server.classroom.offline import Offline
 from tests.server.conftest import Live
 
 

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.server.classroom.at_sheet import API, AtSheet, response
-from tests.server.classroom.group import Somebody, advance, join, open_class, the_teacher, watcher
 
 from server.classroom.grades import safe
+from tests.server.classroom.at_sheet import API, AtSheet, response
+from tests.server.classroom.group import Somebody, advance, join, open_class, the_teacher, watcher
 from tests.server.conftest import Live
 
 OWN = """+++

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.server.classroom.group import Somebody, advance, join, open_class, the_teacher
 
 from scenarios.run import build
 from scenarios.schema import Scenario
+from tests.server.classroom.group import Somebody, advance, join, open_class, the_teacher
 from tests.server.conftest import Live
 
 LEFT_OR_KILLED = ["left", pytest.param("killed", marks=pytest.mark.long)]

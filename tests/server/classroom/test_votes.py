@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from sqlalchemy import select
-from tests.server.classroom.group import Somebody, join, on_loop, open_class
 
 from server.store.people import BallotRow, VoteRow
+from tests.server.classroom.group import Somebody, join, on_loop, open_class
 from tests.server.conftest import Live
 
 LANES = {

@@ -6,9 +6,9 @@ from typing import Any
 
 import httpx
 import pytest
+
 from tests.server.classroom.group import Somebody, closed_with, join, open_class
 from tests.server.classroom.test_classes import later
-
 from tests.server.conftest import Live
 
 HTML = {"Accept": "text/html"}

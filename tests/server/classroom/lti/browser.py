@@ -8,8 +8,8 @@ from typing import Any
 from urllib.parse import parse_qs, parse_qsl, urlsplit
 
 import httpx
-from tests.server.classroom.lti.platform import Platform
 
+from tests.server.classroom.lti.platform import Platform
 from tests.server.conftest import Live
 
 

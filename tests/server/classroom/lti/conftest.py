@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
+
 from tests.server.classroom.lti.browser import Browser
 from tests.server.classroom.lti.platform import Platform
-
 from tests.server.conftest import Live, serving
 
 FRAMES = ["https://moodle.example", "https://MOODLE.example:8443"]

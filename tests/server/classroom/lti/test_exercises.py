@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import jwt
+
+from server.classroom.lti.tool import Tool
 from tests.server.classroom.group import Somebody, on_loop
 from tests.server.classroom.lti.browser import Browser
 from tests.server.classroom.lti.platform import CLAIM, DEEP_LINKING, GRADES, MEMBERSHIP, SCORE
-
-from server.classroom.lti.tool import Tool
 from tests.server.conftest import Live
 
 

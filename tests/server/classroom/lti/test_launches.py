@@ -9,11 +9,11 @@ from typing import Any
 import jwt
 import pytest
 from sqlalchemy import select
+
+from server.store.people import LtiKeyRow
 from tests.server.classroom.group import Somebody
 from tests.server.classroom.lti.browser import Browser
 from tests.server.classroom.lti.platform import CLAIM, KID, MEMBERSHIP, key_of
-
-from server.store.people import LtiKeyRow
 from tests.server.conftest import Live
 from tests.server.world import Injector
 

@@ -11,9 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.server.classroom.group import Somebody, join, open_class
-from tests.server.classroom.lti.conftest import FRAMES
-from tests.server.classroom.test_doors import doors
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
@@ -24,6 +21,9 @@ from server.classroom.access import DOORS, LTI_DOORS, TESTING_DOORS, Need
 from server.security.once import Once
 from server.settings import Settings, load_settings
 from server.stream.wire import SUBPROTOCOL
+from tests.server.classroom.group import Somebody, join, open_class
+from tests.server.classroom.lti.conftest import FRAMES
+from tests.server.classroom.test_doors import doors
 from tests.server.conftest import Live
 
 PLATFORM = {

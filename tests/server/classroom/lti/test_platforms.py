@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 from cryptography.hazmat.primitives.asymmetric import ec
 from jwt.algorithms import ECAlgorithm
-from tests.server.classroom.lti.browser import Browser
-from tests.server.classroom.lti.platform import CLAIM, DEEP_LINKING, GRADES, KID, key_of, public_key
 
 from server.classroom.lti.keys import AGAIN_S, KEPT_S
+from tests.server.classroom.lti.browser import Browser
+from tests.server.classroom.lti.platform import CLAIM, DEEP_LINKING, GRADES, KID, key_of, public_key
 from tests.server.conftest import Live
 
 NOW = 1_800_000_000

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from server.bench.description import period_of
 from server.view3d.colours import SILICON
 from server.view3d.gyroscope import pose as pose_module
 from server.view3d.gyroscope.body import ABOVE_UM
@@ -82,7 +83,7 @@ def test_the_mass_is_where_the_signals_say_by_the_factors_of_the_caption(live: A
             orbit = scene._bodies[0]._orbit.points
             np.testing.assert_allclose(orbit[-1, 1] * UM_PER_UNIT, (x * fx, y * fy, TOP_UM + ABOVE_UM), atol=1e-3)
             assert 0.9 * 5.0 * fx < np.abs(orbit[..., 0]).max() * UM_PER_UNIT < 1.05 * 5.0 * fx
-        assert session.drive_period_ticks == pytest.approx(1e5 / 3925.29, rel=1e-3)
+        assert period_of(session) == pytest.approx(1e5 / 3925.29, rel=1e-3)
         assert (scene._rate.text, pose.turn) == ("rate +100\u00a0deg/s", 0.5)
         assert not scene._force.visible and "not to scale" in scene._caption.text
 
