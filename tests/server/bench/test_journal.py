@@ -56,8 +56,9 @@ class Traveller:
         self.kept: list[str] = []
 
     def run(self, ticks: int) -> None:
-        if self.bench.board.trip is None:
-            forward(self.bench, self.bench.board.tick + ticks)
+        end = self.bench.board.tick + ticks
+        while self.bench.board.trip is None and self.bench.board.tick < end:
+            self.bench.advance(end - self.bench.board.tick)
 
     def command(self, number: int) -> None:
         document = COMMANDS[number % len(COMMANDS)]
