@@ -16,7 +16,7 @@ from starlette.websockets import WebSocket
 from server.api.compression import takes_gzip
 from server.api.gate import page, wants_page
 
-DIST = Path(__file__).resolve().parent.parent / "web" / "dist"
+DIST = Path(__file__).resolve().parents[2] / "web" / "dist"
 OURS = ("/api/", "/health/", "/benches/", "/assets/", "/lti")
 """An unknown path below these is an error, not a page."""
 
