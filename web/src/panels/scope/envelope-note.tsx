@@ -15,7 +15,7 @@ interface EnvelopeNoteProps {
   plot: RefObject<ScopePlot | undefined>;
 }
 
-/** Says that a filled band is the envelope of a tone too fast for the window, so that nobody takes it for a signal. */
+/** Says that a filled band is the envelope of a tone too fast for the window and not a signal. */
 export function EnvelopeNote({ traces, plot }: EnvelopeNoteProps) {
   const [bands, setBands] = useChanged<Banded | undefined>(undefined);
   useEffect(() => {
@@ -34,7 +34,7 @@ export function EnvelopeNote({ traces, plot }: EnvelopeNoteProps) {
     `The band reaches from the least to the largest value in it: ${names}. A shorter window shows the signal.`;
   return (
     <Tooltip label={label} multiline w={280}>
-      {/* biome-ignore lint/a11y/noNoninteractiveTabindex: what it means is read by keys too */}
+      {/* biome-ignore lint/a11y/noNoninteractiveTabindex: keys reach its explanation too */}
       <span className={styles.band} role="note" aria-label={`envelope: ${label}`} tabIndex={0}>
         envelope
       </span>

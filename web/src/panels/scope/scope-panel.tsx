@@ -1,5 +1,4 @@
-import { Box } from "@mantine/core";
-import "uplot/dist/uPlot.min.css";
+import { Box, Text } from "@mantine/core";
 import { useCallback, useEffect, useMemo, useRef, useState } from "react";
 import { behindText, useBehind } from "../../bench/behind";
 import { marksNow } from "../../bench/marks";
@@ -39,7 +38,7 @@ interface ScopePanelProps {
   onChange(config: ScopeConfig): void;
 }
 
-/** An oscilloscope: rolls, triggers, or stands still on a span of the past while the board runs on. */
+/** An oscilloscope: it rolls, triggers, or shows a span of the past while the board runs on. */
 export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
   const { config, drives } = useOnBench(kept);
   const scheme = useScheme();
@@ -123,7 +122,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
     };
   }, [traces, tracesBehind, ghosts, ghost, config.log, scheme, fontSize, look, goLive, feed]);
 
-  // biome-ignore lint/correctness/useExhaustiveDependencies: what is printed is drawn anew
+  // biome-ignore lint/correctness/useExhaustiveDependencies: other printed marks need another picture
   useEffect(() => feed.current?.redraw(), [printed, isPrinted, feed]);
 
   const rearm = useCallback(() => feed.current && stream.client.feeds.rearm(feed.current), [feed]);
@@ -200,7 +199,11 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
           {captures && (
             <CaptureStrip captures={captures} standing={capture} dtMs={dtMs} onStand={stand} onBrowse={browse} />
           )}
-          {behind.length > 0 && <p className={styles.behind}>{behindText(behind, difference)}</p>}
+          {behind.length > 0 && (
+            <Text inherit truncate c="dimmed" fz="sm" p="0 12px 4px">
+              {behindText(behind, difference)}
+            </Text>
+          )}
           {printed.length > 0 && <PrintedLine marks={printed} />}
           {config.measure && <MeasureStrip traces={traces} plot={plot} at={cursors} />}
         </>

@@ -17,12 +17,12 @@ const PRESETS: { title: string; pick: RegExp }[] = [
   { title: "Fault severity", pick: /^faults\./ },
 ];
 
-export interface Preset {
+interface Preset {
   title: string;
   signals: string[];
 }
 
-/** The presets of a bench, without those of which it has no signal. */
+/** The presets with signals on a bench. */
 export const presetsOn = (signals: readonly { name: string }[]): Preset[] =>
   PRESETS.map(({ title, pick }) => ({
     title,

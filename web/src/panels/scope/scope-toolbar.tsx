@@ -17,7 +17,7 @@ interface ScopeToolbarProps {
   children: ReactNode;
 }
 
-/** What a scope shows and how: signals, roll or trigger, window, live. */
+/** The tools of a scope: signals, roll or trigger, window, live. */
 export function ScopeToolbar({ config, onChange, past, onLive, trigger, exporter, children }: ScopeToolbarProps) {
   return (
     <div className={`line ${styles.toolbar}`}>
@@ -53,7 +53,7 @@ export function ScopeToolbar({ config, onChange, past, onLive, trigger, exporter
           variant={config.measure ? "light" : "default"}
           aria-label="Measure"
           aria-pressed={config.measure ?? false}
-          title="Cursors A and B, and figures over what is visible"
+          title="Cursors A and B, and figures over the visible span"
           onClick={() => onChange({ ...config, measure: !config.measure })}
         >
           <IconRuler2 size={15} />

@@ -11,7 +11,7 @@ interface SignalPickerProps {
   onLog(isLog: boolean): void;
 }
 
-/** Every signal of the bench by block, searchable, with what it means beside it; and the scale. */
+/** Every signal of the bench by block with its meaning, a search, and the scale. */
 export function SignalPicker({ chosen, onChange, isLog, onLog }: SignalPickerProps) {
   const signals = useBench((s) => s.bench?.signals);
   const [query, setQuery] = useState("");
