@@ -1,13 +1,13 @@
 import type { Signal } from "../../api/types";
 
 /** Another signal on the same axis, in a colour of its own. */
-export interface Rival {
+interface Rival {
   signal: string;
   /** Slot in `TRACE_COLOURS`. */
   slot: number;
 }
 
-/** One field of the adaptation view: an inner signal, and what it should be. */
+/** One field of the adaptation view: an inner signal and its ideal value. */
 export interface Strip {
   title: string;
   unit: string;
@@ -15,7 +15,7 @@ export interface Strip {
   /** Slot in `TRACE_COLOURS`, unless the usual one. */
   slot?: number;
   rivals?: Rival[];
-  /** What it would be if everything were known. */
+  /** Its ideal value, which needs a known device. */
   ideal?: string;
   /** A sign that theory forbids is worth seeing. */
   negative?: boolean;
@@ -24,7 +24,7 @@ export interface Strip {
 }
 
 /** A block that adapts, estimates or slides, with its strips. */
-export interface AdaptiveUnit {
+interface AdaptiveUnit {
   block: string;
   strips: Strip[];
 }
@@ -60,10 +60,10 @@ export const signalsOf = ({ signal, ideal, rivals = [] }: Strip): string[] => [
   ...rivals.map((r) => r.signal),
 ];
 
-/** What makes a block one that adapts, as against one that merely has an error. */
+/** A block with one of these signals adapts; an error alone does not count. */
 const ADAPTS = /^(gain|parameter|estimate)\.|^(gain|surface|lyapunov)$/;
 
-/** Every unit of a bench that adapts, with what there is to see of it. */
+/** Every unit of a bench that adapts, with its strips. */
 export function adaptiveUnits(signals: readonly Signal[], layers: Record<string, number> = {}): AdaptiveUnit[] {
   const names = new Map(signals.map((s) => [s.name, s]));
   const blocks = new Map<string, Signal[]>();

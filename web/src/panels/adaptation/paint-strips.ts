@@ -29,7 +29,7 @@ const fieldOf = ({ width, height }: Box, { fontSize }: Look): Field => ({
   bottom: height - AXIS_PX,
 });
 
-/** Strips under one another: each an inner signal over time, dashed what it should be. */
+/** Strips under one another: in each an inner signal over time, and dashed its ideal value. */
 export function paintStrips(pen: Pen, box: Box, shown: LaneShown, strips: readonly Strip[], look: Look): void {
   const field = fieldOf(box, look);
   const each = field.bottom / strips.length;
@@ -112,7 +112,7 @@ function paintStrip(
   pen.fillText(words, 4, middle + fontSize * 0.75, left - 12);
 }
 
-/** What theory forbids: bars down to zero wherever a value is above it. */
+/** Values above zero, which theory forbids, as bars down to zero. */
 function paintForbidden(
   pen: Pen,
   high: Float32Array,
@@ -126,7 +126,7 @@ function paintForbidden(
   });
 }
 
-/** Ends of a strip's axis: whole ticks around all that is seen, so that it moves seldom. */
+/** Ends of the axis of a strip: whole ticks around every value, so that it moves seldom. */
 export function stripRange(values: Iterable<number>): [number, number] {
   let low = Number.POSITIVE_INFINITY;
   let high = Number.NEGATIVE_INFINITY;

@@ -4,7 +4,7 @@ import { EquationDetail } from "../../ui/equation-detail";
 import { Formula } from "../../ui/formula";
 import styles from "./card.module.css";
 
-/** An equation with its number; where the printed one is wrong, a mark opens what was printed and why not. */
+/** An equation with its number; where the printed one is wrong, a mark opens the printed form and the reason. */
 export function BlockEquation({ equation }: { equation: Equation }) {
   return (
     <figure className={styles.equation}>

@@ -1,4 +1,4 @@
-import { Box, Button } from "@mantine/core";
+import { Box, Button, Group } from "@mantine/core";
 import { IconCheck, IconClock, IconX } from "@tabler/icons-react";
 import { useMay } from "../../api/me";
 import type { Claim, ClaimList } from "../../api/types";
@@ -24,7 +24,7 @@ interface ClaimCardProps {
   onOpen(isOpen: boolean): void;
 }
 
-/** One claim: ticked or crossed, printed and measured side by side, and where it begins to hold. */
+/** One claim: ticked or crossed, printed and measured side by side, and the range where it holds. */
 export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
   const teaches = useMay("teach");
   const words = claimWords(claim);
@@ -42,10 +42,10 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
         {ICONS[claim.state]}
       </span>
       <Box flex={1} miw={0}>
-        <div className={styles.head}>
+        <Group gap="4px 10px" align="baseline">
           <h3>{words.name}</h3>
           {claim.state !== "not yet" && <Verdict verdict={claim.verdict} borneOut />}
-        </div>
+        </Group>
         <dl className={styles.numbers}>
           <div>
             <dt>printed</dt>
@@ -60,12 +60,12 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
           </div>
           <div>
             <dt>measured</dt>
-            <dd data-expected={claim.as_expected} className={styles.measured}>
+            <Box component="dd" fz="md" fw={650}>
               {words.measured}
               {claim.state !== "not yet" && claim.as_expected === false && claim.is_published && (
                 <small>other than expected</small>
               )}
-            </dd>
+            </Box>
           </div>
         </dl>
         {said.map((text) => (
@@ -73,16 +73,16 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
             {text}
           </Box>
         ))}
-        {readings.length > 0 && <p className={styles.reading}>Drawn: {readings.join("; ")}.</p>}
-        {problems.map((text) => (
-          <p key={text} className={styles.reading}>
-            Not drawn: {text}.
-          </p>
+        {[
+          ...(readings.length > 0 ? [`Drawn: ${readings.join("; ")}.`] : []),
+          ...problems.map((text) => `Not drawn: ${text}.`),
+          ...(claim.note ? [`Why: ${claim.note}.`] : []),
+          ...(claim.fitted.length > 0 ? [`Chosen so that it agrees: ${claim.fitted.join(", ")}.`] : []),
+        ].map((text) => (
+          <Box component="p" key={text} className="remark" m="2px 0">
+            {text}
+          </Box>
         ))}
-        {claim.note && <p className={styles.reading}>Why: {claim.note}.</p>}
-        {claim.fitted.length > 0 && (
-          <p className={styles.reading}>Chosen so that it agrees: {claim.fitted.join(", ")}.</p>
-        )}
         <Box className="row" mt={8}>
           {teaches && claim.knobs.length > 0 && (
             <Button variant="light" aria-expanded={isOpen} onClick={() => onOpen(!isOpen)}>

@@ -3,7 +3,7 @@ import { formatFigure } from "../../ui/format";
 import { metricScale } from "../../ui/metric-name";
 
 /** The numbers of a claim in words, all in one unit. */
-export interface ClaimWords {
+interface ClaimWords {
   name: string;
   printed: string;
   expected: string;
@@ -32,7 +32,7 @@ export function claimWords(claim: Claim): ClaimWords {
   };
 }
 
-/** What a claim comes to, in a few words. */
+/** The state of a claim in a few words. */
 export function stateWords({ state, is_published }: Pick<Claim, "state" | "is_published">): string {
   if (state === "not yet") return "not yet";
   if (is_published) return state === "holds" ? "holds as printed" : "does not hold as printed";

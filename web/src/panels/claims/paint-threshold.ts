@@ -9,10 +9,10 @@ import { unitText } from "../../ui/unit-scale";
 import { roundRange } from "../scope/axis-range";
 
 const FAINT = 0.28;
-/** Beyond so many times what was measured, the axis does not reach for a bound. */
+/** A bound farther than this many ranges of the measured values is not on the axis. */
 const REACH = 1;
 
-/** The figure of a claim over the range of a number: what is printed hatched, what is expected dashed, where it turns. */
+/** The figure of a claim over the range of a number: printed range hatched, expected range dashed, and the turns. */
 export function paintThreshold(
   pen: Pen,
   box: Box,
@@ -73,7 +73,7 @@ export function paintThreshold(
   return plot;
 }
 
-/** What was measured, and the bounds that are not far from it. */
+/** The range of the measured values and of the bounds near them. */
 function rangeOf(claim: Claim, measured: readonly number[]): [number, number] {
   const [low, high] = [Math.min(...measured), Math.max(...measured)];
   const room = REACH * Math.max(high - low, 1e-9 + 0.2 * Math.abs(high));

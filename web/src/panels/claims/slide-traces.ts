@@ -60,7 +60,7 @@ export async function slideTraces(claim: Claim, { tick, bench_id }: ClaimList): 
   };
 }
 
-/** The smallest of some values that are there. */
+/** The smallest finite value. */
 const least = (values: Float32Array): number => {
   let found = Number.POSITIVE_INFINITY;
   for (const value of values) if (value < found) found = value;

@@ -3,7 +3,7 @@ import { type SeverityScale, severityText } from "../../bench/severity";
 import { roundTo } from "../../ui/unit-scale";
 import { type Condition, conditionText } from "../condition/condition";
 
-/** A number, or what stands in a field that holds none. */
+/** A number, or the text of a field without a number. */
 export type Entry = number | string;
 
 export interface FaultDraft {
@@ -15,13 +15,13 @@ export interface FaultDraft {
   moment: "now" | "at" | "when";
   atMs: Entry;
   when: Condition;
-  /** What else the fault lets one choose, as far as it was chosen. */
+  /** Chosen parameters of the fault. */
   parameters: Record<string, unknown>;
 }
 
 const SHARED = ["severity", "profile", "start_tick"];
 
-/** The parameters that are a fault's own. */
+/** The parameters that only this fault has. */
 export const ownParameters = (fault: Pick<BlockCard, "parameters">): Parameter[] =>
   fault.parameters.filter((p) => !SHARED.includes(p.name));
 
@@ -39,7 +39,7 @@ export function newDraft(severity: number): FaultDraft {
   };
 }
 
-/** What keeps the form from being sent, in words, by field; only fields that the choices use count. */
+/** Reasons against sending the form, by field; only fields that the choices use count. */
 export function refusals(
   draft: FaultDraft,
   scale: SeverityScale,
@@ -62,11 +62,11 @@ export function refusals(
 
 const isNumber = (entry: Entry): entry is number => typeof entry === "number" && Number.isFinite(entry);
 
-/** An entry in another unit; what is no number stays as it was typed. */
+/** An entry in another unit; a text stays as it was typed. */
 export const scaled = (entry: Entry, factor: number): Entry =>
   typeof entry === "number" ? roundTo(entry * factor, 10) : entry;
 
-/** The command that does what the form says; ask first what keeps it from being sent. */
+/** The command of the form; ask for refusals first. */
 export function injectCommand(fault: string, draft: FaultDraft): Command {
   const profile: FaultProfile =
     draft.profile === "ramp"
@@ -88,7 +88,7 @@ export const draftSeverity = (
   unit: string,
 ): string => (typeof severity === "number" ? severityText(severity, scale, unit) : "–");
 
-/** Where faults stand that name no group, such as those of other packages. */
+/** The group of faults without one, such as faults of other packages. */
 const OTHERS = "Others";
 
 /** Blocks under their headings; groups and members come in the order of the catalogue. */

@@ -30,7 +30,7 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
   const unit = parameter?.unit ?? "";
   const inject = () => {
     if (Object.keys(refusals(draft, scale, unit)).length > 0) {
-      if (!open) onToggle(); // the form says what is missing
+      if (!open) onToggle(); // the form has the refusals
       return;
     }
     void send(
@@ -48,10 +48,10 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
         </button>
         {active ? (
           <Box component="span" className="line" flex="none">
-            <b className={styles.acting}>
+            <Box component="b" c="var(--alarm)" fw={650} ta="right" style={{ whiteSpace: "nowrap" }}>
               {severityText(active.severity, scale, unit)}
               {active.since_tick !== undefined && <small> since {formatMoment(active.since_tick * dtMs)}</small>}
-            </b>
+            </Box>
             <Button onClick={() => send({ heal: [fault.name] }, `${fault.title} healed`)}>Heal</Button>
           </Box>
         ) : (
@@ -80,7 +80,7 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
   );
 }
 
-/** What was chosen about a fault that acts, such as where it sits. */
+/** Chosen parameters of an acting fault, such as its place. */
 function Chosen({ fault, active }: { fault: BlockCard; active: ActiveFault }) {
   const values = (active as { parameters?: Record<string, unknown> }).parameters ?? {};
   const words = ownParameters(fault)

@@ -1,4 +1,4 @@
-import { Button, NativeSelect } from "@mantine/core";
+import { Box, Button, NativeSelect } from "@mantine/core";
 import { useEffect, useState } from "react";
 import { games } from "../../api/games";
 import { queryClient, useAnswer } from "../../api/queries";
@@ -22,7 +22,7 @@ import styles from "./games.module.css";
 /** The table of a class grows while others play. */
 const EVERY_MS = 5000;
 
-/** Games with the bank: play on a bench that hides something, hand in numbers, see points and the table. */
+/** Games with the bank: play on a bench with hidden values, hand in numbers, see points and the table. */
 export function GamesPanel() {
   const { game, seed } = useGame();
   const cards = useAnswer(["games"], games.all);
@@ -72,7 +72,7 @@ export function GamesPanel() {
   );
 }
 
-/** One game at one seed: its task, the bench, what is handed in, what came of it, the table. */
+/** One game at one seed: its task, the bench, the hand-in, the outcome, the table. */
 function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean }) {
   const { seed, values } = useGame();
   const [busy, setBusy] = useState<"begin" | "judge" | undefined>(undefined);
@@ -91,7 +91,7 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
     run("begin", games.begin(card.id, seed, values), (now) => now.bench && openOwn(now.bench));
   };
   const reveal = () => {
-    if (window.confirm("Show what is hidden? You cannot hand in at this seed any more."))
+    if (window.confirm("Show the solution? You cannot hand in at this seed any more."))
       run("judge", games.reveal(card.id, seed));
   };
   const last = play.attempts.at(-1);
@@ -110,9 +110,9 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
           {on ? "Begin again" : "Play on a new bench"}
         </Button>
         {on && isBank && (
-          <small className={styles.note}>
+          <Box component="small" maw="40ch">
             R, Q and the floor act on the bench at once; a new sixth hypothesis when you begin again.
-          </small>
+          </Box>
         )}
       </div>
       {isBank ? <BankForm card={card} on={on} /> : <FaultForm kinds={play.kinds ?? []} on={on} />}
@@ -126,9 +126,9 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
         >
           Hand in
         </Button>
-        <small className={styles.note}>
+        <Box component="small" maw="40ch">
           {over ? "No attempt left at this seed." : `${formatCount(play.left, "attempt")} left`}
-        </small>
+        </Box>
         {over && (
           <Button variant="filled" size="sm" onClick={() => chooseGame(card.id, seed + 1)}>
             Next seed
@@ -136,21 +136,21 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
         )}
         {!over && play.attempts.length > 0 && (
           <Button variant="subtle" disabled={busy !== undefined} onClick={reveal}>
-            Show what is hidden
+            Show the solution
           </Button>
         )}
       </div>
       {last && (
         <div className={styles.outcome} role="status">
-          <p>
+          <Box component="p" maw="60ch" mb={8} fz="sm">
             {last.outcome.said}
             {play.best !== null && ` The best so far has ${formatNumber(play.best, 1)} points.`}
-          </p>
+          </Box>
           <Formula latex={last.outcome.worked} />
         </div>
       )}
       {play.hidden && (
-        <dl className={styles.facts} aria-label="What was hidden">
+        <dl className={styles.facts} aria-label="Solution">
           {play.hidden.map(({ name, said }) => (
             <div key={name}>
               <dt>{name}</dt>
@@ -171,6 +171,6 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
   );
 }
 
-/** What is handed in; where a fault is to be named, the one shown first if none was chosen. */
+/** The values to hand in; a fault that was not chosen is the first one of the menu. */
 const handedIn = ({ kinds = [] }: GamePlay, values: Record<string, number | string>) =>
   kinds.length > 0 ? { fault: kinds[0].name, ...values } : values;

@@ -6,7 +6,7 @@ import { PictureMenu } from "../../picture/picture-menu";
 import styles from "./hypotheses.module.css";
 import { aliasPicture, paintAliasSweep, paintPhasors } from "./paint-aliases";
 
-/** The motion of every hypothesis at the drive, as a point: those that lie together cannot be told apart. */
+/** The motion of every hypothesis at the drive, as a point: hypotheses at one point cannot be separated. */
 export function AliasPlot({ report }: { report: AliasReport }) {
   const [phasors, sweep] = useMemo(
     () =>

@@ -4,7 +4,7 @@ import styles from "./hypotheses.module.css";
 
 const SHOWN = 4;
 
-/** The closest pairs in numbers, and what one parameter is worth in the other. */
+/** The closest pairs in numbers, and the equivalent of one parameter in another. */
 export function AliasWords({ report }: { report: AliasReport }) {
   const { pairs, responses, stiffness_per_mass: worth, tones_hz: tones } = report.map;
   const noise = report.sensor_noise_um;

@@ -13,7 +13,7 @@ export function HypothesisTable({ list, onChange }: { list: Hypothesis[]; onChan
   const scheme = useScheme();
   const put = (index: number, next: Hypothesis) => onChange(list.map((h, i) => (i === index ? next : h)));
   return (
-    <div className={styles.scroll}>
+    <div style={{ overflowX: "auto" }}>
       <table className={styles.table}>
         <TableHead names={["Hypothesis", ...FACTORS, ""]} />
         <tbody>

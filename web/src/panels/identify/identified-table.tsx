@@ -33,7 +33,7 @@ const ROWS: { label: string; value: Key; error: Key; nominal: string; unit: stri
   },
 ];
 
-/** What the sweep says of the device, how sure it is, and how far that is from the nominal one. */
+/** The device by the sweep, with standard errors, and its distance from the nominal device. */
 export function IdentifiedTable({ result }: { result: Identification }) {
   return (
     <table className={`numbers ${styles.table}`}>

@@ -15,7 +15,7 @@ const MOST_TICKS = 2000;
 const USUAL_TICKS = 400;
 const EVERY_MS = 500;
 
-/** How well each board does what it should, and at what cost, over the last periods of the drive. */
+/** Errors and efforts of each board over the last periods of the drive. */
 export function TwinFigures({ boards, compared }: { boards: Board[]; compared: Compared }) {
   const scheme = useScheme();
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;

@@ -167,7 +167,7 @@ function Running({ vote, students, run }: RunningProps) {
           {results ? "Another question" : "Take it back"}
         </Button>
       </div>
-      <ul className={styles.answers} aria-label={results ? "What was said" : "Answers"}>
+      <ul className={styles.answers} aria-label={results ? "Results" : "Answers"}>
         {names.map((name, i) => (
           <li key={name} data-right={results !== null && right === question.answers[i]}>
             {inRoom ? (

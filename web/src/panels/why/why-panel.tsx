@@ -8,6 +8,7 @@ import type { Account, ApiErrorBody } from "../../api/types";
 import { useView } from "../../bench/view-store";
 import { askLatest, pickSample } from "../../bench/why";
 import { useBench } from "../../stream/bench-store";
+import { sentence } from "../../ui/capital";
 import { EmptyState } from "../../ui/empty-state";
 import { formatClock } from "../../ui/format";
 import { Formula } from "../../ui/formula";
@@ -109,7 +110,7 @@ export function WhyPanel() {
 /** A refusal as a sentence: what is said of the tick is said of this sample. */
 function inWords({ field, message }: ApiErrorBody, tick: number): string {
   const said = message.replace(`${field}: `, "");
-  return field === "tick" ? `Sample ${tick} ${said}.` : `${said.charAt(0).toUpperCase()}${said.slice(1)}.`;
+  return field === "tick" ? `Sample ${tick} ${said}.` : sentence(said);
 }
 
 function Explained({ account, waiting }: { account: Account; waiting: boolean }) {
