@@ -1,4 +1,5 @@
 import type { Signal } from "../../api/types";
+import { groupBy } from "../../ui/group-by";
 
 /** Another signal on the same axis, in a colour of its own. */
 interface Rival {
@@ -66,38 +67,27 @@ const ADAPTS = /^(gain|parameter|estimate)\.|^(gain|surface|lyapunov)$/;
 /** Every unit of a bench that adapts, with its strips. */
 export function adaptiveUnits(signals: readonly Signal[], layers: Record<string, number> = {}): AdaptiveUnit[] {
   const names = new Map(signals.map((s) => [s.name, s]));
-  const blocks = new Map<string, Signal[]>();
-  for (const signal of signals) {
-    const dot = signal.name.indexOf(".");
-    if (dot > 0) blocks.set(signal.name.slice(0, dot), [...(blocks.get(signal.name.slice(0, dot)) ?? []), signal]);
-  }
-  return [...blocks].flatMap(([block, own]): AdaptiveUnit[] => {
+  const ofBlocks = signals.filter(({ name }) => name.includes("."));
+  return groupBy(ofBlocks, ({ name }) => name.split(".")[0]).flatMap(([block, own]): AdaptiveUnit[] => {
     const port = (signal: Signal) => signal.name.slice(block.length + 1);
-    if (own[0].name.startsWith("faults.") || !own.some((s) => ADAPTS.test(port(s)))) return [];
+    if (block === "faults" || !own.some((s) => ADAPTS.test(port(s)))) return [];
     const strips: Strip[] = own.flatMap((signal) => {
       const [head, label] = port(signal).split(".");
       const pair = PAIRS[head];
       if (!pair) return [];
       const ideal = `${block}.${pair[0]}${label ? `.${label}` : ""}`;
-      return [
-        {
-          title: label ? `${pair[1]} ${label}` : pair[1],
-          unit: signal.unit,
-          signal: signal.name,
-          ...(names.has(ideal) ? { ideal } : {}),
-        },
-      ];
+      const title = label ? `${pair[1]} ${label}` : pair[1];
+      return [{ title, unit: signal.unit, signal: signal.name, ideal: names.has(ideal) ? ideal : undefined }];
     });
     for (const [scalar, title] of Object.entries(SCALARS)) {
       const signal = names.get(`${block}.${scalar}`);
       if (!signal) continue;
-      const layer = scalar === "surface" ? layers[block] : undefined;
       strips.push({
         title,
         unit: signal.unit,
         signal: signal.name,
-        ...(scalar === "lyapunov_rate" ? { negative: true } : {}),
-        ...(layer ? { layer } : {}),
+        negative: scalar === "lyapunov_rate",
+        layer: scalar === "surface" ? layers[block] : undefined,
       });
     }
     return [{ block, strips }];

@@ -62,13 +62,10 @@ function paintStrip(
   const y = placeOn({ range }, bottom, top);
   const at = placeOn({ range: [span.start, span.end] }, left, right);
   const x = (column: number) => at(tickOf(frame, column));
-  const trace = (signal: number, slot: number) =>
-    strokeEnvelope(
-      pen,
-      { x, y },
-      { low: lowest(frame, signal), high: largest(frame, signal) },
-      { colour: colours[slot], width: 1.6 },
-    );
+  const trace = (signal: number, slot: number) => {
+    const envelope = { low: lowest(frame, signal), high: largest(frame, signal) };
+    strokeEnvelope(pen, { x, y }, envelope, { colour: colours[slot], width: 1.6 });
+  };
 
   pen.fillStyle = ink.axis;
   pen.fillRect(left, bottom + 3, wide, 1);
@@ -79,12 +76,8 @@ function paintStrip(
     if (strip.layer) pen.fillRect(left, y(strip.layer), wide, y(-strip.layer) - y(strip.layer));
     if (ideal !== undefined) {
       const flat = largest(frame, ideal);
-      strokeEnvelope(
-        pen,
-        { x, y },
-        { low: flat, high: flat },
-        { colour: colours[0], width: 1.4, dashes: IDEAL_DASHES },
-      );
+      const stroke = { colour: colours[0], width: 1.4, dashes: IDEAL_DASHES };
+      strokeEnvelope(pen, { x, y }, { low: flat, high: flat }, stroke);
     }
     for (const rival of [...rivals].reverse()) trace(rival.at, rival.slot);
     trace(own, strip.slot ?? 1);

@@ -3,7 +3,8 @@ import { useMemo, useRef, useState } from "react";
 import type { BlockCard, Document } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { hypothesisWords } from "../../bench/hypothesis-words";
-import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
+import { pictureName } from "../../picture/picture";
+import { PictureMenu } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { middles, type PanelFrame } from "../../stream/panel-frame";
 import { EmptyState } from "../../ui/empty-state";
@@ -19,7 +20,7 @@ const PATH_COLUMNS = 200;
 /** A diagnoser that this panel can draw, and the signals for its drawing. */
 interface Drawn {
   id: string;
-  kind: "sets" | "regions";
+  title: string;
   signals: string[];
   columns: number;
   draw(frame: PanelFrame): Drawing | undefined;
@@ -34,7 +35,7 @@ export function BehaviourPanel() {
   const signals = useBench((s) => s.bench?.signals);
   const { block } = useCatalog();
   const [wanted, setWanted] = useState<string | undefined>(undefined);
-  const picture = useRef<TakePicture>(null);
+  const drawing = useRef<Drawing | undefined>(undefined);
   const regions = block("diagnose", "regions");
   const all = useMemo(() => {
     const known = new Set((signals ?? []).map((s) => s.name));
@@ -66,12 +67,12 @@ export function BehaviourPanel() {
     <section className="view" aria-label="Behaviour">
       <BehaviourPlot
         key={`${bench} ${shown.id}`}
-        title={shown.kind === "sets" ? "Behaviours" : "Regions of performance"}
+        title={shown.title}
         signals={shown.signals}
         windowMs={PATH_MS}
         columns={shown.columns}
         draw={shown.draw}
-        picture={picture}
+        drawing={drawing}
       >
         {all.length > 1 && (
           <NativeSelect
@@ -81,7 +82,7 @@ export function BehaviourPanel() {
             onChange={(e) => setWanted(e.currentTarget.value)}
           />
         )}
-        <PictureMenu take={() => picture.current?.()} />
+        <PictureMenu take={() => drawing.current && { ...pictureName(shown.title), height: 600, ...drawing.current }} />
       </BehaviourPlot>
     </section>
   );
@@ -104,7 +105,7 @@ function setsFrom(id: string, names: readonly string[]): Drawn {
   const each = names.flatMap((name) => [`${id}.sine.${name}`, `${id}.cosine.${name}`, `${id}.consistent.${name}`]);
   return {
     id,
-    kind: "sets",
+    title: "Behaviours",
     signals: [`${id}.verdict`, ...each],
     columns: 2,
     draw: ({ latest }) =>
@@ -133,7 +134,7 @@ function regionsFrom(id: string, parameters: Document | undefined, card: BlockCa
   const columns = tone > 0 ? Math.min(PATH_COLUMNS, Math.ceil((1e3 / tone / PATH_MS) * PATH_COLUMNS)) : 1;
   return {
     id,
-    kind: "regions",
+    title: "Regions of performance",
     signals: [`${id}.loss`, `${id}.region`, "sensor.displacement"],
     columns: PATH_COLUMNS,
     draw: (frame) => {

@@ -1,10 +1,8 @@
 import { Group, Text } from "@mantine/core";
-import { type ReactNode, type Ref, useImperativeHandle, useMemo, useRef } from "react";
+import { type ReactNode, type RefObject, useMemo, useRef } from "react";
 import type { LegendEntry } from "../../picture/legend";
 import { LiveCanvas } from "../../picture/live-canvas";
 import type { Box, Look, Pen } from "../../picture/pen";
-import { pictureName } from "../../picture/picture";
-import type { TakePicture } from "../../picture/picture-menu";
 import type { PanelFrame } from "../../stream/panel-frame";
 import type { Subscription } from "../../stream/wire";
 
@@ -21,23 +19,15 @@ interface BehaviourPlotProps {
   windowMs: number;
   columns: number;
   draw(frame: PanelFrame): Drawing | undefined;
-  picture: Ref<TakePicture>;
+  /** Keeps the newest drawing. */
+  drawing: RefObject<Drawing | undefined>;
   /** The tools, before the words. */
   children: ReactNode;
 }
 
 /** The canvas of a drawing that follows the bench, and its words. */
-export function BehaviourPlot({ title, signals, windowMs, columns, draw, picture, children }: BehaviourPlotProps) {
+export function BehaviourPlot({ title, signals, windowMs, columns, draw, drawing, children }: BehaviourPlotProps) {
   const words = useRef<HTMLParagraphElement>(null);
-  const drawing = useRef<Drawing | undefined>(undefined);
-  useImperativeHandle(
-    picture,
-    () => () => {
-      const shown = drawing.current;
-      return shown && { ...pictureName(title), legend: shown.legend, height: 600, paint: shown.paint };
-    },
-    [title],
-  );
 
   const subscription = useMemo<Subscription>(
     () => ({ mode: "roll", signals, window_ms: windowMs, width: columns }),

@@ -3,7 +3,7 @@ import { type ReactNode, useMemo, useState } from "react";
 import { blind } from "../../api/blind";
 import type { Question } from "../../api/types";
 import { hypothesisWords } from "../../bench/hypothesis-words";
-import { showError } from "../../bench/send";
+import { useBusy } from "../../bench/use-busy";
 import { useBench } from "../../stream/bench-store";
 import exercise from "../../ui/exercise.module.css";
 import { formatPercent, formatSi } from "../../ui/format";
@@ -26,12 +26,9 @@ export function Answer({ question, rule, onEnded }: AnswerProps) {
   const hasCome = useBench((s) => (s.bench?.tick ?? 0) >= by_tick);
   const [said, setSaid] = useState<string | undefined>(undefined);
   const [confidence, setConfidence] = useState(70);
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const known = useMemo(() => ({ answers: { kind: "", names: answers, factors } }), [answers, factors]);
-  const end = (ended: Promise<unknown>) => {
-    setBusy(true);
-    void ended.then(onEnded, showError).finally(() => setBusy(false));
-  };
+  const end = (ended: () => Promise<unknown>) => void during(() => ended().then(onEnded));
   return (
     <>
       <Stack gap={8} flex={1} p="8px 12px" style={{ overflowY: "auto" }} data-testid="question">
@@ -69,11 +66,11 @@ export function Answer({ question, rule, onEnded }: AnswerProps) {
           size="xs"
           loading={busy}
           disabled={said === undefined}
-          onClick={() => said && end(blind.answer(bench, said, confidence / 100))}
+          onClick={() => said && end(() => blind.answer(bench, said, confidence / 100))}
         >
           Commit the answer
         </Button>
-        <Button size="xs" variant="subtle" disabled={busy} onClick={() => end(blind.giveUp(bench))}>
+        <Button size="xs" variant="subtle" disabled={busy} onClick={() => end(() => blind.giveUp(bench))}>
           Give up
         </Button>
       </Box>

@@ -1,4 +1,4 @@
-import { Popover, UnstyledButton } from "@mantine/core";
+import { Box, Popover, UnstyledButton } from "@mantine/core";
 import type { Equation } from "../../api/types";
 import { EquationDetail } from "../../ui/equation-detail";
 import { Formula } from "../../ui/formula";
@@ -7,9 +7,9 @@ import styles from "./card.module.css";
 /** An equation with its number; where the printed one is wrong, a mark opens the printed form and the reason. */
 export function BlockEquation({ equation }: { equation: Equation }) {
   return (
-    <figure className={styles.equation}>
+    <Box component="figure" p="4px 0">
       <Formula latex={equation.latex} />
-      <figcaption>
+      <figcaption className="row remark">
         {equation.label && <span>{equation.label.replaceAll("_", " ")}</span>}
         {equation.source && <span>({equation.source})</span>}
         {equation.printed && (
@@ -25,6 +25,6 @@ export function BlockEquation({ equation }: { equation: Equation }) {
           </Popover>
         )}
       </figcaption>
-    </figure>
+    </Box>
   );
 }

@@ -45,14 +45,9 @@ export function instances(
   const controllers = [...driving, ...bench.controllers.filter((name) => !driving.includes(name))];
   const isFlat = bench.axes.length === 0;
   const sensor = text("sensor", "kind", isFlat ? "ideal" : "pick_off");
-  const single = (id: string, title: string, family: string, name: string): Instance => ({
-    id,
-    title,
-    family,
-    name,
-    path: id,
-    also: [],
-  });
+  const single = (id: string, title: string, family: string, name: string): Instance => {
+    return { id, title, family, name, path: id, also: [] };
+  };
   return [
     ...(isFlat
       ? [single("reference", "Reference", "reference", text("reference", "kind", "sine"))]

@@ -34,12 +34,7 @@ export function LiveValues({ instance }: { instance: Instance }) {
           size="compact-xs"
           variant="subtle"
           leftSection={<IconWaveSine size={14} />}
-          onClick={() =>
-            addScope(
-              instance.title,
-              own.slice(0, 6).map((s) => s.name),
-            )
-          }
+          onClick={() => addScope(instance.title, Object.keys(shown).slice(0, 6))}
         >
           Open in a scope
         </Button>

@@ -4,6 +4,7 @@ import { useMay } from "../../api/me";
 import type { Claim, ClaimList } from "../../api/types";
 import { addScope } from "../../bench/dock";
 import { placeIn } from "../../bench/printed";
+import { Figure } from "../../ui/figure";
 import { Verdict } from "../../ui/verdict";
 import { partnersOf } from "./claim-signals";
 import { claimWords, stateWords } from "./claim-words";
@@ -16,6 +17,8 @@ const ICONS = {
   fails: <IconX size={20} stroke={2.8} />,
   "not yet": <IconClock size={18} stroke={2} />,
 };
+
+const COLOURS = { holds: "var(--running)", fails: "var(--alarm)", "not yet": "dimmed" };
 
 interface ClaimCardProps {
   claim: Claim;
@@ -37,36 +40,27 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
   const drawn = [...new Set(claim.marks.flatMap(({ signal, problem }) => (problem ? [] : [signal])))];
   const problems = [...new Set(claim.marks.flatMap(({ problem }) => (problem ? [problem] : [])))];
   return (
-    <li className={styles.card} data-state={claim.state} aria-label={`${words.name}: ${stateWords(claim)}`}>
-      <span className={styles.mark} title={stateWords(claim)}>
+    <li className={styles.card} aria-label={`${words.name}: ${stateWords(claim)}`}>
+      <Box component="span" flex="none" w={26} c={COLOURS[claim.state]} title={stateWords(claim)}>
         {ICONS[claim.state]}
-      </span>
+      </Box>
       <Box flex={1} miw={0}>
         <Group gap="4px 10px" align="baseline">
           <h3>{words.name}</h3>
           {claim.state !== "not yet" && <Verdict verdict={claim.verdict} borneOut />}
         </Group>
         <dl className={styles.numbers}>
-          <div>
-            <dt>printed</dt>
-            <dd>
-              {words.printed}
-              {claim.published && <small>“{claim.published}”</small>}
-            </dd>
-          </div>
-          <div>
-            <dt>expected</dt>
-            <dd>{words.expected}</dd>
-          </div>
-          <div>
-            <dt>measured</dt>
-            <Box component="dd" fz="md" fw={650}>
-              {words.measured}
-              {claim.state !== "not yet" && claim.as_expected === false && claim.is_published && (
-                <small>other than expected</small>
-              )}
-            </Box>
-          </div>
+          <Figure name="printed">
+            {words.printed}
+            {claim.published && <small>“{claim.published}”</small>}
+          </Figure>
+          <Figure name="expected">{words.expected}</Figure>
+          <Figure name="measured" fz="md" fw={650}>
+            {words.measured}
+            {claim.state !== "not yet" && claim.as_expected === false && claim.is_published && (
+              <small>other than expected</small>
+            )}
+          </Figure>
         </dl>
         {said.map((text) => (
           <Box component="p" key={text} m="2px 0">

@@ -21,10 +21,9 @@ export function paintThreshold(
 ): Plot {
   const ink = CANVAS[look.scheme];
   const tried = found.tried.filter((one): one is typeof one & { measured: number } => one.measured !== null);
-  const [low, high] = rangeOf(
-    claim,
-    tried.map(({ measured }) => measured),
-  );
+  const values = tried.map((one) => one.value);
+  const figures = tried.map((one) => one.measured);
+  const [low, high] = rangeOf(claim, figures);
   const title = unitText(knob.unit) ? `${knob.label}, ${unitText(knob.unit)}` : knob.label;
   const ends = [found.low, found.high] as const;
   const across =
@@ -40,21 +39,10 @@ export function paintThreshold(
       if (bottom > top) fillHatched(pen, field.left, top, field.right - field.left, bottom - top, ink.accent);
       pen.restore();
     }
+    const dashed = { colour: ink.muted, width: 1.6, dashes: [6, 4] };
     for (const bound of [claim.low, claim.high])
-      if (bound !== null)
-        paintRule(pen, [field.left, y(bound)], [field.right, y(bound)], {
-          colour: ink.muted,
-          width: 1.6,
-          dashes: [6, 4],
-        });
-    const line = { colour: ink.text, width: 2 };
-    paintLine(
-      pen,
-      plot,
-      tried.map((one) => one.value),
-      tried.map((one) => one.measured),
-      line,
-    );
+      if (bound !== null) paintRule(pen, [field.left, y(bound)], [field.right, y(bound)], dashed);
+    paintLine(pen, plot, values, figures, { colour: ink.text, width: 2 });
     for (const one of tried) paintDot(pen, x(one.value), y(one.measured), 3, one.holds ? ink.accent : ink.alarm);
     paintRule(pen, [x(value), field.top], [x(value), field.bottom], { colour: ink.event, width: 2 });
   });

@@ -7,6 +7,7 @@ import { valuesOf } from "../../bench/unit-values";
 import { useBusy } from "../../bench/use-busy";
 import { openPlace } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
+import { Figure } from "../../ui/figure";
 import { metricScale } from "../../ui/metric-name";
 import styles from "./editor.module.css";
 
@@ -72,16 +73,14 @@ function Outcome({ run, card }: { run: Run; card: BlockCard }) {
         {figures.map(([name, value]) => {
           const { name: words, say } = metricScale(name, []);
           return (
-            <div key={name}>
-              <dt>{words}</dt>
-              <dd>{say(value)}</dd>
-            </div>
+            <Figure key={name} name={words}>
+              {say(value)}
+            </Figure>
           );
         })}
-        <div>
-          <dt>Digest</dt>
-          <dd className={styles.digest}>{digest ?? run.state}</dd>
-        </div>
+        <Figure name="Digest" className={styles.digest}>
+          {digest ?? run.state}
+        </Figure>
       </dl>
       <Button variant="subtle" onClick={() => openPlace("runs", run.id)}>
         Open under Runs

@@ -1,5 +1,6 @@
 import type { BlockCard, Command, FaultProfile, Parameter } from "../../api/types";
 import { type SeverityScale, severityText } from "../../bench/severity";
+import { groupBy } from "../../ui/group-by";
 import { roundTo } from "../../ui/unit-scale";
 import { type Condition, conditionText } from "../condition/condition";
 
@@ -40,11 +41,7 @@ export function newDraft(severity: number): FaultDraft {
 }
 
 /** Reasons against sending the form, by field; only fields that the choices use count. */
-export function refusals(
-  draft: FaultDraft,
-  scale: SeverityScale,
-  unit: string,
-): Partial<Record<keyof FaultDraft, string>> {
+export function refusals(draft: FaultDraft, scale: SeverityScale, unit: string) {
   const { severity, profile, durationMs, periodMs, duty, moment, atMs, when } = draft;
   const found: Partial<Record<keyof FaultDraft, string>> = {};
   if (!isNumber(severity)) found.severity = "Say how much";
@@ -92,11 +89,5 @@ export const draftSeverity = (
 const OTHERS = "Others";
 
 /** Blocks under their headings; groups and members come in the order of the catalogue. */
-export function groupsOf<T extends Pick<BlockCard, "group">>(blocks: readonly T[]): [string, T[]][] {
-  const groups = new Map<string, T[]>();
-  for (const block of blocks) {
-    const group = block.group || OTHERS;
-    groups.set(group, [...(groups.get(group) ?? []), block]);
-  }
-  return [...groups];
-}
+export const groupsOf = <T extends Pick<BlockCard, "group">>(blocks: readonly T[]): [string, T[]][] =>
+  groupBy(blocks, ({ group }) => group || OTHERS);

@@ -1,14 +1,15 @@
 import { Box, Button, NativeSelect } from "@mantine/core";
-import { useEffect, useState } from "react";
+import { useEffect } from "react";
 import { games } from "../../api/games";
 import { queryClient, useAnswer } from "../../api/queries";
 import type { GameCard, GamePlay } from "../../api/types";
 import { chooseGame, useGame } from "../../bench/game";
 import { openOwn } from "../../bench/open-bench";
-import { showError } from "../../bench/send";
+import { useBusy } from "../../bench/use-busy";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import exercise from "../../ui/exercise.module.css";
+import { Figure } from "../../ui/figure";
 import { formatCount, formatNumber } from "../../ui/format";
 import { Formula } from "../../ui/formula";
 import { jump } from "../../ui/hover";
@@ -75,24 +76,21 @@ export function GamesPanel() {
 /** One game at one seed: its task, the bench, the hand-in, the outcome, the table. */
 function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean }) {
   const { seed, values } = useGame();
-  const [busy, setBusy] = useState<"begin" | "judge" | undefined>(undefined);
+  const [busy, during] = useBusy<"begin" | "judge">();
   const over = play.left === 0;
-  const run = (what: "begin" | "judge", asked: Promise<GamePlay>, then?: (now: GamePlay) => void) => {
-    setBusy(what);
-    void asked
-      .then((now) => {
-        queryClient.setQueryData(["game", card.id, seed], now);
-        then?.(now);
-      }, showError)
-      .finally(() => setBusy(undefined));
-  };
+  const run = (what: "begin" | "judge", ask: () => Promise<GamePlay>) =>
+    void during(async () => {
+      const now = await ask();
+      queryClient.setQueryData(["game", card.id, seed], now);
+      if (what === "begin" && now.bench) openOwn(now.bench);
+    }, what);
   const begin = () => {
     jump.to("live");
-    run("begin", games.begin(card.id, seed, values), (now) => now.bench && openOwn(now.bench));
+    run("begin", () => games.begin(card.id, seed, values));
   };
   const reveal = () => {
     if (window.confirm("Show the solution? You cannot hand in at this seed any more."))
-      run("judge", games.reveal(card.id, seed));
+      run("judge", () => games.reveal(card.id, seed));
   };
   const last = play.attempts.at(-1);
   const isBank = (play.kinds ?? []).length === 0;
@@ -122,7 +120,7 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
           size="sm"
           loading={busy === "judge"}
           disabled={busy === "begin" || over}
-          onClick={() => run("judge", games.handIn(card.id, seed, handedIn(play, values)))}
+          onClick={() => run("judge", () => games.handIn(card.id, seed, handedIn(play, values)))}
         >
           Hand in
         </Button>
@@ -141,21 +139,20 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
         )}
       </div>
       {last && (
-        <div className={styles.outcome} role="status">
+        <Box pl={12} style={{ borderLeft: "3px solid var(--accent)" }} role="status">
           <Box component="p" maw="60ch" mb={8} fz="sm">
             {last.outcome.said}
             {play.best !== null && ` The best so far has ${formatNumber(play.best, 1)} points.`}
           </Box>
           <Formula latex={last.outcome.worked} />
-        </div>
+        </Box>
       )}
       {play.hidden && (
         <dl className={styles.facts} aria-label="Solution">
           {play.hidden.map(({ name, said }) => (
-            <div key={name}>
-              <dt>{name}</dt>
-              <dd>{said}</dd>
-            </div>
+            <Figure key={name} name={name}>
+              {said}
+            </Figure>
           ))}
         </dl>
       )}

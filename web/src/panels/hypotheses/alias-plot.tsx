@@ -1,3 +1,4 @@
+import { Box as Part } from "@mantine/core";
 import { useMemo } from "react";
 import type { AliasReport } from "../../api/types";
 import { Painted } from "../../picture/painted";
@@ -15,9 +16,9 @@ export function AliasPlot({ report }: { report: AliasReport }) {
   );
   return (
     <div className={styles.plots}>
-      <div className={styles.export}>
+      <Part pos="absolute" top={-30} right={0}>
         <PictureMenu take={() => aliasPicture(report)} />
-      </div>
+      </Part>
       <Painted label="Motion of every hypothesis at the drive frequency, in the complex plane" paint={phasors} />
       <Painted label="Distance of the closest pair over the drive frequency" paint={sweep} />
     </div>

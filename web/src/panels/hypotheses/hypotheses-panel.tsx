@@ -130,10 +130,4 @@ export function HypothesesPanel() {
   );
 }
 
-const whole = ({ name, mass = 1, stiffness = 1, damping = 1, gain = 1 }: Hypothesis) => ({
-  name,
-  mass,
-  stiffness,
-  damping,
-  gain,
-});
+const whole = (one: Hypothesis) => ({ mass: 1, stiffness: 1, damping: 1, gain: 1, ...one });

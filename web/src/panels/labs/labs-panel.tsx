@@ -90,7 +90,13 @@ function Turn({ knob, original, onChange }: { knob: LabKnob; original: number; o
       {...rest}
       step={0}
       original={original}
-      note={memory && (Number.isFinite(memory) ? `remembers ${formatCount(memory, "sample")}` : "remembers everything")}
+      note={
+        memory === undefined
+          ? undefined
+          : Number.isFinite(memory)
+            ? `remembers ${formatCount(memory, "sample")}`
+            : "remembers everything"
+      }
       onChange={onChange}
     />
   );
@@ -104,7 +110,7 @@ function Outcome({ id }: { id: string }) {
   const mean = meanDelay(score.delays);
   const isOff = score.nis !== null && (score.nis > OFF || score.nis < 1 / OFF);
   return (
-    <dl className={styles.outcome}>
+    <Box component="dl" className={`row ${styles.outcome}`} mb={8}>
       <Figure name="correct">{formatPercent(score.correct_fraction, 2)}</Figure>
       <Figure name="mean delay">{mean === undefined ? "–" : formatSi(mean * dtMs, "ms", 3)}</Figure>
       <Figure name="false switches">{formatNumber(score.false_switches, 0)}</Figure>
@@ -114,7 +120,7 @@ function Outcome({ id }: { id: string }) {
           1 if the assumptions are true
         </Box>
       </Figure>
-    </dl>
+    </Box>
   );
 }
 

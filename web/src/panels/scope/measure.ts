@@ -1,3 +1,5 @@
+import { extent } from "../phase/phase-range";
+
 /** A trace as columns of equal width: where a column holds one sample, both ends are that sample. */
 export interface Columns {
   low: ArrayLike<number>;
@@ -59,13 +61,9 @@ export function measure(trace: Columns, width: number, reference?: Columns): Mea
 /** From the first to the last rising crossing of the mean, with a tenth of the swing as hysteresis. */
 function frequencyOf(trace: Columns, width: number): number | undefined {
   const n = trace.low.length;
-  let low = Number.POSITIVE_INFINITY;
-  let high = Number.NEGATIVE_INFINITY;
-  for (let i = 0; i < n; i += 1) {
-    if (trace.low[i] < low) low = trace.low[i];
-    if (trace.high[i] > high) high = trace.high[i];
-  }
-  if (!(high > low)) return undefined;
+  const [low] = extent(trace.low) ?? [];
+  const high = extent(trace.high)?.[1];
+  if (low === undefined || high === undefined || low === high) return undefined;
   const mean = (low + high) / 2;
   const dead = (high - low) / 10;
   let below = false;

@@ -94,10 +94,8 @@ export function paintScope(pen: Pen, field: Field, shown: ScopeShown, look: Look
       pen.fillStyle = CANVAS[look.scheme].text;
       const names = traces.filter((trace) => trace.unit === unit).map(({ name }) => name);
       pen.save();
-      pen.translate(
-        onLeft ? left - (TITLED_AXIS - 0.6) * fontSize : edge + (TITLED_AXIS - 0.9) * fontSize,
-        (top + bottom) / 2,
-      );
+      const place = onLeft ? left - (TITLED_AXIS - 0.6) * fontSize : edge + (TITLED_AXIS - 0.9) * fontSize;
+      pen.translate(place, (top + bottom) / 2);
       pen.rotate(-Math.PI / 2);
       pen.textAlign = "center";
       pen.fillText(axisTitle(names, scales[i]), 0, 0, bottom - top);

@@ -9,6 +9,7 @@ import { columnAt, columnTimes, type PanelFrame } from "../../stream/panel-frame
 import { hover } from "../../ui/hover";
 import { CANVAS, DASHES, faded, fontFor } from "../../ui/palette";
 import { type UnitScale, unitScale } from "../../ui/unit-scale";
+import { extent } from "../phase/phase-range";
 import { type AxisRange, nextRange, SHRINK_AFTER_MS } from "./axis-range";
 import { BarRaster } from "./bar-raster";
 import {
@@ -260,16 +261,9 @@ export class ScopePlot {
     const now = performance.now();
     const room = { ...tickRoom(this.area.height, this.options.fontSize), ...(this.options.isLog && { finest: 1 }) };
     this.units.forEach((unit, axis) => {
-      let low = Number.POSITIVE_INFINITY;
-      let high = Number.NEGATIVE_INFINITY;
-      this.options.traces.forEach((trace, i) => {
-        if (trace.unit !== unit || i >= this.envelopes.length) return;
-        const envelope = this.envelopes[i];
-        for (let c = 0; c < envelope.low.length; c += 1) {
-          if (envelope.low[c] < low) low = envelope.low[c];
-          if (envelope.high[c] > high) high = envelope.high[c];
-        }
-      });
+      const own = this.envelopes.filter((_, i) => this.options.traces[i]?.unit === unit);
+      const ends = own.flatMap((one) => [...(extent(one.low) ?? []), ...(extent(one.high) ?? [])]);
+      let [low, high] = [Math.min(...ends), Math.max(...ends)];
       if (this.options.isLog) low = Math.max(low, high - MOST_DECADES);
       else if (low <= high) [low, high] = reachMarks([low, high], this.options.printed(), unit, this.span);
       const range = nextRange(this.ranges[axis], low, high, now, room);

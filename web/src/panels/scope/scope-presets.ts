@@ -17,13 +17,8 @@ const PRESETS: { title: string; pick: RegExp }[] = [
   { title: "Fault severity", pick: /^faults\./ },
 ];
 
-interface Preset {
-  title: string;
-  signals: string[];
-}
-
 /** The presets with signals on a bench. */
-export const presetsOn = (signals: readonly { name: string }[]): Preset[] =>
+export const presetsOn = (signals: readonly { name: string }[]) =>
   PRESETS.map(({ title, pick }) => ({
     title,
     signals: signals.map((s) => s.name).filter((name) => pick.test(name)),

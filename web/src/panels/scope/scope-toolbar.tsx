@@ -13,12 +13,14 @@ interface ScopeToolbarProps {
   past: boolean;
   onLive(): void;
   trigger: TriggerState;
+  onRearm(): void;
   exporter: ReactNode;
   children: ReactNode;
 }
 
 /** The tools of a scope: signals, roll or trigger, window, live. */
-export function ScopeToolbar({ config, onChange, past, onLive, trigger, exporter, children }: ScopeToolbarProps) {
+export function ScopeToolbar(props: ScopeToolbarProps) {
+  const { config, onChange, past, onLive, trigger, onRearm, exporter, children } = props;
   return (
     <div className={`line ${styles.toolbar}`}>
       <div className={`line ${styles.signals}`}>{children}</div>
@@ -28,6 +30,7 @@ export function ScopeToolbar({ config, onChange, past, onLive, trigger, exporter
             trigger={config.trigger}
             state={trigger}
             onChange={(next) => onChange({ ...config, trigger: next })}
+            onRearm={onRearm}
           />
         )}
         <button

@@ -101,7 +101,7 @@ export function comparison(boards: readonly Board[], compared: Compared, signals
         unit: known.get(nameOn(first))?.unit ?? "",
         signal: nameOn(first),
         slot: first.slot,
-        ...(ideal ? { ideal } : {}),
+        ideal,
         rivals: others.map((board) => ({ signal: nameOn(board), slot: board.slot })),
       },
     ];
@@ -118,11 +118,7 @@ export function comparison(boards: readonly Board[], compared: Compared, signals
     for (const signal of signals) {
       if (!signal.name.startsWith(`${head}gain.`) && !signal.name.startsWith(`${head}parameter.`)) continue;
       const rest = signal.name.slice(head.length);
-      const ideal =
-        head +
-        (rest.startsWith("gain.")
-          ? rest.replace("gain.", "gain_ideal.")
-          : rest.replace("parameter.", "parameter_true."));
+      const ideal = head + rest.replace(/^gain\./, "gain_ideal.").replace(/^parameter\./, "parameter_true.");
       const needs = known.has(ideal) ? 2 : 1;
       if (room < needs) return strips;
       room -= needs;
@@ -131,7 +127,7 @@ export function comparison(boards: readonly Board[], compared: Compared, signals
         unit: signal.unit,
         signal: signal.name,
         slot,
-        ...(known.has(ideal) ? { ideal } : {}),
+        ideal: known.has(ideal) ? ideal : undefined,
       });
     }
   }

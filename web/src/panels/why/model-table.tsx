@@ -19,7 +19,7 @@ export function ModelTable({ account, chosen, onChoose }: ModelTableProps) {
     account.residuals.length > 1 &&
     ` along ${account.residuals.map((name) => name.replace("residual_", "")).join(", ")}`;
   return (
-    <div className={styles.scroll}>
+    <div style={{ overflowX: "auto" }}>
       <table className={styles.table}>
         <thead>
           <tr>
@@ -86,7 +86,7 @@ const lines = (values: string[]) =>
   // biome-ignore lint/suspicious/noArrayIndexKey: a value is known by its displacement, which is its place
   values.map((value, i) => <div key={i}>{value}</div>);
 
-/** The gain of a model: all of it for one displacement; of several, what each residual moves the displacement by. */
+/** The gain of a model: all of it for one displacement; for several, the gain of each residual for its displacement. */
 const gains = ({ models, residuals, gain_units }: Account, index: number): string[] => {
   const { gain } = models[index];
   return residuals.length === 1

@@ -3,10 +3,10 @@ import { hypothesisWords } from "../../bench/hypothesis-words";
 import { capital } from "../../ui/capital";
 import { formatNumber } from "../../ui/format";
 
-/** Recorded and worked out, they part by more than rounding: the bank did not take the sample for evidence. */
+/** More than rounding between the recorded and the computed value: the bank did not take the sample for evidence. */
 const PARTED = 0.01;
 
-/** The verdict at a sample in one sentence, from what the bank itself computed there. */
+/** The verdict at a sample in one sentence, from the numbers of the bank. */
 export function whySentence({ models, evidence, residuals }: Account, turn: Turn | undefined, tick: number): string {
   const winner = likeliest(models);
   const first = atStart(winner.name);
