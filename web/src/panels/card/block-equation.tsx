@@ -2,7 +2,8 @@ import { Box, Popover, UnstyledButton } from "@mantine/core";
 import type { Equation } from "../../api/types";
 import { EquationDetail } from "../../ui/equation-detail";
 import { Formula } from "../../ui/formula";
-import styles from "./card.module.css";
+
+const ERRATUM = { p: "0 6px", bd: "1px solid var(--accent)", bdrs: 9, c: "var(--accent)", fz: "xs", lh: "16px" };
 
 /** An equation with its number; where the printed one is wrong, a mark opens the printed form and the reason. */
 export function BlockEquation({ equation }: { equation: Equation }) {
@@ -15,7 +16,7 @@ export function BlockEquation({ equation }: { equation: Equation }) {
         {equation.printed && (
           <Popover width={360} position="bottom-end">
             <Popover.Target>
-              <UnstyledButton className={styles.erratum} aria-label="Erratum: the printed equation differs">
+              <UnstyledButton {...ERRATUM} aria-label="Erratum: the printed equation differs">
                 erratum
               </UnstyledButton>
             </Popover.Target>

@@ -1,4 +1,4 @@
-import { Button, Group, NativeSelect, Stack, Text } from "@mantine/core";
+import { Button, Flex, Group, NativeSelect, Stack, Text } from "@mantine/core";
 import { useCallback, useEffect, useRef, useState } from "react";
 import { api } from "../../api/api";
 import { useMay } from "../../api/me";
@@ -12,7 +12,6 @@ import { formatPercent, formatShort } from "../../ui/format";
 import { Knob } from "../../ui/knob";
 import { metricScale } from "../../ui/metric-name";
 import { unitText } from "../../ui/unit-scale";
-import styles from "./claims.module.css";
 import { paintThreshold } from "./paint-threshold";
 
 const EVERY_MS = 300;
@@ -97,9 +96,9 @@ function Turned({ claim, knob }: { claim: Claim; knob: ClaimKnob }) {
             It {found.words}
             {unit && `, in ${unit}`}.
           </Text>
-          <div ref={place} className={styles.plot}>
+          <Flex ref={place} flex="none" h={230} style={{ scrollMargin: "70px 0 120px" }}>
             <Painted label={`${claim.metric} over ${knob.label}: ${found.words}`} paint={paint} />
-          </div>
+          </Flex>
           <p className="note">
             Hatched: {claim.is_published ? "agrees with the print" : "nothing is printed"}. Dashed: our bounds. Points:
             runs of the scenario with this value and its seed.

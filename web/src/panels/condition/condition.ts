@@ -34,4 +34,4 @@ export function signalGroups(signals: readonly Pick<Signal, "name">[]) {
 const spaced = (text: string) => text.replaceAll("_", " ");
 
 /** "plant.displacement" reads "plant displacement". */
-export const signalWords = (name: string): string => spaced(name).replaceAll(".", " ");
+const signalWords = (name: string): string => spaced(name).replaceAll(".", " ");

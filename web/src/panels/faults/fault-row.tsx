@@ -41,7 +41,7 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
 
   return (
     <li className={styles.fault} data-active={active !== undefined}>
-      <div className={`row ${styles.row}`}>
+      <Box className="row" mih={40} p="4px 8px 4px 5px" style={{ justifyContent: "flex-end" }}>
         <button type="button" className={`line ${styles.name}`} aria-expanded={open} onClick={onToggle}>
           <IconChevronRight size={14} className={styles.chevron} aria-hidden="true" />
           <span>{fault.title}</span>
@@ -63,7 +63,7 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
             Inject {draftSeverity(draft, scale, unit)}
           </Button>
         )}
-      </div>
+      </Box>
       {active && <Chosen fault={fault} active={active} />}
       {open && (
         <FaultForm

@@ -1,3 +1,4 @@
+import { Box } from "@mantine/core";
 import type { Identification } from "../../api/types";
 import { formatChange, formatSpread, formatTick } from "../../ui/format";
 import { TableHead } from "../../ui/table-head";
@@ -33,7 +34,9 @@ export function IdentifiedTable({ result }: { result: Identification }) {
               <td>
                 <b>{formatSpread("", found, sigma, unit)}</b>
               </td>
-              <td data-sure={sure}>{formatChange(change, "%", 2)}</td>
+              <Box component="td" data-sure={sure} fw={sure ? 700 : undefined}>
+                {formatChange(change, "%", 2)}
+              </Box>
             </tr>
           );
         })}

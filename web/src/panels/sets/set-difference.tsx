@@ -33,7 +33,7 @@ export function SetDifference({ first, others, onClose }: SetDifferenceProps) {
   const options = others.filter(({ id }) => id !== first.id).map(({ id, name }) => ({ value: id, label: name }));
   const second = options.find(({ value }) => value === other)?.label ?? "now";
   return (
-    <div className={styles.difference}>
+    <div className={styles.difference} style={{ borderBottom: "1px solid var(--line)" }}>
       <Group gap="6px 10px" align="end" justify="space-between" p="8px 12px 12px">
         <NativeSelect
           label={`Compare ${first.name} with`}

@@ -171,7 +171,7 @@ function Running({ vote, students, run }: RunningProps) {
       </Group>
       <ul className={styles.answers} aria-label={results ? "Results" : "Answers"}>
         {names.map((name, i) => (
-          <li key={name} data-right={results !== null && right === question.answers[i]}>
+          <Box component="li" key={name} fw={results !== null && right === question.answers[i] ? 650 : undefined}>
             {inRoom ? (
               <NumberInput
                 label={name}
@@ -194,7 +194,7 @@ function Running({ vote, students, run }: RunningProps) {
                 </span>
               </>
             )}
-          </li>
+          </Box>
         ))}
       </ul>
       {results && question.diagnoser && (
