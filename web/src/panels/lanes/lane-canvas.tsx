@@ -96,7 +96,7 @@ export function LaneCanvas({ label, legend, signals, time, left, right, paint, o
   const point = (offset: number | undefined) => {
     const width = over.current?.clientWidth ?? 1;
     const { start, end } = shown.current;
-    hover.set(offset === undefined ? undefined : start + (offset / width) * (end - start), shown);
+    hover.set(offset === undefined ? undefined : start + (offset / width) * (end - start));
   };
 
   return (

@@ -242,7 +242,7 @@ export class ScopePlot {
   private point(offset: number | undefined): void {
     this.pointer = offset;
     const { start, end } = this.span;
-    hover.set(offset === undefined ? undefined : start + (offset / this.area.width) * (end - start), this);
+    hover.set(offset === undefined ? undefined : start + (offset / this.area.width) * (end - start));
   }
 
   private showHover(tick: number | undefined): void {

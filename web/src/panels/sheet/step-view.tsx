@@ -37,7 +37,7 @@ export function StepView({ step, isOpen, actions }: StepProps) {
         <Box component="ul" mb={6} aria-label="Answers">
           {answers.map((given, i) => (
             // biome-ignore lint/suspicious/noArrayIndexKey: answers are only ever added
-            <li key={i} data-right={given.points === null ? undefined : (given.points ?? 0) > 0}>
+            <li key={i}>
               <b>{given.text}</b>
               {given.reason === null ? " – committed; judged after the run" : ` – ${given.reason}`}
               {given.points !== null && (
