@@ -108,7 +108,12 @@ function Section({ section, actions }: { section: SheetSection; actions: StepAct
     was.current = state;
   }, [state]);
   return (
-    <li ref={place} style={{ scrollMargin: 12 }} aria-current={state === "open" ? "step" : undefined}>
+    <li
+      ref={place}
+      data-state={state}
+      style={{ scrollMargin: 12 }}
+      aria-current={state === "open" ? "step" : undefined}
+    >
       <Box component="h3" mb={4} {...(state === "closed" && { c: "dimmed", fw: 500 })}>
         {heading}
         <span className="visually-hidden">
