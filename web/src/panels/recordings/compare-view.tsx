@@ -74,21 +74,23 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
             {found.only_in_first.length + found.only_in_second.length > 0 &&
               `; ${found.only_in_first.length + found.only_in_second.length} are in one recording alone`}
           </Box>
-          <table className={`numbers ${styles.table}`}>
-            <TableHead names={["signal", "largest difference", "at tick", "rms", "tolerance", "verdict"]} />
-            <tbody>
-              {rows.slice(0, SHOWN).map((row) => (
-                <tr key={row.signal} data-ok={row.ok}>
-                  <th scope="row">{row.signal}</th>
-                  <td>{formatSi(row.max_difference, row.unit)}</td>
-                  <td>{formatNumber(row.at_tick, 0)}</td>
-                  <td>{formatSi(row.rms_difference, row.unit)}</td>
-                  <td>{formatSi(row.tolerance, row.unit)}</td>
-                  <td>{row.ok ? "pass" : "fail"}</td>
-                </tr>
-              ))}
-            </tbody>
-          </table>
+          <div style={{ overflowX: "auto" }}>
+            <table className={`numbers ${styles.table}`}>
+              <TableHead names={["signal", "largest difference", "at tick", "rms", "tolerance", "verdict"]} />
+              <tbody>
+                {rows.slice(0, SHOWN).map((row) => (
+                  <tr key={row.signal} data-ok={row.ok}>
+                    <th scope="row">{row.signal}</th>
+                    <td>{formatSi(row.max_difference, row.unit)}</td>
+                    <td>{formatNumber(row.at_tick, 0)}</td>
+                    <td>{formatSi(row.rms_difference, row.unit)}</td>
+                    <td>{formatSi(row.tolerance, row.unit)}</td>
+                    <td>{row.ok ? "pass" : "fail"}</td>
+                  </tr>
+                ))}
+              </tbody>
+            </table>
+          </div>
           {rows.length > SHOWN && (
             <Words>
               The first {SHOWN} of {rows.length}, failures first.
