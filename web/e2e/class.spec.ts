@@ -134,7 +134,7 @@ test("a teacher shows one bench on all screens, arranges the panels and asks for
   await expect(page.getByText("1 of 2 have voted")).toBeVisible();
   await expect(page.getByRole("meter")).toHaveCount(0); // no one sees an answer before the vote is revealed
   await page.getByRole("button", { name: "Reveal" }).click();
-  await expect(page.getByRole("list", { name: "What was said" })).toContainText(/mass \+5.* right.*1\svote/);
+  await expect(page.getByRole("list", { name: "Results" })).toContainText(/mass \+5.* right.*1\svote/);
   await expect(page.getByRole("img", { name: /1\svote for mass \+5/ })).toBeVisible();
   await expect(card).toContainText(/The right answer: mass \+5/);
 });

@@ -52,10 +52,10 @@ test("a student plays be the filter: knobs turn the hidden bench, and the settin
   );
   await expect(panel.getByRole("row").nth(1)).toContainText(written(outcome.points));
   await expect(panel.getByRole("row").nth(1)).toContainText("mass 1.1");
-  await expect(panel.getByLabel("What was hidden")).toHaveCount(0);
+  await expect(panel.getByLabel("Solution")).toHaveCount(0);
 
-  await panel.getByRole("button", { name: "Show what is hidden" }).click();
-  await expect(panel.getByLabel("What was hidden")).toContainText("Unknown fault");
+  await panel.getByRole("button", { name: "Show the solution" }).click();
+  await expect(panel.getByLabel("Solution")).toContainText("Unknown fault");
   await expect(page.getByText("A game is played here")).toHaveCount(0);
   await expect(panel.getByRole("button", { name: "Hand in" })).toBeDisabled();
   await panel.getByRole("button", { name: "Next seed" }).click();

@@ -58,7 +58,7 @@ async function metrics(session: CDPSession): Promise<Record<string, number>> {
   return Object.fromEntries(metrics.map(({ name, value }) => [name, value]));
 }
 
-/** Count how often each canvas is drawn anew: uPlot clears it first. */
+/** Count how often each canvas is drawn anew: a painter clears it first. */
 const countRedraws = (page: Page) =>
   page.evaluate(() => {
     const { clearRect } = CanvasRenderingContext2D.prototype;

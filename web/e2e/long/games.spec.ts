@@ -61,7 +61,7 @@ test("fool the bank: faults are tried and healed, and the answer tells the edge"
   expect(await seriousViolations(page)).toEqual([]);
   const [{ outcome }] = (await play()).attempts;
   await expect(panel.getByRole("row").nth(1)).toContainText(written(outcome.points));
-  await expect(panel.getByLabel("What was hidden")).toContainText("Sensor noise");
+  await expect(panel.getByLabel("Solution")).toContainText("Sensor noise");
   await expect(page.getByText("A game is played here")).toHaveCount(0);
 });
 
@@ -84,6 +84,6 @@ test("a class: the table has everybody's points, and settings only once one's ow
   await expect(table).toContainText("Ada");
   await expect(table).toContainText("mass 1.2");
   await expect(table).not.toContainText("mass 1.1");
-  await panelOf(ben).getByRole("button", { name: "Show what is hidden" }).click();
+  await panelOf(ben).getByRole("button", { name: "Show the solution" }).click();
   await expect(table).toContainText("mass 1.1");
 });

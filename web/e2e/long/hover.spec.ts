@@ -17,7 +17,7 @@ async function fieldOf(page: Page) {
   const box = await page
     .getByRole("region", { name: /^Scope: / })
     .first()
-    .locator(".u-over")
+    .getByTestId("field")
     .boundingBox();
   if (!box) throw new Error("no scope is drawn");
   return { x: (share: number) => box.x + share * box.width, y: box.y + box.height / 2 };

@@ -91,10 +91,10 @@ test("the narrator fits every screen, before anything is said and with a verdict
   await command(server, id, { kind: "step", ticks: 6900 });
   await page.keyboard.press("3");
   await front(page, "Log", "Narrator");
-  await expect(page.getByRole("list", { name: "What the narrator says" }).getByRole("listitem")).toHaveCount(15);
-  await expectClean(page, "the panel of the narrator", "ol[aria-label^='What the narrator']");
+  await expect(page.getByRole("list", { name: "Sentences of the narrator" }).getByRole("listitem")).toHaveCount(15);
+  await expectClean(page, "the panel of the narrator", "ol[aria-label^='Sentences of the narrator']");
   for (const scheme of SCHEMES)
-    await expectReadable(page, "the panel of the narrator", scheme, "ol[aria-label^='What the narrator']");
+    await expectReadable(page, "the panel of the narrator", scheme, "ol[aria-label^='Sentences of the narrator']");
 });
 
 test("a branch, its menu, the past and the sheet that compares benches fit", async ({ page, server, openBench }) => {

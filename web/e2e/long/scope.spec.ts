@@ -5,7 +5,7 @@ import { SCREENS, showOn } from "../screens";
 /** Parts that a scope lacks at first sight: its axis of time, one row of names, traces that fill it. */
 const lacks = (scope: Locator): Promise<string[]> =>
   scope.evaluate((panel) => {
-    const field = panel.querySelector(".u-over")?.getBoundingClientRect();
+    const field = panel.querySelector("[data-testid=field]")?.getBoundingClientRect();
     const canvas = panel.querySelector("canvas");
     if (!field || !canvas) return ["nothing is drawn"];
     const box = panel.getBoundingClientRect();
@@ -42,7 +42,7 @@ test("at first sight every scope has its axis, one row of names, and traces that
     const scopes = page.getByRole("region", { name: /^Scope: / });
     await expect(scopes).toHaveCount(key === "1" ? 2 : 1);
     for (const scope of await scopes.all()) {
-      await expect(scope.locator(".u-over")).toBeInViewport({ ratio: 1 });
+      await expect(scope.getByTestId("field")).toBeInViewport({ ratio: 1 });
       await expect.poll(() => lacks(scope), `layout ${key}`).toEqual([]);
     }
   }

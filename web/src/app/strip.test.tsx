@@ -69,7 +69,7 @@ it("shows the newest sentence of the narrator, and all of them on demand", async
   board.say(tell);
   expect(region("What happens now")).toHaveTextContent("Mass is added");
   await user.click(screen.getByRole("button", { name: "All hints" }));
-  expect(await screen.findByRole("list", { name: "What the narrator says, newest last" })).toBeVisible();
+  expect(await screen.findByRole("list", { name: "Sentences of the narrator, newest last" })).toBeVisible();
   await user.click(screen.getByRole("button", { name: "Narrator off (Q)" }));
   expect(region("What happens now")).not.toBeInTheDocument();
 });

@@ -99,15 +99,6 @@ class FakeImageData {
   }
 }
 
-/** uPlot makes paths of its own for traces; the page inks those itself. */
-class FakePath2D {
-  moveTo(): void {}
-  lineTo(): void {}
-  rect(): void {}
-  arc(): void {}
-  closePath(): void {}
-}
-
 /** An address of the page may be relative, which Node's own request refuses. */
 class PageRequest extends Request {
   constructor(input: RequestInfo | URL, init?: RequestInit) {
@@ -137,7 +128,6 @@ function fillGaps(): void {
     ResizeObserver: FakeResizeObserver,
     IntersectionObserver: FakeIntersectionObserver,
     ImageData: FakeImageData,
-    Path2D: FakePath2D,
     Request: PageRequest,
     matchMedia: noMedia,
     getComputedStyle: formulaStyle,

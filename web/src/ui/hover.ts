@@ -1,6 +1,6 @@
 import { useEffect, useState } from "react";
 
-type Listener = (tick: number | undefined, source: object | undefined) => void;
+type Listener = (tick: number | undefined) => void;
 
 const listeners = new Set<Listener>();
 let current: number | undefined;
@@ -10,10 +10,10 @@ export const hover = {
   get tick(): number | undefined {
     return current;
   },
-  set(tick: number | undefined, source: object): void {
+  set(tick: number | undefined): void {
     if (tick === current) return;
     current = tick;
-    for (const listener of listeners) listener(tick, source);
+    for (const listener of listeners) listener(tick);
   },
   listen(listener: Listener): () => void {
     listeners.add(listener);

@@ -1,24 +1,25 @@
-import { Button, NativeSelect } from "@mantine/core";
+import { Box, Button, Group, NativeSelect } from "@mantine/core";
 import { useMemo, useRef, useState } from "react";
 import { useMay } from "../../api/me";
 import type { BlockCard, Document } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { actions } from "../../bench/actions";
-import { useView } from "../../bench/view-store";
-import type { Box, Look, Pen } from "../../picture/pen";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { LaneCanvas, type LaneShown } from "../lanes/lane-canvas";
+import { TRACE_COLOURS } from "../../ui/palette";
+import { TraceSwatch } from "../../ui/trace-swatch";
+import { useScheme } from "../../ui/use-canvas";
+import type { LaneShown } from "../lanes/lane-canvas";
 import { LaneTools } from "../lanes/lane-tools";
 import { useLaneTime } from "../lanes/use-lane-time";
-import styles from "./adaptation.module.css";
-import { adaptiveUnits, signalsOf } from "./adaptation-strips";
+import { adaptiveUnits } from "./adaptation-strips";
 import { ExcitationMeter } from "./excitation-meter";
-import { AXIS_PX, gutter, paintStrips, RIGHT_PX, STRIP_PX, stripsPicture } from "./paint-strips";
+import { STRIP_PX, stripsPicture } from "./paint-strips";
+import { StripsCanvas } from "./strips-canvas";
 
 const LEGEND = [{ name: "now", slot: 1 }];
 
-/** What adapts, against what it should be: gains, V and its derivative, s, errors, and how much the input tells. */
+/** Adapted quantities and their ideal values: gains, V and its derivative, s, errors, and the excitation by the input. */
 export function AdaptationPanel() {
   const signals = useBench((s) => s.bench?.signals);
   const controller = useBench((s) => s.bench?.controller);
@@ -26,7 +27,7 @@ export function AdaptationPanel() {
   const parameters = useBench((s) => s.bench?.parameters);
   const dtMs = useBench((s) => s.bench?.dt_ms);
   const { blocks } = useCatalog();
-  const fontSize = useView((s) => s.fontPx);
+  const colours = TRACE_COLOURS[useScheme()];
   const [windowMs, setWindowMs] = useState(20);
   const [wanted, setWanted] = useState<string | undefined>(undefined);
   const time = useLaneTime(windowMs, dtMs);
@@ -39,15 +40,7 @@ export function AdaptationPanel() {
     units.find((u) => u.block === controller) ??
     units.find((u) => controllers?.includes(u.block)) ??
     units[0];
-  const names = useMemo(() => unit?.strips.flatMap(signalsOf) ?? [], [unit]);
   const shown = useRef<LaneShown | undefined>(undefined);
-  const paint = useMemo(
-    () => (pen: Pen, box: Box, now: LaneShown, look: Look) => {
-      shown.current = now;
-      paintStrips(pen, box, now, unit?.strips ?? [], look);
-    },
-    [unit],
-  );
   if (!unit)
     return (
       <EmptyState title="Nothing adapts on this bench">
@@ -59,8 +52,8 @@ export function AdaptationPanel() {
     shown.current &&
     stripsPicture(shown.current, unit.strips, `Adaptation of ${unit.block.replaceAll("_", " ")}`, LEGEND);
   return (
-    <section className={`view ${styles.panel}`} aria-label="Adaptation">
-      <div className={`row ${styles.bar}`}>
+    <Box component="section" className="view" fz="sm" aria-label="Adaptation">
+      <Group gap="4px 8px" pos="sticky" top={0} p="6px 8px 4px 12px" bg="var(--panel)" style={{ zIndex: 1 }}>
         <NativeSelect
           aria-label="What adapts"
           value={unit.block}
@@ -70,24 +63,15 @@ export function AdaptationPanel() {
           }))}
           onChange={(e) => setWanted(e.currentTarget.value)}
         />
-        <span className={`line ${styles.legend}`}>
-          <i data-kind="now" /> now <i data-kind="ideal" /> ideal
-        </span>
+        <Group gap={6} wrap="nowrap" flex={1} pl={8} c="dimmed" fz="xs">
+          <TraceSwatch colour={colours[1]} dash={0} /> now <TraceSwatch colour={colours[0]} dash={1} /> ideal
+        </Group>
         <LaneTools time={time} onWindow={setWindowMs} take={take} />
-      </div>
+      </Group>
       <ExcitationMeter />
       {unit.block !== controller && <Shadow block={unit.block} />}
-      <div className={styles.strips} style={{ height: unit.strips.length * STRIP_PX + AXIS_PX }}>
-        <LaneCanvas
-          label={`${unit.block}: ${unit.strips.map((s) => s.title).join(", ")} over time`}
-          signals={names}
-          time={time}
-          left={gutter(fontSize)}
-          right={RIGHT_PX}
-          paint={paint}
-        />
-      </div>
-    </section>
+      <StripsCanvas label={unit.block} strips={unit.strips} each={STRIP_PX} time={time} shown={shown} />
+    </Box>
   );
 }
 
@@ -97,14 +81,14 @@ function Shadow({ block }: { block: string }) {
   const drives = useMay("drive");
   if (!controllers?.includes(block)) return null;
   return (
-    <p className={styles.nometer}>
+    <Box component="p" c="dimmed" p="2px 12px 6px">
       {block.replaceAll("_", " ")} runs in shadow: it adapts to the voltage another applies.{" "}
       {drives && (
         <Button size="compact-xs" variant="light" onClick={() => actions.controller(block)}>
           Give it the drive
         </Button>
       )}
-    </p>
+    </Box>
   );
 }
 

@@ -39,5 +39,5 @@ it("knows identifiers, sliding controllers and twins, and leaves out what does n
   expect(found.map((u) => u.block)).toEqual(["ls", "vsc", "two:appb"]);
   expect(found[0].strips[0]).toMatchObject({ title: "estimate of mass", ideal: "ls.truth.mass" });
   expect(found[1].strips[0].layer).toBe(0.3);
-  expect(found[2].strips[0]).not.toHaveProperty("ideal");
+  expect(found[2].strips[0].ideal).toBeUndefined();
 });

@@ -1,13 +1,14 @@
 import type { Signal } from "../../api/types";
+import { groupBy } from "../../ui/group-by";
 
 /** Another signal on the same axis, in a colour of its own. */
-export interface Rival {
+interface Rival {
   signal: string;
   /** Slot in `TRACE_COLOURS`. */
   slot: number;
 }
 
-/** One field of the adaptation view: an inner signal, and what it should be. */
+/** One field of the adaptation view: an inner signal and its ideal value. */
 export interface Strip {
   title: string;
   unit: string;
@@ -15,7 +16,7 @@ export interface Strip {
   /** Slot in `TRACE_COLOURS`, unless the usual one. */
   slot?: number;
   rivals?: Rival[];
-  /** What it would be if everything were known. */
+  /** Its ideal value, which needs a known device. */
   ideal?: string;
   /** A sign that theory forbids is worth seeing. */
   negative?: boolean;
@@ -24,7 +25,7 @@ export interface Strip {
 }
 
 /** A block that adapts, estimates or slides, with its strips. */
-export interface AdaptiveUnit {
+interface AdaptiveUnit {
   block: string;
   strips: Strip[];
 }
@@ -60,44 +61,33 @@ export const signalsOf = ({ signal, ideal, rivals = [] }: Strip): string[] => [
   ...rivals.map((r) => r.signal),
 ];
 
-/** What makes a block one that adapts, as against one that merely has an error. */
+/** A block with one of these signals adapts; an error alone does not count. */
 const ADAPTS = /^(gain|parameter|estimate)\.|^(gain|surface|lyapunov)$/;
 
-/** Every unit of a bench that adapts, with what there is to see of it. */
+/** Every unit of a bench that adapts, with its strips. */
 export function adaptiveUnits(signals: readonly Signal[], layers: Record<string, number> = {}): AdaptiveUnit[] {
   const names = new Map(signals.map((s) => [s.name, s]));
-  const blocks = new Map<string, Signal[]>();
-  for (const signal of signals) {
-    const dot = signal.name.indexOf(".");
-    if (dot > 0) blocks.set(signal.name.slice(0, dot), [...(blocks.get(signal.name.slice(0, dot)) ?? []), signal]);
-  }
-  return [...blocks].flatMap(([block, own]): AdaptiveUnit[] => {
+  const ofBlocks = signals.filter(({ name }) => name.includes("."));
+  return groupBy(ofBlocks, ({ name }) => name.split(".")[0]).flatMap(([block, own]): AdaptiveUnit[] => {
     const port = (signal: Signal) => signal.name.slice(block.length + 1);
-    if (own[0].name.startsWith("faults.") || !own.some((s) => ADAPTS.test(port(s)))) return [];
+    if (block === "faults" || !own.some((s) => ADAPTS.test(port(s)))) return [];
     const strips: Strip[] = own.flatMap((signal) => {
       const [head, label] = port(signal).split(".");
       const pair = PAIRS[head];
       if (!pair) return [];
       const ideal = `${block}.${pair[0]}${label ? `.${label}` : ""}`;
-      return [
-        {
-          title: label ? `${pair[1]} ${label}` : pair[1],
-          unit: signal.unit,
-          signal: signal.name,
-          ...(names.has(ideal) ? { ideal } : {}),
-        },
-      ];
+      const title = label ? `${pair[1]} ${label}` : pair[1];
+      return [{ title, unit: signal.unit, signal: signal.name, ideal: names.has(ideal) ? ideal : undefined }];
     });
     for (const [scalar, title] of Object.entries(SCALARS)) {
       const signal = names.get(`${block}.${scalar}`);
       if (!signal) continue;
-      const layer = scalar === "surface" ? layers[block] : undefined;
       strips.push({
         title,
         unit: signal.unit,
         signal: signal.name,
-        ...(scalar === "lyapunov_rate" ? { negative: true } : {}),
-        ...(layer ? { layer } : {}),
+        negative: scalar === "lyapunov_rate",
+        layer: scalar === "surface" ? layers[block] : undefined,
       });
     }
     return [{ block, strips }];

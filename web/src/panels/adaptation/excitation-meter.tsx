@@ -1,25 +1,21 @@
-import { Button } from "@mantine/core";
+import { Box, Group } from "@mantine/core";
 import { useMemo, useRef } from "react";
-import { useMay } from "../../api/me";
 import { usePanelVisible } from "../../api/panel-visible";
-import { openVariant } from "../../bench/open-bench";
-import { useBusy } from "../../bench/use-busy";
 import { useBench } from "../../stream/bench-store";
 import { middles } from "../../stream/panel-frame";
 import { useFeed } from "../../stream/use-feed";
 import { formatShort, formatSi } from "../../ui/format";
 import { useRestingTick } from "../../ui/hover";
+import { RestartButton } from "../restart/restart-button";
 import styles from "./adaptation.module.css";
 
 const EVERY_MS = 150;
 const USUAL_LEAST = 1e-5;
 
-/** How much the input tells, now or at the tick a pointer rests at: the smallest eigenvalue of the windowed Gram matrix of the regressor, against the least that will do. */
+/** Excitation by the input now, or at the tick under a resting pointer: the smallest eigenvalue of the windowed Gram matrix of the regressor, and the least that suffices. */
 export function ExcitationMeter() {
   const signals = useBench((s) => s.bench?.signals);
   const parameters = useBench((s) => s.bench?.parameters);
-  const [busy, during] = useBusy();
-  const teaches = useMay("teach");
   const source = signals?.find((s) => s.name.endsWith(".excitation_relative"))?.name.split(".")[0];
   const section = (parameters?.identifiers as Record<string, { least_excitation?: number }> | undefined)?.[
     source ?? ""
@@ -49,38 +45,32 @@ export function ExcitationMeter() {
     EVERY_MS,
   );
 
-  if (!source) {
-    const add = () => {
-      void during(() =>
-        openVariant(
-          { "identifiers.excitation": { kind: "excitation" } },
-          "The bench restarts with an excitation monitor.",
-        ),
-      );
-    };
+  if (!source)
     return (
-      <p className={styles.nometer}>
+      <Box component="p" c="dimmed" p="2px 12px 6px">
         This bench has no excitation monitor.{" "}
-        {teaches && (
-          <Button size="compact-xs" variant="light" loading={busy} onClick={add}>
-            Restart with an excitation monitor
-          </Button>
-        )}
-      </p>
+        <RestartButton
+          size="compact-xs"
+          variant="light"
+          set={{ "identifiers.excitation": { kind: "excitation" } }}
+          said="The bench restarts with an excitation monitor."
+        >
+          Restart with an excitation monitor
+        </RestartButton>
+      </Box>
     );
-  }
   return (
-    <div className={`row ${styles.meter}`}>
-      <span>Excitation</span>
+    <Group gap="2px 10px" p="2px 12px 8px">
+      <span className="note">Excitation</span>
       <div
         ref={fill}
         className={styles.gauge}
         style={{ "--least": `${100 * meterShare(least)}%` } as React.CSSProperties}
       >
-        <i title={`least that will do: ${formatShort(least, "")}`} />
+        <i title={`least that suffices: ${formatShort(least, "")}`} />
       </div>
-      <b ref={words} />
-    </div>
+      <Box component="b" ref={words} flex="1 1 30ch" fw={560} />
+    </Group>
   );
 }
 

@@ -29,7 +29,7 @@ const fieldOf = ({ width, height }: Box, { fontSize }: Look): Field => ({
   bottom: height - AXIS_PX,
 });
 
-/** Strips under one another: each an inner signal over time, dashed what it should be. */
+/** Strips under one another: in each an inner signal over time, and dashed its ideal value. */
 export function paintStrips(pen: Pen, box: Box, shown: LaneShown, strips: readonly Strip[], look: Look): void {
   const field = fieldOf(box, look);
   const each = field.bottom / strips.length;
@@ -62,13 +62,10 @@ function paintStrip(
   const y = placeOn({ range }, bottom, top);
   const at = placeOn({ range: [span.start, span.end] }, left, right);
   const x = (column: number) => at(tickOf(frame, column));
-  const trace = (signal: number, slot: number) =>
-    strokeEnvelope(
-      pen,
-      { x, y },
-      { low: lowest(frame, signal), high: largest(frame, signal) },
-      { colour: colours[slot], width: 1.6 },
-    );
+  const trace = (signal: number, slot: number) => {
+    const envelope = { low: lowest(frame, signal), high: largest(frame, signal) };
+    strokeEnvelope(pen, { x, y }, envelope, { colour: colours[slot], width: 1.6 });
+  };
 
   pen.fillStyle = ink.axis;
   pen.fillRect(left, bottom + 3, wide, 1);
@@ -79,12 +76,8 @@ function paintStrip(
     if (strip.layer) pen.fillRect(left, y(strip.layer), wide, y(-strip.layer) - y(strip.layer));
     if (ideal !== undefined) {
       const flat = largest(frame, ideal);
-      strokeEnvelope(
-        pen,
-        { x, y },
-        { low: flat, high: flat },
-        { colour: colours[0], width: 1.4, dashes: IDEAL_DASHES },
-      );
+      const stroke = { colour: colours[0], width: 1.4, dashes: IDEAL_DASHES };
+      strokeEnvelope(pen, { x, y }, { low: flat, high: flat }, stroke);
     }
     for (const rival of [...rivals].reverse()) trace(rival.at, rival.slot);
     trace(own, strip.slot ?? 1);
@@ -112,7 +105,7 @@ function paintStrip(
   pen.fillText(words, 4, middle + fontSize * 0.75, left - 12);
 }
 
-/** What theory forbids: bars down to zero wherever a value is above it. */
+/** Values above zero, which theory forbids, as bars down to zero. */
 function paintForbidden(
   pen: Pen,
   high: Float32Array,
@@ -126,7 +119,7 @@ function paintForbidden(
   });
 }
 
-/** Ends of a strip's axis: whole ticks around all that is seen, so that it moves seldom. */
+/** Ends of the axis of a strip: whole ticks around every value, so that it moves seldom. */
 export function stripRange(values: Iterable<number>): [number, number] {
   let low = Number.POSITIVE_INFINITY;
   let high = Number.NEGATIVE_INFINITY;

@@ -1,11 +1,10 @@
-import { Button } from "@mantine/core";
+import { Button, Group } from "@mantine/core";
 import { useCallback } from "react";
 import { api } from "../../api/api";
 import { useMay } from "../../api/me";
 import { usePanelVisible } from "../../api/panel-visible";
 import { useAnswer } from "../../api/queries";
-import { openVariant } from "../../bench/open-bench";
-import { send, showError } from "../../bench/send";
+import { send } from "../../bench/send";
 import { Legend } from "../../picture/legend-list";
 import { Painted } from "../../picture/painted";
 import type { Box, Look, Pen } from "../../picture/pen";
@@ -15,6 +14,7 @@ import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatCount, formatIn } from "../../ui/format";
 import { useScheme } from "../../ui/use-canvas";
+import { RestartButton } from "../restart/restart-button";
 import styles from "./allan.module.css";
 import { FigureTable } from "./figure-table";
 import { allanEntries, paintAllan } from "./paint-allan";
@@ -35,17 +35,14 @@ export function AllanPanel() {
       <EmptyState
         title="No Allan read-out on this bench"
         action={
-          teaches && (
-            <Button
-              variant="filled"
-              size="xs"
-              onClick={() =>
-                openVariant({ "readouts.allan.kind": "allan" }, "Bench with an Allan read-out").catch(showError)
-              }
-            >
-              Restart with an Allan read-out
-            </Button>
-          )
+          <RestartButton
+            variant="filled"
+            size="xs"
+            set={{ "readouts.allan.kind": "allan" }}
+            said="Bench with an Allan read-out"
+          >
+            Restart with an Allan read-out
+          </RestartButton>
         }
       >
         {teaches
@@ -73,7 +70,7 @@ function Readout({ bench, name }: { bench: string; name: string }) {
     readout && { ...pictureName("Allan deviation"), height: 480, legend: allanEntries("light"), paint };
   return (
     <section className="view" aria-label="Allan deviation">
-      <div className={`row ${styles.bar}`}>
+      <Group gap="6px 12px" p="6px 12px" fz="sm">
         <span>
           {readout
             ? `Record of ${formatIn(readout.record_s, "s", readout.record_s < 100 ? 2 : 0)}`
@@ -91,10 +88,10 @@ function Readout({ bench, name }: { bench: string; name: string }) {
           </Button>
         )}
         <PictureMenu take={take} />
-      </div>
+      </Group>
       <div className={styles.body}>
         <div className={`column ${styles.chart}`}>
-          <div className={styles.stage}>
+          <div style={{ flex: 1, minHeight: 0 }}>
             <Painted
               label={`Allan deviation over ${formatCount(readout?.octaves.length ?? 0, "averaging time")}`}
               paint={paint}

@@ -21,7 +21,7 @@ export function scatter(octave: number, pairs: number): number {
   return 1 / Math.sqrt(2 * ((pairs - 1) / overlap + 1));
 }
 
-/** The values of the figures that the record tells, or those that are true; those that are not there left out. */
+/** The fitted values of the figures, or the true ones, without missing values. */
 export function valuesOf(figures: RateReadout["figures"], which: "value" | "true"): Record<string, number> {
   return Object.fromEntries(figures.flatMap((f) => (f[which] ? [[f.letter, f[which]]] : [])));
 }

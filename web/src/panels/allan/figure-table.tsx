@@ -1,10 +1,11 @@
 import type { RateReadout } from "../../api/types";
+import { capital, sentence } from "../../ui/capital";
 import { formatShort, formatSpread } from "../../ui/format";
 import { TableHead } from "../../ui/table-head";
 import styles from "./allan.module.css";
 import { driftGrade, walkGrade } from "./deviation";
 
-/** Fitted noises beside the true ones, with their grade, or why the record does not tell them yet. */
+/** Fitted and true noises with their grade, or why the record does not give them yet. */
 export function FigureTable({ figures }: { figures: RateReadout["figures"] }) {
   return (
     <table className={styles.table}>
@@ -13,7 +14,7 @@ export function FigureTable({ figures }: { figures: RateReadout["figures"] }) {
         {figures.map((figure) => (
           <tr key={figure.letter}>
             <th scope="row">
-              {figure.name.charAt(0).toUpperCase() + figure.name.slice(1)} <i>{figure.letter}</i>
+              {capital(figure.name)} <i>{figure.letter}</i>
             </th>
             <td>
               {figure.value === null ? (
@@ -21,6 +22,7 @@ export function FigureTable({ figures }: { figures: RateReadout["figures"] }) {
               ) : (
                 <>
                   <b>{formatSpread("", figure.value, figure.error ?? 0, figure.unit)}</b>
+                  <br />
                   <small>{gradeOf(figure.letter, figure.value)}</small>
                 </>
               )}
@@ -37,5 +39,3 @@ function gradeOf(letter: string, value: number): string {
   if (letter === "N") return walkGrade(value);
   return letter === "B" ? driftGrade(value) : "";
 }
-
-const sentence = (reason: string) => `${reason.charAt(0).toUpperCase()}${reason.slice(1)}.`;

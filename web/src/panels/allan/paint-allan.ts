@@ -9,7 +9,7 @@ import { deviation, scatter, TERMS, valuesOf } from "./deviation";
 
 const POINTS = 64;
 
-/** Slot and dash of what is drawn. */
+/** Slot and dash of each curve. */
 const LINES = {
   measured: { name: "Measured, with its standard error", slot: 1, dash: 0 },
   fitted: { name: "Fitted, and its terms", slot: 2, dash: 1 },
@@ -23,7 +23,7 @@ export const allanEntries = (scheme: Scheme): LegendEntry[] =>
     dashes: DASHES[dash],
   }));
 
-/** The Allan deviation over the averaging time, both logarithmic: measured, fitted, and that of the rate itself. */
+/** The Allan deviation over the averaging time, both logarithmic: measured, fitted, and of the rate itself. */
 export function paintAllan(pen: Pen, box: Box, { octaves, figures, from_s, to_s }: RateReadout, look: Look): void {
   const fitted = valuesOf(figures, "value");
   const truth = valuesOf(figures, "true");

@@ -1,15 +1,14 @@
-import { Button, NativeSelect } from "@mantine/core";
+import { NativeSelect } from "@mantine/core";
 import { useMemo, useRef, useState } from "react";
-import { useMay } from "../../api/me";
 import type { BlockCard, Document } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { hypothesisWords } from "../../bench/hypothesis-words";
-import { openVariant } from "../../bench/open-bench";
-import { useBusy } from "../../bench/use-busy";
-import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
+import { pictureName } from "../../picture/picture";
+import { PictureMenu } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { middles, type PanelFrame } from "../../stream/panel-frame";
 import { EmptyState } from "../../ui/empty-state";
+import { RestartButton } from "../restart/restart-button";
 import { BehaviourPlot, type Drawing } from "./behaviour-plot";
 import { drawRegions } from "./paint-regions";
 import { drawSets } from "./paint-sets";
@@ -18,16 +17,16 @@ import { type Limits, peaks } from "./regions";
 const PATH_MS = 20;
 const PATH_COLUMNS = 200;
 
-/** A diagnoser that this panel can draw, the signals it is drawn from, and how. */
+/** A diagnoser that this panel can draw, and the signals for its drawing. */
 interface Drawn {
   id: string;
-  kind: "sets" | "regions";
+  title: string;
   signals: string[];
   columns: number;
   draw(frame: PanelFrame): Drawing | undefined;
 }
 
-/** The behaviours of a bank and where the measured output lies, or the regions of performance and where the device is. */
+/** The behaviours of a bank and the measured output, or the regions of performance and the place of the device. */
 export function BehaviourPanel() {
   const bench = useBench((s) => s.bench?.id);
   const replay = useBench((s) => s.bench?.replay_of);
@@ -36,9 +35,7 @@ export function BehaviourPanel() {
   const signals = useBench((s) => s.bench?.signals);
   const { block } = useCatalog();
   const [wanted, setWanted] = useState<string | undefined>(undefined);
-  const [busy, during] = useBusy();
-  const teaches = useMay("teach");
-  const picture = useRef<TakePicture>(null);
+  const drawing = useRef<Drawing | undefined>(undefined);
   const regions = block("diagnose", "regions");
   const all = useMemo(() => {
     const known = new Set((signals ?? []).map((s) => s.name));
@@ -48,51 +45,34 @@ export function BehaviourPanel() {
     });
   }, [diagnosers, parameters, signals, regions]);
   const shown = all.find(({ id }) => id === wanted) ?? all[0];
-  const begin = (kind: string, said: string) => {
-    void during(() => openVariant({ [`diagnosers.${kind}`]: { kind } }, said));
-  };
   if (!shown)
     return (
       <EmptyState
         title="No behaviour to draw"
         action={
           bench &&
-          teaches &&
           !replay && (
             <>
-              <Button
-                variant="filled"
-                size="xs"
-                loading={busy}
-                onClick={() => begin("consistency", "The bench restarts with a test of consistency.")}
-              >
-                Restart with a test of consistency
-              </Button>
-              <Button
-                size="xs"
-                loading={busy}
-                onClick={() => begin("regions", "The bench restarts with regions of performance.")}
-              >
-                Restart with regions of performance
-              </Button>
+              <RestartWith kind="consistency" what="a test of consistency" variant="filled" />
+              <RestartWith kind="regions" what="regions of performance" />
             </>
           )
         }
       >
-        A test of consistency draws the behaviour of each hypothesis and where the measured output lies; regions of
-        performance draw how far the device is from its healthy motion.
+        A test of consistency draws the behaviour of each hypothesis and the measured output; regions of performance
+        draw how far the device is from its healthy motion.
       </EmptyState>
     );
   return (
     <section className="view" aria-label="Behaviour">
       <BehaviourPlot
         key={`${bench} ${shown.id}`}
-        title={shown.kind === "sets" ? "Behaviours" : "Regions of performance"}
+        title={shown.title}
         signals={shown.signals}
         windowMs={PATH_MS}
         columns={shown.columns}
         draw={shown.draw}
-        picture={picture}
+        drawing={drawing}
       >
         {all.length > 1 && (
           <NativeSelect
@@ -102,9 +82,22 @@ export function BehaviourPanel() {
             onChange={(e) => setWanted(e.currentTarget.value)}
           />
         )}
-        <PictureMenu take={() => picture.current?.()} />
+        <PictureMenu take={() => drawing.current && { ...pictureName(shown.title), height: 600, ...drawing.current }} />
       </BehaviourPlot>
     </section>
+  );
+}
+
+function RestartWith({ kind, what, variant }: { kind: string; what: string; variant?: "filled" }) {
+  return (
+    <RestartButton
+      variant={variant}
+      size="xs"
+      set={{ [`diagnosers.${kind}`]: { kind } }}
+      said={`The bench restarts with ${what}.`}
+    >
+      Restart with {what}
+    </RestartButton>
   );
 }
 
@@ -112,7 +105,7 @@ function setsFrom(id: string, names: readonly string[]): Drawn {
   const each = names.flatMap((name) => [`${id}.sine.${name}`, `${id}.cosine.${name}`, `${id}.consistent.${name}`]);
   return {
     id,
-    kind: "sets",
+    title: "Behaviours",
     signals: [`${id}.verdict`, ...each],
     columns: 2,
     draw: ({ latest }) =>
@@ -141,7 +134,7 @@ function regionsFrom(id: string, parameters: Document | undefined, card: BlockCa
   const columns = tone > 0 ? Math.min(PATH_COLUMNS, Math.ceil((1e3 / tone / PATH_MS) * PATH_COLUMNS)) : 1;
   return {
     id,
-    kind: "regions",
+    title: "Regions of performance",
     signals: [`${id}.loss`, `${id}.region`, "sensor.displacement"],
     columns: PATH_COLUMNS,
     draw: (frame) => {

@@ -1,14 +1,12 @@
-import { type ReactNode, type Ref, useImperativeHandle, useMemo, useRef } from "react";
+import { Group, Text } from "@mantine/core";
+import { type ReactNode, type RefObject, useMemo, useRef } from "react";
 import type { LegendEntry } from "../../picture/legend";
 import { LiveCanvas } from "../../picture/live-canvas";
 import type { Box, Look, Pen } from "../../picture/pen";
-import { pictureName } from "../../picture/picture";
-import type { TakePicture } from "../../picture/picture-menu";
 import type { PanelFrame } from "../../stream/panel-frame";
 import type { Subscription } from "../../stream/wire";
-import styles from "./behaviour.module.css";
 
-/** What a diagnoser says, as a picture and as a sentence. */
+/** The result of a diagnoser as a picture and as a sentence. */
 export interface Drawing {
   words: string;
   legend: readonly LegendEntry[];
@@ -21,23 +19,15 @@ interface BehaviourPlotProps {
   windowMs: number;
   columns: number;
   draw(frame: PanelFrame): Drawing | undefined;
-  picture: Ref<TakePicture>;
-  /** The tools, which stand before the words. */
+  /** Keeps the newest drawing. */
+  drawing: RefObject<Drawing | undefined>;
+  /** The tools, before the words. */
   children: ReactNode;
 }
 
-/** The canvas of a drawing that follows the bench, and what it says in words. */
-export function BehaviourPlot({ title, signals, windowMs, columns, draw, picture, children }: BehaviourPlotProps) {
+/** The canvas of a drawing that follows the bench, and its words. */
+export function BehaviourPlot({ title, signals, windowMs, columns, draw, drawing, children }: BehaviourPlotProps) {
   const words = useRef<HTMLParagraphElement>(null);
-  const drawing = useRef<Drawing | undefined>(undefined);
-  useImperativeHandle(
-    picture,
-    () => () => {
-      const shown = drawing.current;
-      return shown && { ...pictureName(title), legend: shown.legend, height: 600, paint: shown.paint };
-    },
-    [title],
-  );
 
   const subscription = useMemo<Subscription>(
     () => ({ mode: "roll", signals, window_ms: windowMs, width: columns }),
@@ -46,10 +36,20 @@ export function BehaviourPlot({ title, signals, windowMs, columns, draw, picture
 
   return (
     <>
-      <div className={`row ${styles.bar}`}>
+      <Group gap="6px 8px" p="6px 12px">
         {children}
-        <p ref={words} className={styles.words} data-testid="behaviour-words" />
-      </div>
+        {/* two lines are kept for a sentence, so that the drawing stays in its place */}
+        <Text
+          ref={words}
+          fz="sm"
+          c="dimmed"
+          lh={1.4}
+          flex="1 1 240px"
+          mih="2.8em"
+          style={{ alignContent: "center" }}
+          data-testid="behaviour-words"
+        />
+      </Group>
       <LiveCanvas
         label={title}
         subscription={subscription}

@@ -7,7 +7,7 @@ import { decadeTicks, powerTicks } from "../../ui/ticks";
 import type { Drawing } from "./behaviour-plot";
 import { type Limits, type Path, REGIONS, regionsWords } from "./regions";
 
-/** Losses shown, %; what is less or more lies at the edge. */
+/** Least and largest loss shown, %; others are drawn at the edge. */
 const LEAST = 0.5;
 const MOST = 500;
 /** Room for the number of a loss, px. */
@@ -18,7 +18,7 @@ const SLOTS = [3, 6, 2];
 const percent = (loss: number) => Math.min(Math.max(100 * loss, LEAST), MOST);
 
 /** The regions from safe to danger, and the way the device took through them. */
-export function paintRegions(pen: Pen, box: Box, look: Look, path: Path, limits: Limits): void {
+function paintRegions(pen: Pen, box: Box, look: Look, path: Path, limits: Limits): void {
   const tall = Math.max(1.35 * limits.dangerUm, 1.08 * Math.max(...path.peakUm));
   const fine = decadeTicks(LEAST, MOST);
   const ticks = fine.length <= box.width / NUMBER ? fine : powerTicks(LEAST, MOST);
@@ -29,7 +29,7 @@ export function paintRegions(pen: Pen, box: Box, look: Look, path: Path, limits:
   const roof = plot.y(limits.dangerUm);
   const ink = CANVAS[look.scheme];
   const tints = [...SLOTS.map((slot) => TRACE_COLOURS[look.scheme][slot]), ink.alarm];
-  // danger lies all around what is safe
+  // danger surrounds the safe regions
   pen.globalAlpha = 0.22;
   pen.fillStyle = tints[3];
   pen.fillRect(left, top, right - left, roof - top);
@@ -43,7 +43,7 @@ export function paintRegions(pen: Pen, box: Box, look: Look, path: Path, limits:
   pen.fillStyle = ink.text;
   pen.textBaseline = "top";
   pen.textAlign = "center";
-  // in a narrow panel a name that would run into the one before stands a line lower
+  // in a narrow panel a name that would run into the last one is written a line lower
   const ends = [left, left];
   REGIONS.forEach((name, i) => {
     const middle = (edges[i] + (edges[i + 1] ?? right)) / 2;
@@ -55,7 +55,7 @@ export function paintRegions(pen: Pen, box: Box, look: Look, path: Path, limits:
   paintPath(pen, look, path, plot);
 }
 
-/** The way in the last moments, thin, and a dot for now. */
+/** The path of the last moments, thin, and a dot for now. */
 function paintPath(pen: Pen, look: Look, { loss, peakUm }: Path, plot: Plot): void {
   const ink = CANVAS[look.scheme];
   const across = loss.map(percent);

@@ -9,7 +9,7 @@ import { type Behaviour, type Sets, setsOf, setsWords } from "./sets";
 const AIR = 1.12;
 const LEAST_REACH = 3;
 const SPARE: number[] = [5, 4];
-/** Lines above and below a disc that its name may stand on. */
+/** Lines above and below a disc for its name. */
 const LINES = [0, -1, 1, -2, 2];
 
 /** A scale for both axes that holds every disc and the measured output. */
@@ -25,8 +25,8 @@ export function reachOf({ discs, measured }: Sets): { x: number; y: number; half
   return { x: (left + right) / 2, y: (low + high) / 2, half };
 }
 
-/** The behaviours as discs, filled where input and output belong to them, and a cross where the measured output lies. */
-export function paintSets(pen: Pen, box: Box, look: Look, sets: Sets): void {
+/** The behaviours as discs, filled where input and output belong to them, and the measured output as a cross. */
+function paintSets(pen: Pen, box: Box, look: Look, sets: Sets): void {
   const { x: middleX, y: middleY, half } = reachOf(sets);
   const across = linearAxis([middleX - half, middleX + half], "output by the sine of the drive, in limits of the test");
   const up = linearAxis([middleY - half, middleY + half], "output by its cosine, in limits");
@@ -55,7 +55,7 @@ export function paintSets(pen: Pen, box: Box, look: Look, sets: Sets): void {
   });
 }
 
-/** The names beside what they name, right or left, on the first line that is free. */
+/** Each name at the right or left of its disc, on the first free line. */
 function paintNames(pen: Pen, look: Look, { field, ...plot }: Plot, { discs, measured }: Sets, radius: number): void {
   const height = look.fontSize + 3;
   const taken: { left: number; right: number; y: number }[] = [];

@@ -22,7 +22,7 @@ export function peaks(low: ArrayLike<number>, high: ArrayLike<number>, columns: 
   return sizes.map((_, i) => Math.max(...sizes.slice(Math.max(0, i + 1 - columns), i + 1)));
 }
 
-/** What the regions say, in a sentence. */
+/** The region of the device in a sentence. */
 export function regionsWords({ loss, peakUm }: Path, region: number): string {
   const last = loss.length - 1;
   const name = REGIONS[region] ?? "unknown";

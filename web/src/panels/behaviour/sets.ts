@@ -1,14 +1,14 @@
-/** The behaviour of a hypothesis: a disc of radius 1, the limit of the test, about where its output would lie. */
+/** The behaviour of a hypothesis: a disc about its output, of radius 1, the limit of the test. */
 export interface Behaviour {
   name: string;
   words: string;
-  /** Where the measured output lies from the middle of the disc; within 1 the test at the tone is passed. */
+  /** From the middle of the disc to the measured output; within 1 the test at the tone is passed. */
   from: { x: number; y: number };
-  /** Whether input and output belong to it: this test and that of the power are passed. */
+  /** Whether input and output belong to it: this test and the test of the power are passed. */
   holds: boolean;
 }
 
-/** The behaviours of a bank, about that of the first hypothesis, and where the measured output lies. */
+/** The behaviours of a bank around the first one, and the measured output. */
 export interface Sets {
   discs: { name: string; x: number; y: number; holds: boolean }[];
   measured: { x: number; y: number };
@@ -23,9 +23,9 @@ const VERDICTS = [
 ];
 
 /**
- * Put the discs where they lie to each other: the measured output has its distance from the middle of each.
+ * Place the discs around each other: the measured output has its distance from the middle of each.
  *
- * The first stays where it is, so that it is the measured output that is seen to move.
+ * The first disc keeps its place, so that the measured output moves.
  */
 export function setsOf(behaviours: readonly Behaviour[]): Sets | undefined {
   const [first] = behaviours;
@@ -41,7 +41,7 @@ export function setsOf(behaviours: readonly Behaviour[]): Sets | undefined {
   };
 }
 
-/** What the sets say, in a sentence. */
+/** The result of the test in a sentence. */
 export function setsWords(behaviours: readonly Behaviour[], verdict: number): string {
   const holding = behaviours.filter((one) => one.holds).map((one) => one.words);
   const belongs =

@@ -1,23 +1,24 @@
-import { Button, Radio } from "@mantine/core";
+import { Box, Button, Radio, SimpleGrid, Stack } from "@mantine/core";
 import { type ReactNode, useMemo, useState } from "react";
 import { blind } from "../../api/blind";
 import type { Question } from "../../api/types";
 import { hypothesisWords } from "../../bench/hypothesis-words";
-import { showError } from "../../bench/send";
+import { useBusy } from "../../bench/use-busy";
 import { useBench } from "../../stream/bench-store";
 import exercise from "../../ui/exercise.module.css";
 import { formatPercent, formatSi } from "../../ui/format";
 import { Slider } from "../../ui/slider";
-import styles from "./blind.module.css";
+
+const COMMIT = { gap: "6px 12px", borderTop: "1px solid var(--line)" };
 
 interface AnswerProps {
   question: Question;
-  /** How points are counted. */
+  /** The rule for points. */
   rule: ReactNode;
   onEnded(): void;
 }
 
-/** The question: what the device is now, and how sure that is. */
+/** The question: the state of the device now, and a confidence. */
 export function Answer({ question, rule, onEnded }: AnswerProps) {
   const { answers, factors, by_tick } = question;
   const bench = useBench((s) => s.bench?.id) ?? "";
@@ -25,37 +26,34 @@ export function Answer({ question, rule, onEnded }: AnswerProps) {
   const hasCome = useBench((s) => (s.bench?.tick ?? 0) >= by_tick);
   const [said, setSaid] = useState<string | undefined>(undefined);
   const [confidence, setConfidence] = useState(70);
-  const [busy, setBusy] = useState(false);
+  const [busy, during] = useBusy();
   const known = useMemo(() => ({ answers: { kind: "", names: answers, factors } }), [answers, factors]);
-  const end = (ended: Promise<unknown>) => {
-    setBusy(true);
-    void ended.then(onEnded, showError).finally(() => setBusy(false));
-  };
+  const end = (ended: () => Promise<unknown>) => void during(() => ended().then(onEnded));
   return (
     <>
-      <div className={`column ${styles.question}`}>
+      <Stack gap={8} flex={1} p="8px 12px" style={{ overflowY: "auto" }} data-testid="question">
         <p className={exercise.text}>
           {hasCome
             ? "If there is a fault, it has come."
             : `If there is a fault, it comes before ${formatSi(by_tick * dtMs, "ms", 3)}.`}
         </p>
         <Radio.Group label="What is hidden here?" value={said ?? ""} onChange={setSaid}>
-          <div className={styles.answers}>
+          <SimpleGrid cols={2} spacing={12} verticalSpacing={6} pt={6}>
             {answers.map((name) => (
               <Radio key={name} value={name} label={hypothesisWords(name, known)} />
             ))}
-          </div>
+          </SimpleGrid>
         </Radio.Group>
         <p className={exercise.text}>You may change the reference and the controller meanwhile.</p>
         {rule}
-      </div>
-      <footer className={`row ${styles.commit}`}>
+      </Stack>
+      <Box component="footer" className="row" flex="none" p="8px 12px" fz="sm" style={COMMIT}>
         <label htmlFor="confidence">
           How sure are you? <strong>{formatPercent(confidence / 100, 0)}</strong>
         </label>
         <Slider
           id="confidence"
-          className={styles.slider}
+          flex="1 1 120px"
           thumbLabel="How sure are you, percent"
           min={Math.ceil(100 / answers.length)}
           max={100}
@@ -68,14 +66,14 @@ export function Answer({ question, rule, onEnded }: AnswerProps) {
           size="xs"
           loading={busy}
           disabled={said === undefined}
-          onClick={() => said && end(blind.answer(bench, said, confidence / 100))}
+          onClick={() => said && end(() => blind.answer(bench, said, confidence / 100))}
         >
           Commit the answer
         </Button>
-        <Button size="xs" variant="subtle" disabled={busy} onClick={() => end(blind.giveUp(bench))}>
+        <Button size="xs" variant="subtle" disabled={busy} onClick={() => end(() => blind.giveUp(bench))}>
           Give up
         </Button>
-      </footer>
+      </Box>
     </>
   );
 }

@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { answersOf } from "../../api/blind";
 import type { HiddenAnswer } from "../../api/types";
 import { showPanel } from "../../bench/dock";
@@ -8,12 +8,12 @@ import exercise from "../../ui/exercise.module.css";
 import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { jump } from "../../ui/hover";
 import { TableHead } from "../../ui/table-head";
-import styles from "./blind.module.css";
 import { Telling } from "./telling";
 
+const RIGHT = "var(--running)";
 const points = (value: number) => formatCount(Math.round(value), "point");
 
-/** What came of the last question: truth, points, what the diagnosers said, and the way to the moment. */
+/** The outcome of the last question: truth, points, the verdicts of the diagnosers, and the way to the moment. */
 export function Outcome({ answer }: { answer: HiddenAnswer }) {
   const { said, truth, confidence, came_tick, took_ms, verdicts = {}, points: won = 0 } = answer;
   const head = useBench((s) => s.bench?.tick) ?? 0;
@@ -22,18 +22,18 @@ export function Outcome({ answer }: { answer: HiddenAnswer }) {
   const right = said === truth;
   const when =
     came_tick === null
-      ? "No fault was to come"
+      ? "The device stayed healthy"
       : took_ms === null || took_ms === undefined
         ? "The fault had not come"
         : `The fault had been there for ${formatSi(took_ms, "ms", 3)}`;
   const told = Object.entries(verdicts).map(([id, verdict]) => `${id.replaceAll("_", " ")} said ${words(verdict)}`);
   return (
-    <div className={styles.outcome} role="status">
-      <p className={styles.verdict} data-right={right}>
+    <Box role="status" pb={8} style={{ borderBottom: "1px solid var(--line)" }}>
+      <Box component="p" mb={4} fz="lg" fw={650} c={right ? RIGHT : "var(--alarm)"}>
         {said === null || said === undefined
           ? `No answer: it is ${words(truth)}.`
           : `${right ? "Right" : "Wrong"}: it is ${words(truth)}. ${points(won)}`}
-      </p>
+      </Box>
       <p className={exercise.text}>
         {said && confidence !== null && confidence !== undefined
           ? `You said ${words(said)} with ${formatPercent(confidence, 0)}. `
@@ -42,10 +42,16 @@ export function Outcome({ answer }: { answer: HiddenAnswer }) {
       </p>
       <Telling answer={answer} />
       {came_tick !== null && came_tick <= head && (
-        <Button onClick={() => jump.to({ tick: came_tick })}>Show the moment it came</Button>
+        <Button m="8px 8px 0 0" onClick={() => jump.to({ tick: came_tick })}>
+          Show the moment it came
+        </Button>
       )}
-      {answer.healthy && <Button onClick={() => showPanel("identify")}>Sweep the device</Button>}
-    </div>
+      {answer.healthy && (
+        <Button mt={8} onClick={() => showPanel("identify")}>
+          Sweep the device
+        </Button>
+      )}
+    </Box>
   );
 }
 
@@ -62,13 +68,15 @@ export function Attempts({ answers }: { answers: readonly HiddenAnswer[] }) {
         {answers.map((one) => {
           const known = answersOf(one);
           return (
-            <tr key={one.id} className={styles.answer} data-right={one.said === one.truth}>
+            <tr key={one.id}>
               <td>{one.said ? hypothesisWords(one.said, known) : "nothing"}</td>
               <td>{hypothesisWords(one.truth, known)}</td>
               <td>
                 {one.confidence === null || one.confidence === undefined ? "–" : formatPercent(one.confidence, 0)}
               </td>
-              <td>{formatNumber(one.points ?? 0, 0)}</td>
+              <Box component="td" {...(one.said === one.truth && { c: RIGHT, fw: 650 })}>
+                {formatNumber(one.points ?? 0, 0)}
+              </Box>
             </tr>
           );
         })}

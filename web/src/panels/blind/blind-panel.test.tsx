@@ -6,7 +6,6 @@ import { connect } from "../../testing/fake-transport";
 import { recordedAnswer, recordedBench } from "../../testing/recorded";
 import { mount } from "../../testing/render";
 import { jump } from "../../ui/hover";
-import styles from "./blind.module.css";
 import { BlindPanel } from "./blind-panel";
 
 const { bench: hidden, asked, answered } = await recordedAnswer("blind");
@@ -142,7 +141,7 @@ it("begins with the button that hides a fault, and keeps confidence and Commit b
     panel().getByRole("button", { name: "Hide a fault" }),
   );
   board.hello(hidden);
-  const [scrolls] = document.getElementsByClassName(styles.question);
+  const scrolls = screen.getByTestId("question");
   expect(scrolls).toContainElement(panel().getAllByRole("radio")[0]);
   for (const one of [panel().getByRole("slider"), panel().getByRole("button", { name: "Commit the answer" })])
     expect(scrolls).not.toContainElement(one);
@@ -175,7 +174,7 @@ it.each([
 ] as const)("says which measurement would have told %s, with its figures", async (truth, faulty, said, moved) => {
   const { user } = ended(truth, faulty);
   expect(await panel().findByText(said)).toBeVisible();
-  const rows = within(panel().getByRole("table", { name: "What a sweep shows" }))
+  const rows = within(panel().getByRole("table", { name: "Results of a sweep" }))
     .getAllByRole("row")
     .slice(1);
   const shown = rows.filter((row) => row.dataset.moved === "true").map((row) => [...row.children].map(plain).join(" "));

@@ -16,7 +16,7 @@ const FIGURES: { key: keyof Shown; words: string; unit: string }[] = [
 /** A smaller change is none. */
 const LEAST = 0.002;
 
-/** What tells each kind of fault on a device with one displacement. */
+/** Signs of each kind of fault on a device with one displacement. */
 const SWEPT: Record<string, string> = {
   mass: "the resonance moves, and the gain at low frequencies stays: mass, not stiffness",
   stiffness: "the resonance moves, and so does the gain at low frequencies: stiffness, not mass",
@@ -24,7 +24,7 @@ const SWEPT: Record<string, string> = {
   gain: "the whole curve moves up or down, and the resonance stays",
 };
 
-/** What tells each kind of fault of a gyroscope, which no sweep measures. */
+/** Signs of each kind of fault of a gyroscope, which no sweep measures. */
 const OF_AXES: Record<string, string> = {
   mass: "the Spectrum: both resonances move the same way",
   stiffness: "the Spectrum: both resonances move the same way",
@@ -42,8 +42,8 @@ export function Telling({ answer }: { answer: HiddenAnswer }) {
     return (
       <p className={exercise.text}>
         {parts.length === 0
-          ? "No measurement tells a fault: there is none."
-          : `What tells it: ${parts.map((part) => OF_AXES[part] ?? part).join("; ")}.`}
+          ? "No measurement shows a fault: the device is healthy."
+          : `Signs of it: ${parts.map((part) => OF_AXES[part] ?? part).join("; ")}.`}
       </p>
     );
   return (
@@ -53,7 +53,7 @@ export function Telling({ answer }: { answer: HiddenAnswer }) {
           ? "Frequency response tells it: a sweep finds every figure where it was."
           : `Frequency response tells it: ${parts.map((part) => SWEPT[part] ?? part).join("; ")}.`}
       </p>
-      <table className={styles.moved} aria-label="What a sweep shows">
+      <table className={styles.moved} aria-label="Results of a sweep">
         <TableHead names={["A sweep shows", "healthy", "now", "change"]} />
         <tbody>
           {FIGURES.map(({ key, words, unit }) => {

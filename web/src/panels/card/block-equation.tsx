@@ -1,21 +1,22 @@
-import { Popover, UnstyledButton } from "@mantine/core";
+import { Box, Popover, UnstyledButton } from "@mantine/core";
 import type { Equation } from "../../api/types";
 import { EquationDetail } from "../../ui/equation-detail";
 import { Formula } from "../../ui/formula";
-import styles from "./card.module.css";
 
-/** An equation with its number; where the printed one is wrong, a mark opens what was printed and why not. */
+const ERRATUM = { p: "0 6px", bd: "1px solid var(--accent)", bdrs: 9, c: "var(--accent)", fz: "xs", lh: "16px" };
+
+/** An equation with its number; where the printed one is wrong, a mark opens the printed form and the reason. */
 export function BlockEquation({ equation }: { equation: Equation }) {
   return (
-    <figure className={styles.equation}>
+    <Box component="figure" p="4px 0">
       <Formula latex={equation.latex} />
-      <figcaption>
+      <figcaption className="row remark">
         {equation.label && <span>{equation.label.replaceAll("_", " ")}</span>}
         {equation.source && <span>({equation.source})</span>}
         {equation.printed && (
           <Popover width={360} position="bottom-end">
             <Popover.Target>
-              <UnstyledButton className={styles.erratum} aria-label="Erratum: the printed equation differs">
+              <UnstyledButton {...ERRATUM} aria-label="Erratum: the printed equation differs">
                 erratum
               </UnstyledButton>
             </Popover.Target>
@@ -25,6 +26,6 @@ export function BlockEquation({ equation }: { equation: Equation }) {
           </Popover>
         )}
       </figcaption>
-    </figure>
+    </Box>
   );
 }

@@ -2,7 +2,6 @@ import { useMay } from "../../api/me";
 import { useCatalog } from "../../api/use-catalog";
 import { useBench } from "../../stream/bench-store";
 import { KindChoice } from "../controllers/generator-form";
-import styles from "./card.module.css";
 import { type Instance, useInstances } from "./instances";
 import { ParameterList } from "./parameter-list";
 
@@ -23,7 +22,7 @@ export function BlockValues({ id, isTitled = false }: { id: string; isTitled?: b
   );
 }
 
-/** The parameters of a block on the bench, for those who drive it. */
+/** The parameters of a block on the bench; a watcher cannot change them. */
 export function Values({ instance }: { instance: Instance }) {
   const parameters = useBench((s) => s.bench?.parameters);
   const drives = useMay("drive");
@@ -31,7 +30,7 @@ export function Values({ instance }: { instance: Instance }) {
   const found = block(instance.family, instance.name);
   if (!parameters || !found) return null;
   return (
-    <fieldset className={styles.values} disabled={!drives}>
+    <fieldset disabled={!drives}>
       {GENERATORS.includes(instance.family) && <KindChoice instance={instance} />}
       <ParameterList
         key={`${instance.id} ${instance.name}`}

@@ -1,4 +1,4 @@
-import { Button, NativeSelect } from "@mantine/core";
+import { Box, Button, NativeSelect } from "@mantine/core";
 import { IconChevronLeft } from "@tabler/icons-react";
 import { useMay } from "../../api/me";
 import { useCatalog } from "../../api/use-catalog";
@@ -10,19 +10,19 @@ import { Prose } from "../../ui/prose";
 import { Weaknesses } from "../../ui/weaknesses";
 import { BlockEquation } from "./block-equation";
 import { Values } from "./block-values";
-import styles from "./card.module.css";
+import { CatalogueMissing } from "./catalogue-missing";
 import { EditUnit } from "./edit-unit";
 import { useInstances } from "./instances";
 import { LiveValues } from "./live-values";
 
-/** What was last clicked: what the block does, its equations and its parameters. */
+/** The block that was clicked last: its purpose, its equations and its parameters. */
 export function CardPanel() {
   const card = useView((s) => s.card);
   const parameters = useBench((s) => s.bench?.parameters);
   const controller = useBench((s) => s.bench?.controller);
   const list = useInstances();
   const drives = useMay("drive");
-  const { blocks, block, failed, retry } = useCatalog();
+  const { blocks, block } = useCatalog();
   const wanted = card === "controller" ? `controllers.${controller}` : card;
   const instance = list.find((i) => i.id === wanted) ?? list[0];
   if (!instance || !parameters)
@@ -36,11 +36,13 @@ export function CardPanel() {
   }));
   return (
     <section className="view-page" aria-label={`Block: ${found?.title ?? instance.name}`}>
-      <div className={`row ${styles.head}`}>
+      <div className="row">
         <Button leftSection={<IconChevronLeft size={15} />} onClick={() => showPanel("schematic")}>
           Diagram
         </Button>
         <NativeSelect
+          flex={1}
+          miw={0}
           aria-label="Block"
           value={instance.id}
           data={options}
@@ -49,42 +51,29 @@ export function CardPanel() {
       </div>
       {found ? (
         <>
-          <h2 className={styles.title}>{found.title}</h2>
-          <p className={styles.summary}>
+          <Box component="h2" m="12px 0 4px" fz="lg">
+            {found.title}
+          </Box>
+          <Box component="p" className="note" mb={8}>
             <Prose text={found.summary} />
-          </p>
+          </Box>
           <EditUnit block={found} />
           <Weaknesses of={found} />
           {found.equations.length > 0 && (
-            <div className={styles.equations}>
+            <Box p="4px 0" fz="md" style={{ borderTop: "1px solid var(--line)" }}>
               {found.equations.map((equation) => (
                 <BlockEquation key={equation.label + equation.latex} equation={equation} />
               ))}
-            </div>
+            </Box>
           )}
           <LiveValues key={`live ${instance.id} ${instance.name}`} instance={instance} />
-          {!drives && <p className={styles.summary}>You watch this bench; its values cannot be changed here.</p>}
+          {!drives && <p className="note">You watch this bench; its values cannot be changed here.</p>}
           <Values instance={instance} />
         </>
       ) : (
-        <EmptyState
-          title={
-            failed
-              ? "The server did not send the catalogue"
-              : blocks.length
-                ? "Not in the catalogue"
-                : "Loading the catalogue"
-          }
-          action={
-            failed && (
-              <Button variant="filled" size="xs" onClick={retry}>
-                Ask again
-              </Button>
-            )
-          }
-        >
+        <CatalogueMissing loading={blocks.length ? "Not in the catalogue" : "Loading the catalogue"}>
           {instance.family} {instance.name}
-        </EmptyState>
+        </CatalogueMissing>
       )}
     </section>
   );

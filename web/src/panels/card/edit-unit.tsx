@@ -8,7 +8,7 @@ import { editCopy, editOwn } from "../../bench/edit-unit";
 import { sourceOnBench } from "../../bench/unit-values";
 import { useBench } from "../../stream/bench-store";
 
-/** The way from a block to its text: a unit of one's own is edited, one of the library is copied where it can be. */
+/** The way from a block to its text: an own unit is edited, a unit of the library is copied. */
 export function EditUnit({ block: { family, name } }: { block: BlockCard }) {
   const teaches = useMay("teach");
   const isOwn = useBench((s) => sourceOnBench(s.bench?.parameters, name) !== undefined);

@@ -3,7 +3,7 @@ import { useShallow } from "zustand/react/shallow";
 import type { Bench, Document, Signal } from "../../api/types";
 import { useBench } from "../../stream/bench-store";
 
-/** A block as it stands on the bench: where the catalogue describes it and where the document keeps its values. */
+/** A block on the bench: its card in the catalogue, and the place of its values in the document. */
 export interface Instance {
   id: string;
   title: string;
@@ -11,15 +11,20 @@ export interface Instance {
   name: string;
   /** Path of its parameters in the scenario document, as commands name them. */
   path: string;
-  /** Other places where the document may keep a value, for blocks of which several run in shadow. */
+  /** Other places where the document may keep a value, for blocks with several in shadow. */
   also: string[];
 }
 
-const section = (document: Document, path: string): Document => {
+/** A table of a document, by its path. */
+export const section = (document: Document, path: string): Document => {
   let at: unknown = document;
   for (const key of path.split(".")) at = (at as Document | undefined)?.[key];
   return (at ?? {}) as Document;
 };
+
+/** A word of a table of a document. */
+export const textOf = (document: Document, path: string, key: string, otherwise: string): string =>
+  String(section(document, path)[key] ?? otherwise);
 
 /** Value of a parameter of a block on the bench, if the document states it. */
 export function parameterValue(document: Document, instance: Instance, parameter: string): unknown {
@@ -35,19 +40,14 @@ export function instances(
   bench: Pick<Bench, "axes" | "parameters" | "controllers" | "controller" | "diagnosers" | "slots">,
 ): Instance[] {
   const { parameters } = bench;
-  const text = (path: string, key: string, otherwise: string) => String(section(parameters, path)[key] ?? otherwise);
+  const text = (path: string, key: string, otherwise: string) => textOf(parameters, path, key, otherwise);
   const driving = Object.values(bench.slots).reverse();
   const controllers = [...driving, ...bench.controllers.filter((name) => !driving.includes(name))];
   const isFlat = bench.axes.length === 0;
   const sensor = text("sensor", "kind", isFlat ? "ideal" : "pick_off");
-  const single = (id: string, title: string, family: string, name: string): Instance => ({
-    id,
-    title,
-    family,
-    name,
-    path: id,
-    also: [],
-  });
+  const single = (id: string, title: string, family: string, name: string): Instance => {
+    return { id, title, family, name, path: id, also: [] };
+  };
   return [
     ...(isFlat
       ? [single("reference", "Reference", "reference", text("reference", "kind", "sine"))]
@@ -77,13 +77,13 @@ export function instances(
   ];
 }
 
-/** Blocks that stand once at each axis of a plant that has some: drive.x, drive.y. */
+/** Blocks with one instance for each axis of a plant with axes: drive.x, drive.y. */
 const AT_EACH_AXIS = ["drive", "guard"];
 
-/** The signals of a block on the bench, what it puts out first; those of twins belong to the twins. */
+/** The signals of a block on the bench, outputs first; signals of twins belong to the twins. */
 export function ownSignals(instance: Instance, signals: readonly Signal[]): Signal[] {
   const key = instance.id.split(".").at(-1) ?? instance.id;
-  // a sensor's own signals carry its kind, and what the loop reads of it is called sensor
+  // a sensor names its own signals by its kind, and the signal for the loop by "sensor"
   const blocks = instance.family === "sense" ? ["sensor", instance.name] : [key, `${key}.score`];
   const stages = AT_EACH_AXIS.includes(key) || instance.family === "sense" ? blocks.map((block) => `${block}.`) : [];
   const belongs = (block: string) => blocks.includes(block) || stages.some((stage) => block.startsWith(stage));

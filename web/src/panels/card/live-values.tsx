@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button, Group } from "@mantine/core";
 import { IconWaveSine } from "@tabler/icons-react";
 import { useMemo } from "react";
 import type { Signal } from "../../api/types";
@@ -12,7 +12,7 @@ import { type Instance, ownSignals } from "./instances";
 
 const MOST = 24;
 
-/** What a block puts out and what goes on inside it, as numbers now. */
+/** Outputs and inner signals of a block, as numbers now. */
 export function LiveValues({ instance }: { instance: Instance }) {
   const signals = useBench((s) => s.bench?.signals);
   const own = useMemo(() => ownSignals(instance, signals ?? []).slice(0, MOST), [instance, signals]);
@@ -26,22 +26,19 @@ export function LiveValues({ instance }: { instance: Instance }) {
   if (own.length === 0) return null;
   return (
     <section className={styles.live} aria-label="Live values">
-      <header>
-        <h3>Now</h3>
+      <Group justify="space-between">
+        <Box component="h3" fz="sm">
+          Now
+        </Box>
         <Button
           size="compact-xs"
           variant="subtle"
           leftSection={<IconWaveSine size={14} />}
-          onClick={() =>
-            addScope(
-              instance.title,
-              own.slice(0, 6).map((s) => s.name),
-            )
-          }
+          onClick={() => addScope(instance.title, Object.keys(shown).slice(0, 6))}
         >
           Open in a scope
         </Button>
-      </header>
+      </Group>
       <dl>
         {own.map((signal) => (
           <div key={signal.name} title={`${signal.name}: ${signal.meaning}`}>
@@ -71,8 +68,8 @@ function bare({ name }: Signal): string {
 const COUNTS = ["false_switches", "delay"];
 
 /**
- * A figure of a diagnoser's score in words: hypotheses by name, counts whole, shares in percent; undefined for what is a number like
- * any other.
+ * A figure of the score of a diagnoser in words: hypotheses by name, counts whole, shares in percent; undefined for other
+ * figures.
  */
 export function scoreWords(signal: string, value: number, names: readonly string[]): string | undefined {
   const port = signal.slice(signal.lastIndexOf(".") + 1);

@@ -3,7 +3,6 @@ import { useState } from "react";
 import type { Document, Parameter } from "../../api/types";
 import { showPanel } from "../../bench/dock";
 import { send } from "../../bench/send";
-import styles from "./card.module.css";
 import { type Instance, parameterValue } from "./instances";
 import { ParameterRow } from "./parameter-row";
 import { parameterTitle } from "./parameter-title";
@@ -38,7 +37,7 @@ export function ParameterList({ instance, parameters, document }: ParameterListP
   const count = Object.keys(staged).length;
   return (
     <>
-      <div className={styles.parameters}>
+      <div style={{ borderTop: "1px solid var(--line)" }}>
         {shown.map((parameter) => {
           const path = `${instance.path}.${parameter.name}`;
           const value = path in staged ? staged[path] : (current(parameter.name) ?? parameter.default);

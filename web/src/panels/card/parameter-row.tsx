@@ -14,7 +14,7 @@ interface ParameterRowProps {
   onChange(value: unknown): void;
 }
 
-/** One parameter: what it means, its value with unit, its default and limits, and whether it may change now. */
+/** One parameter: its meaning, its value with unit, its default and limits, and whether it may change now. */
 export function ParameterRow({ parameter, value, staged, onChange }: ParameterRowProps) {
   const { meaning, live, type } = parameter;
   const label = parameterTitle(parameter);

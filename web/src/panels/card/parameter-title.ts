@@ -1,9 +1,10 @@
 import type { Parameter } from "../../api/types";
+import { capital } from "../../ui/capital";
 
 /**
- * A parameter's name as people read it: the unit stands beside the value, not in the name.
+ * The title of a parameter: its name without the unit, which the value has.
  *
- * One whose name is nothing but its unit goes by its meaning.
+ * A parameter with its unit as its name has its meaning as its title.
  */
 export function parameterTitle({ label, unit, meaning }: Pick<Parameter, "label" | "unit" | "meaning">): string {
   const suffix = unit === "%" ? "pct" : plain(unit);
@@ -16,5 +17,3 @@ const plain = (unit: string) =>
     .toLowerCase()
     .replace(/[^a-z0-9]+/g, " ")
     .trim();
-
-const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);

@@ -1,9 +1,9 @@
+import { Box } from "@mantine/core";
 import { useShallow } from "zustand/react/shallow";
 import { useCatalog } from "../../api/use-catalog";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { BlockValues } from "./block-values";
-import styles from "./card.module.css";
 
 /** The parameters of the controllers that drive, each under its name. */
 export function ParametersView() {
@@ -15,7 +15,9 @@ export function ParametersView() {
     <section className="view-page" aria-label="Parameters">
       {active.map((name) => (
         <section key={name} aria-label={block("control", name)?.title ?? name}>
-          <h2 className={styles.title}>{block("control", name)?.title ?? name}</h2>
+          <Box component="h2" m="12px 0 4px" fz="lg">
+            {block("control", name)?.title ?? name}
+          </Box>
           <BlockValues id={`controllers.${name}`} />
         </section>
       ))}

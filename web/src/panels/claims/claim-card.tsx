@@ -1,9 +1,10 @@
-import { Box, Button } from "@mantine/core";
+import { Box, Button, Group } from "@mantine/core";
 import { IconCheck, IconClock, IconX } from "@tabler/icons-react";
 import { useMay } from "../../api/me";
 import type { Claim, ClaimList } from "../../api/types";
 import { addScope } from "../../bench/dock";
 import { placeIn } from "../../bench/printed";
+import { Figure } from "../../ui/figure";
 import { Verdict } from "../../ui/verdict";
 import { partnersOf } from "./claim-signals";
 import { claimWords, stateWords } from "./claim-words";
@@ -17,6 +18,8 @@ const ICONS = {
   "not yet": <IconClock size={18} stroke={2} />,
 };
 
+const COLOURS = { holds: "var(--running)", fails: "var(--alarm)", "not yet": "dimmed" };
+
 interface ClaimCardProps {
   claim: Claim;
   list: ClaimList;
@@ -24,7 +27,7 @@ interface ClaimCardProps {
   onOpen(isOpen: boolean): void;
 }
 
-/** One claim: ticked or crossed, printed and measured side by side, and where it begins to hold. */
+/** One claim: ticked or crossed, printed and measured side by side, and the range where it holds. */
 export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
   const teaches = useMay("teach");
   const words = claimWords(claim);
@@ -37,52 +40,43 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
   const drawn = [...new Set(claim.marks.flatMap(({ signal, problem }) => (problem ? [] : [signal])))];
   const problems = [...new Set(claim.marks.flatMap(({ problem }) => (problem ? [problem] : [])))];
   return (
-    <li className={styles.card} data-state={claim.state} aria-label={`${words.name}: ${stateWords(claim)}`}>
-      <span className={styles.mark} title={stateWords(claim)}>
+    <li className={styles.card} aria-label={`${words.name}: ${stateWords(claim)}`}>
+      <Box component="span" flex="none" w={26} c={COLOURS[claim.state]} title={stateWords(claim)}>
         {ICONS[claim.state]}
-      </span>
+      </Box>
       <Box flex={1} miw={0}>
-        <div className={styles.head}>
+        <Group gap="4px 10px" align="baseline">
           <h3>{words.name}</h3>
           {claim.state !== "not yet" && <Verdict verdict={claim.verdict} borneOut />}
-        </div>
+        </Group>
         <dl className={styles.numbers}>
-          <div>
-            <dt>printed</dt>
-            <dd>
-              {words.printed}
-              {claim.published && <small>“{claim.published}”</small>}
-            </dd>
-          </div>
-          <div>
-            <dt>expected</dt>
-            <dd>{words.expected}</dd>
-          </div>
-          <div>
-            <dt>measured</dt>
-            <dd data-expected={claim.as_expected} className={styles.measured}>
-              {words.measured}
-              {claim.state !== "not yet" && claim.as_expected === false && claim.is_published && (
-                <small>other than expected</small>
-              )}
-            </dd>
-          </div>
+          <Figure name="printed">
+            {words.printed}
+            {claim.published && <small>“{claim.published}”</small>}
+          </Figure>
+          <Figure name="expected">{words.expected}</Figure>
+          <Figure name="measured" fz="md" fw={650}>
+            {words.measured}
+            {claim.state !== "not yet" && claim.as_expected === false && claim.is_published && (
+              <small>other than expected</small>
+            )}
+          </Figure>
         </dl>
         {said.map((text) => (
           <Box component="p" key={text} m="2px 0">
             {text}
           </Box>
         ))}
-        {readings.length > 0 && <p className={styles.reading}>Drawn: {readings.join("; ")}.</p>}
-        {problems.map((text) => (
-          <p key={text} className={styles.reading}>
-            Not drawn: {text}.
-          </p>
+        {[
+          ...(readings.length > 0 ? [`Drawn: ${readings.join("; ")}.`] : []),
+          ...problems.map((text) => `Not drawn: ${text}.`),
+          ...(claim.note ? [`Why: ${claim.note}.`] : []),
+          ...(claim.fitted.length > 0 ? [`Chosen so that it agrees: ${claim.fitted.join(", ")}.`] : []),
+        ].map((text) => (
+          <Box component="p" key={text} className="remark" m="2px 0">
+            {text}
+          </Box>
         ))}
-        {claim.note && <p className={styles.reading}>Why: {claim.note}.</p>}
-        {claim.fitted.length > 0 && (
-          <p className={styles.reading}>Chosen so that it agrees: {claim.fitted.join(", ")}.</p>
-        )}
         <Box className="row" mt={8}>
           {teaches && claim.knobs.length > 0 && (
             <Button variant="light" aria-expanded={isOpen} onClick={() => onOpen(!isOpen)}>

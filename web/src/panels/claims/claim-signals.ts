@@ -4,7 +4,7 @@ const PARTNERS: Partial<Record<string, string>> = {
   "plant.displacement": "model.displacement",
 };
 
-/** What belongs beside some signals on a scope. */
+/** Signals to show together with some signals on a scope. */
 export const partnersOf = (signals: readonly string[]): string[] =>
   signals.flatMap((name) => PARTNERS[name] ?? []).filter((name) => !signals.includes(name));
 

@@ -2,14 +2,6 @@ import type { Claim } from "../../api/types";
 import { formatFigure } from "../../ui/format";
 import { metricScale } from "../../ui/metric-name";
 
-/** The numbers of a claim in words, all in one unit. */
-export interface ClaimWords {
-  name: string;
-  printed: string;
-  expected: string;
-  measured: string;
-}
-
 /** A range in words: "1.71 to 1.89 µm", "at least 1.67 µm". */
 export function rangeText(low: number | null, high: number | null, say: (value: number) => string): string {
   if (low !== null && high !== null) return low === high ? say(low) : `${say(low)} to ${say(high)}`;
@@ -17,7 +9,8 @@ export function rangeText(low: number | null, high: number | null, say: (value: 
   return high === null ? "any" : `at most ${say(high)}`;
 }
 
-export function claimWords(claim: Claim): ClaimWords {
+/** The numbers of a claim in words, all in one unit. */
+export function claimWords(claim: Claim) {
   const { metric, low, high, printed_low, printed_high, published_value, measured } = claim;
   const { name, unit, shown } = metricScale(metric, [low, high, printed_low, printed_high, published_value, measured]);
   const bare = (value: number) => formatFigure(metric, shown(value));
@@ -32,7 +25,7 @@ export function claimWords(claim: Claim): ClaimWords {
   };
 }
 
-/** What a claim comes to, in a few words. */
+/** The state of a claim in a few words. */
 export function stateWords({ state, is_published }: Pick<Claim, "state" | "is_published">): string {
   if (state === "not yet") return "not yet";
   if (is_published) return state === "holds" ? "holds as printed" : "does not hold as printed";

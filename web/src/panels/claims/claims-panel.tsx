@@ -7,10 +7,9 @@ import { EmptyState } from "../../ui/empty-state";
 import { formatSi } from "../../ui/format";
 import { Verdict } from "../../ui/verdict";
 import { ClaimCard } from "./claim-card";
-import styles from "./claims.module.css";
 import { useClaims } from "./use-claims";
 
-/** The claims of the scenario of the bench: as printed, as expected, and measured over what has run. */
+/** The claims of the scenario of the bench: printed, expected, and measured so far. */
 export function ClaimsPanel() {
   const { value, error } = useClaims();
   const isShown = usePrinted((s) => s.isShown);
@@ -28,7 +27,15 @@ export function ClaimsPanel() {
       </EmptyState>
     );
   return (
-    <section className={`view ${styles.panel}`} aria-label="Claims" data-over={value.is_over}>
+    <Box
+      component="section"
+      className="view"
+      p={12}
+      fz="sm"
+      style={{ gap: 8 }}
+      aria-label="Claims"
+      data-over={value.is_over}
+    >
       <Box component="header" flex="none">
         <Box component="p" m="0 0 6px" fz="md" fw={620}>
           {value.claim || value.title}
@@ -56,11 +63,11 @@ export function ClaimsPanel() {
           />
         ))}
       </ul>
-    </section>
+    </Box>
   );
 }
 
-/** How much of the run is measured, and when it is judged. */
+/** The measured part of the run, and the moment of judgement. */
 function Progress({ list: { tick, ends_at, is_over, reason } }: { list: ClaimList }) {
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   if (reason) return <>Not measured: {reason}.</>;

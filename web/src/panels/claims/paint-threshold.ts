@@ -9,10 +9,10 @@ import { unitText } from "../../ui/unit-scale";
 import { roundRange } from "../scope/axis-range";
 
 const FAINT = 0.28;
-/** Beyond so many times what was measured, the axis does not reach for a bound. */
+/** A bound farther than this many ranges of the measured values is not on the axis. */
 const REACH = 1;
 
-/** The figure of a claim over the range of a number: what is printed hatched, what is expected dashed, where it turns. */
+/** The figure of a claim over the range of a number: printed range hatched, expected range dashed, and the turns. */
 export function paintThreshold(
   pen: Pen,
   box: Box,
@@ -21,10 +21,9 @@ export function paintThreshold(
 ): Plot {
   const ink = CANVAS[look.scheme];
   const tried = found.tried.filter((one): one is typeof one & { measured: number } => one.measured !== null);
-  const [low, high] = rangeOf(
-    claim,
-    tried.map(({ measured }) => measured),
-  );
+  const values = tried.map((one) => one.value);
+  const figures = tried.map((one) => one.measured);
+  const [low, high] = rangeOf(claim, figures);
   const title = unitText(knob.unit) ? `${knob.label}, ${unitText(knob.unit)}` : knob.label;
   const ends = [found.low, found.high] as const;
   const across =
@@ -40,21 +39,10 @@ export function paintThreshold(
       if (bottom > top) fillHatched(pen, field.left, top, field.right - field.left, bottom - top, ink.accent);
       pen.restore();
     }
+    const dashed = { colour: ink.muted, width: 1.6, dashes: [6, 4] };
     for (const bound of [claim.low, claim.high])
-      if (bound !== null)
-        paintRule(pen, [field.left, y(bound)], [field.right, y(bound)], {
-          colour: ink.muted,
-          width: 1.6,
-          dashes: [6, 4],
-        });
-    const line = { colour: ink.text, width: 2 };
-    paintLine(
-      pen,
-      plot,
-      tried.map((one) => one.value),
-      tried.map((one) => one.measured),
-      line,
-    );
+      if (bound !== null) paintRule(pen, [field.left, y(bound)], [field.right, y(bound)], dashed);
+    paintLine(pen, plot, values, figures, { colour: ink.text, width: 2 });
     for (const one of tried) paintDot(pen, x(one.value), y(one.measured), 3, one.holds ? ink.accent : ink.alarm);
     paintRule(pen, [x(value), field.top], [x(value), field.bottom], { colour: ink.event, width: 2 });
   });
@@ -73,7 +61,7 @@ export function paintThreshold(
   return plot;
 }
 
-/** What was measured, and the bounds that are not far from it. */
+/** The range of the measured values and of the bounds near them. */
 function rangeOf(claim: Claim, measured: readonly number[]): [number, number] {
   const [low, high] = [Math.min(...measured), Math.max(...measured)];
   const room = REACH * Math.max(high - low, 1e-9 + 0.2 * Math.abs(high));

@@ -23,7 +23,7 @@ export function SlideButtons({ claim, list }: { claim: Claim; list: ClaimList })
         <Button
           key={kind}
           disabled={isMaking}
-          title="One slide, 16:9: the words as printed, the traces over the marks, and what came of it"
+          title="One slide, 16:9: the words as printed, the traces over the marks, and the result"
           onClick={() => void keep(kind)}
         >
           {kind === "png" ? "Slide PNG" : "SVG"}

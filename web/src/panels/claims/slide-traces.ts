@@ -6,6 +6,7 @@ import { reachMarks } from "../../picture/printed-marks";
 import { useBench } from "../../stream/bench-store";
 import { traceColour, traceStyle } from "../../ui/trace-style";
 import { unitScale } from "../../ui/unit-scale";
+import { extent } from "../phase/phase-range";
 import { roundRange } from "../scope/axis-range";
 import type { ScopeShown } from "../scope/paint-scope";
 import { partnersOf, signalsOf } from "./claim-signals";
@@ -36,9 +37,8 @@ export async function slideTraces(claim: Claim, { tick, bench_id }: ClaimList): 
   const printed = marksOver(claim.marks, names);
   const ranges = units.map((unit) => {
     const own = envelopes.filter((_, i) => traces[i].unit === unit);
-    const low = Math.min(...own.map((one) => least(one.low)));
-    const high = Math.max(...own.map((one) => -least(one.high.map((value) => -value))));
-    return roundRange(...reachMarks([low, high], printed, unit, span));
+    const ends = own.flatMap(({ low, high }) => [...(extent(low) ?? []), ...(extent(high) ?? [])]);
+    return roundRange(...reachMarks([Math.min(...ends), Math.max(...ends)], printed, unit, span));
   });
   const columns = envelopes[0].low.length;
   const width = (span.end - span.start) / columns;
@@ -59,10 +59,3 @@ export async function slideTraces(claim: Claim, { tick, bench_id }: ClaimList): 
     printed,
   };
 }
-
-/** The smallest of some values that are there. */
-const least = (values: Float32Array): number => {
-  let found = Number.POSITIVE_INFINITY;
-  for (const value of values) if (value < found) found = value;
-  return found;
-};

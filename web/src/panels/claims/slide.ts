@@ -3,6 +3,7 @@ import { placeIn } from "../../bench/printed";
 import type { Pen } from "../../picture/pen";
 import { SvgPen } from "../../picture/svg-pen";
 import { paintRule } from "../../picture/traces";
+import { capital } from "../../ui/capital";
 import { formatNumber } from "../../ui/format";
 import type { ScopeShown } from "../scope/paint-scope";
 import { EDGE, HEIGHT, INK, paintFoot, paintTraces, WIDTH, wrapped, write } from "../scope/slide-page";
@@ -66,7 +67,7 @@ export function slideSvg(claim: Claim, list: ClaimList, shown: ScopeShown | unde
 
 const inkOf = (state: Claim["state"]) => (state === "holds" ? GOOD : state === "fails" ? INK.alarm : INK.muted);
 
-/** A tick, a cross, or a circle for what is not judged yet. */
+/** A tick, a cross, or a circle for a claim that is not judged yet. */
 function paintMark(pen: Pen, state: Claim["state"], x: number, y: number): void {
   const stroke = { colour: inkOf(state), width: 7 };
   if (state === "holds") {
@@ -83,5 +84,3 @@ function paintMark(pen: Pen, state: Claim["state"], x: number, y: number): void 
     pen.stroke();
   }
 }
-
-const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);

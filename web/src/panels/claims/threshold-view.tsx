@@ -1,4 +1,4 @@
-import { Button, NativeSelect } from "@mantine/core";
+import { Button, Flex, Group, NativeSelect, Stack, Text } from "@mantine/core";
 import { useCallback, useEffect, useRef, useState } from "react";
 import { api } from "../../api/api";
 import { useMay } from "../../api/me";
@@ -12,18 +12,17 @@ import { formatPercent, formatShort } from "../../ui/format";
 import { Knob } from "../../ui/knob";
 import { metricScale } from "../../ui/metric-name";
 import { unitText } from "../../ui/unit-scale";
-import styles from "./claims.module.css";
 import { paintThreshold } from "./paint-threshold";
 
 const EVERY_MS = 300;
 const isActive = (run: ThresholdRun | undefined) => run?.state === "queued" || run?.state === "running";
 
-/** One number of the scenario over its range: where the claim begins to hold, and the bench with another value. */
+/** One number of the scenario over its range: where the claim holds, and the bench with another value. */
 export function ThresholdView({ claim }: { claim: Claim }) {
   const [path, setPath] = useState(claim.knobs[0].path);
   const knob = claim.knobs.find((one) => one.path === path) ?? claim.knobs[0];
   return (
-    <div className={`column ${styles.threshold}`}>
+    <Stack gap={8} mt={10} p={10} bg="var(--raised)" bdrs="md">
       <NativeSelect
         label="Turn"
         value={knob.path}
@@ -31,7 +30,7 @@ export function ThresholdView({ claim }: { claim: Claim }) {
         onChange={(event) => setPath(event.currentTarget.value)}
       />
       <Turned key={knob.path} claim={claim} knob={knob} />
-    </div>
+    </Stack>
   );
 }
 
@@ -78,7 +77,7 @@ function Turned({ claim, knob }: { claim: Claim; knob: ClaimKnob }) {
   const begin = () => void send({ kind: "reset", values: { [knob.path]: value } }, "The bench begins again");
   return (
     <>
-      <div className={styles.choose}>
+      <Group gap={8} align="end">
         {isActive(run) ? (
           <Button onClick={() => id && api.cancelThreshold(id).catch(showError)}>
             Cancel, {formatPercent(run?.progress ?? 0, 0)} done
@@ -88,19 +87,19 @@ function Turned({ claim, knob }: { claim: Claim; knob: ClaimKnob }) {
             Find where it holds
           </Button>
         )}
-        {run?.error && <p className={styles.hint}>{String(run.error.message)}</p>}
-        {run?.state === "cancelled" && <p className={styles.hint}>Cancelled.</p>}
-      </div>
+        {run?.error && <p className="note">{String(run.error.message)}</p>}
+        {run?.state === "cancelled" && <p className="note">Cancelled.</p>}
+      </Group>
       {found && (
         <>
-          <p className={styles.found}>
+          <Text inherit fz="md" fw={620}>
             It {found.words}
             {unit && `, in ${unit}`}.
-          </p>
-          <div ref={place} className={styles.plot}>
+          </Text>
+          <Flex ref={place} flex="none" h={230} style={{ scrollMargin: "70px 0 120px" }}>
             <Painted label={`${claim.metric} over ${knob.label}: ${found.words}`} paint={paint} />
-          </div>
-          <p className={styles.hint}>
+          </Flex>
+          <p className="note">
             Hatched: {claim.is_published ? "agrees with the print" : "nothing is printed"}. Dashed: our bounds. Points:
             runs of the scenario with this value and its seed.
           </p>
@@ -125,20 +124,20 @@ function Turned({ claim, knob }: { claim: Claim; knob: ClaimKnob }) {
         onChange={apply}
       />
       {drives && (
-        <div className={styles.choose}>
+        <Group gap={8} align="end">
           <Button onClick={begin}>Begin the bench again with it</Button>
-          <p className={styles.hint}>
+          <p className="note">
             {knob.is_live
               ? "The slider changes the bench as it runs. Earlier samples count too, until a restart."
               : "This number cannot change while the bench runs."}
           </p>
-        </div>
+        </Group>
       )}
     </>
   );
 }
 
-/** What gives a live bench another value. */
+/** The command for another value on a live bench. */
 export const commandFor = ({ path, fault }: ClaimKnob, value: number): Command =>
   (fault ? { fault, severity: value } : { set: { [path]: value } }) as Command;
 

@@ -22,6 +22,6 @@ export function useClaims(): Answer<ClaimList> {
   return { ...answer, value: answer.value ?? (last?.bench_id === id ? last : undefined) };
 }
 
-/** Whether the server is still measuring what has run already. */
+/** Whether the server still measures samples of the past. */
 const isBehind = ({ tick, ends_at, is_over, reason }: ClaimList, now: number): boolean =>
   reason === "" && !is_over && tick < Math.min(now, ends_at);

@@ -17,7 +17,7 @@ const recordings = [
   { id: "rec-2", name: "Of another rate", dt_ms: 1 },
 ];
 const runs = [{ id: "run-1", label: "", title: "A run" }];
-/** The last fault of the other bench came 200 ticks before that of this one. */
+/** The last fault of the other bench came 200 ticks before the last fault of this bench. */
 const earlier = events.map((event) => ({ ...event, tick: event.tick - 200 }));
 
 beforeEach(() => {

@@ -1,7 +1,8 @@
-import { ActionIcon, Button, Checkbox, NativeSelect, TextInput } from "@mantine/core";
+import { ActionIcon, Box, Button, Checkbox, NativeSelect, Stack, TextInput } from "@mantine/core";
 import { IconTrash, IconX } from "@tabler/icons-react";
-import { useEffect, useState } from "react";
+import { type ReactNode, useState } from "react";
 import { api } from "../../api/api";
+import { useAnswer } from "../../api/queries";
 import type { Bench } from "../../api/types";
 import {
   type Alignment,
@@ -19,7 +20,7 @@ import { showError } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatMoment, formatSi } from "../../ui/format";
-import styles from "./behind.module.css";
+import { Stale } from "../../ui/stale";
 
 const ALIGNMENTS: { value: Alignment; label: string }[] = [
   { value: "time", label: "the same time" },
@@ -35,6 +36,9 @@ interface Candidates {
   runs: { id: string; label?: string; title: string }[];
 }
 
+const NONE: Candidates = { benches: [], recordings: [], runs: [] };
+const LIST = { gap: 4, overflowY: "auto" } as const;
+
 /** Other benches, branches, recordings and runs behind the traces, and the event at which they are aligned. */
 export function BehindView() {
   const bench = useBench((s) => s.bench);
@@ -43,30 +47,25 @@ export function BehindView() {
       <EmptyState title="No bench yet">Traces of other benches are drawn behind the traces of this bench.</EmptyState>
     );
   return (
-    <section className={styles.sheet} aria-label="Branches and runs">
-      <Sources bench={bench} />
+    <section className="view-page" aria-label="Branches and runs">
+      <Stack gap={8} maw={420}>
+        <Sources bench={bench} />
+      </Stack>
     </section>
   );
 }
 
 function Sources({ bench }: { bench: Bench }) {
   const { behind, alignment, shaded, difference } = useBehind();
-  const [sources, setSources] = useState<Candidates>({ benches: [], recordings: [], runs: [] });
-  const [edition, setEdition] = useState(0);
-  // biome-ignore lint/correctness/useExhaustiveDependencies: the list is asked for again after a change
-  useEffect(() => {
-    const ask = async () => {
-      const [benches, recordings, runs] = await Promise.all([
-        api.benches(),
-        api.recordings(),
-        api.runs({ state: "done" }),
-      ]);
-      const alike = recordings.filter(({ dt_ms }) => dt_ms === bench.dt_ms);
-      setSources({ benches, recordings: alike, runs });
-    };
-    ask().catch(showError);
-  }, [edition, bench.id]);
-  const again = () => setEdition((e) => e + 1);
+  const { value, error, since, again } = useAnswer(["behind", bench.id], async (): Promise<Candidates> => {
+    const [benches, recordings, runs] = await Promise.all([
+      api.benches(),
+      api.recordings(),
+      api.runs({ state: "done" }),
+    ]);
+    return { benches, recordings: recordings.filter(({ dt_ms }) => dt_ms === bench.dt_ms), runs };
+  });
+  const sources = value ?? NONE;
   const there = (id: string) => behind.some((one) => one.bench === id);
   const others = sources.benches.filter(
     (other) => other.id !== bench.id && other.dt_ms === bench.dt_ms && !there(other.id) && !other.origin?.is_past,
@@ -78,8 +77,9 @@ function Sources({ bench }: { bench: Bench }) {
   };
   return (
     <>
-      {behind.length === 0 && <p className={styles.words}>Traces of other benches lie faded behind these.</p>}
-      <ul className={styles.list} aria-label="Behind the traces">
+      <Stale error={error} since={since} onRetry={again} />
+      {behind.length === 0 && <Words>Traces of other benches are drawn faded behind these.</Words>}
+      <Box component="ul" className="column" mah="40vh" style={LIST} aria-label="Behind the traces">
         {behind.map((one) => (
           <Row
             key={one.bench}
@@ -91,7 +91,7 @@ function Sources({ bench }: { bench: Bench }) {
             onChange={again}
           />
         ))}
-      </ul>
+      </Box>
       {behind.length < MOST_BEHIND ? (
         <NativeSelect
           label="Add"
@@ -111,7 +111,7 @@ function Sources({ bench }: { bench: Bench }) {
           onChange={(e) => add(e.currentTarget.value)}
         />
       ) : (
-        <p className={styles.words}>{MOST_BEHIND} are shown, which is the most.</p>
+        <Words>{MOST_BEHIND} are shown, which is the most.</Words>
       )}
       <NativeSelect
         label="Aligned at"
@@ -142,7 +142,7 @@ interface RowProps {
   onChange(): void;
 }
 
-/** A bench behind the traces: its name, how it is shifted, and what can be done with it. */
+/** A bench behind the traces: its name, its shift, and its actions. */
 function Row({ id, words, shift, dtMs, known, onChange }: RowProps) {
   const [name, setName] = useState(words);
   const rename = () => {
@@ -159,8 +159,9 @@ function Row({ id, words, shift, dtMs, known, onChange }: RowProps) {
       onChange();
     }, showError);
   return (
-    <li>
+    <li className="line">
       <TextInput
+        flex={1}
         aria-label={`Name of ${words}`}
         value={name}
         maxLength={80}
@@ -180,6 +181,14 @@ function Row({ id, words, shift, dtMs, known, onChange }: RowProps) {
         <IconTrash size={14} />
       </ActionIcon>
     </li>
+  );
+}
+
+function Words({ children }: { children: ReactNode }) {
+  return (
+    <Box component="p" fz="md" c="dimmed">
+      {children}
+    </Box>
   );
 }
 

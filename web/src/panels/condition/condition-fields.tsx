@@ -6,10 +6,10 @@ import { type Condition, signalGroups } from "./condition";
 
 interface ConditionFieldsProps {
   label: string;
-  /** What no signal means, where a condition is not needed. */
+  /** The words for no signal, where a condition is optional. */
   none?: string;
   condition: Condition;
-  /** What is wrong with the level. */
+  /** A mistake in the level. */
   error?: string;
   onChange(condition: Condition): void;
 }

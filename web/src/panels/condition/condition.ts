@@ -1,7 +1,8 @@
 import type { Signal } from "../../api/types";
 import { formatShort } from "../../ui/format";
+import { groupBy } from "../../ui/group-by";
 
-/** When something is to happen: a signal goes above or below a level, in the unit of the signal. */
+/** A signal goes above or below a level, in the unit of the signal. */
 export interface Condition {
   /** Empty: none was chosen. */
   signal: string;
@@ -22,18 +23,15 @@ export function conditionWords(text: string, signals: readonly Named[]): string 
   return `${signalWords(name)} ${sign} ${formatShort(Number(level), unit, 6)}`;
 }
 
-/** Signals to choose from, by the block they come from. */
+/** Signals to choose from, by their block. */
 export function signalGroups(signals: readonly Pick<Signal, "name">[]) {
-  const groups = new Map<string, { value: string; label: string }[]>();
-  for (const { name } of signals) {
-    const block = name.split(".")[0];
-    const item = { value: name, label: signalWords(name) };
-    groups.set(block, [...(groups.get(block) ?? []), item]);
-  }
-  return [...groups].map(([block, items]) => ({ group: spaced(block), items }));
+  return groupBy(signals, ({ name }) => name.split(".")[0]).map(([block, own]) => ({
+    group: spaced(block),
+    items: own.map(({ name }) => ({ value: name, label: signalWords(name) })),
+  }));
 }
 
 const spaced = (text: string) => text.replaceAll("_", " ");
 
 /** "plant.displacement" reads "plant displacement". */
-export const signalWords = (name: string): string => spaced(name).replaceAll(".", " ");
+const signalWords = (name: string): string => spaced(name).replaceAll(".", " ");

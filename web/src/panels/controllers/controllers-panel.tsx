@@ -1,5 +1,5 @@
-import { Box, Button, Radio } from "@mantine/core";
-import { useMemo } from "react";
+import { Box, Button, Group, Radio, Stack } from "@mantine/core";
+import { type ReactNode, useMemo } from "react";
 import { useShallow } from "zustand/react/shallow";
 import { controllersOf } from "../../api/fits";
 import { useCatalog } from "../../api/use-catalog";
@@ -11,17 +11,16 @@ import { EmptyState } from "../../ui/empty-state";
 import { Prose } from "../../ui/prose";
 import { useInstances } from "../card/instances";
 import { useLiveValues } from "../schematic/use-live-values";
-import styles from "./controllers.module.css";
 import { GeneratorForm } from "./generator-form";
 import { overridden, slotTitle } from "./slots";
 
-/** What a controller puts out that is worth a number beside its name, the first that it has. */
+/** Outputs with a number beside the name of a controller; the first existing one is shown. */
 const TOLD = ["rate", "amplitude", "voltage"];
-/** Beside it, of those that judge their own estimate, whether to believe it. */
+/** The signal of a controller that judges its own estimate. */
 const TRUSTED = "trusted";
 const trust = (key: string, value: number) => (key.endsWith(TRUSTED) ? (value ? "" : "not trusted") : undefined);
 
-/** Which controller drives in each slot, what all of them say now, and what comes from outside. */
+/** The driving controller of each slot, the outputs of all now, and the inputs from outside. */
 export function ControllersPanel() {
   const slots = useBench(useShallow((s) => s.bench?.slots));
   const controllers = useBench((s) => s.bench?.controllers);
@@ -48,8 +47,7 @@ export function ControllersPanel() {
       {Object.entries(slots).map(([slot, active]) => {
         const taken = overridden(slot, slots, block);
         return (
-          <fieldset key={slot} className={styles.slot}>
-            <legend>{slotTitle(slot)}</legend>
+          <Slot key={slot} title={slotTitle(slot)}>
             <Button
               pos="absolute"
               top={-24}
@@ -70,15 +68,32 @@ export function ControllersPanel() {
               onChange={(name) => name !== active && actions.controller(name)}
             >
               {controllersOf(slot, controllers, blocks).map((law) => (
-                <div key={law.name} className={`line ${styles.row}`} data-active={law.name === active}>
+                <Group
+                  key={law.name}
+                  justify="space-between"
+                  wrap="nowrap"
+                  gap={12}
+                  p="3px 0"
+                  data-active={law.name === active}
+                >
                   <Radio value={law.name} label={law.title} description={<Prose text={law.summary} />} />
-                  <div className={`column ${styles.told}`}>
+                  <Stack
+                    gap={0}
+                    flex="none"
+                    align="flex-end"
+                    fz="sm"
+                    {...(law.name === active ? { fw: 600 } : { c: "dimmed" })}
+                  >
                     <output ref={live(law.name)} />
                     {`${law.name}.${TRUSTED}` in told && (
-                      <output className={styles.doubt} ref={live(`${law.name}.${TRUSTED}`)} />
+                      <Box
+                        component="output"
+                        c={law.name === active ? "var(--alarm)" : undefined}
+                        ref={live(`${law.name}.${TRUSTED}`)}
+                      />
                     )}
-                  </div>
-                </div>
+                  </Stack>
+                </Group>
               ))}
             </Radio.Group>
             {taken && (
@@ -86,15 +101,25 @@ export function ControllersPanel() {
                 Waits: {taken.title} drives this axis as well. Choose another to hand it back.
               </Box>
             )}
-          </fieldset>
+          </Slot>
         );
       })}
       {outside.map((instance) => (
-        <fieldset key={instance.id} className={styles.slot}>
-          <legend>{instance.title}</legend>
+        <Slot key={instance.id} title={instance.title}>
           <GeneratorForm instance={instance} />
-        </fieldset>
+        </Slot>
       ))}
     </section>
+  );
+}
+
+function Slot({ title, children }: { title: string; children: ReactNode }) {
+  return (
+    <Box component="fieldset" pos="relative" mb={12}>
+      <Box component="legend" className="remark" p="4px 0" fw={600}>
+        {title}
+      </Box>
+      {children}
+    </Box>
   );
 }

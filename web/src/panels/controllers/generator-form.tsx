@@ -7,7 +7,7 @@ import { useBench } from "../../stream/bench-store";
 import type { Instance } from "../card/instances";
 import { ParameterList } from "../card/parameter-list";
 
-/** What comes from outside: its kind, and the numbers of that kind. */
+/** An input from outside: its kind, and the numbers of this kind. */
 export function GeneratorForm({ instance }: { instance: Instance }) {
   const document = useBench((s) => s.bench?.parameters);
   const { block } = useCatalog();
@@ -26,7 +26,7 @@ export function GeneratorForm({ instance }: { instance: Instance }) {
   );
 }
 
-/** What a rate is comes before the noise that it has as well. */
+/** The parameters of a rate before the parameters of its noise. */
 const noiseLast = (parameters: Parameter[]) => [
   ...parameters.filter((p) => p.equation !== "noise"),
   ...parameters.filter((p) => p.equation === "noise"),

@@ -1,13 +1,14 @@
 import type { BlockCard } from "../../api/types";
+import { capital } from "../../ui/capital";
 
 type Card = Pick<BlockCard, "outputs" | "title">;
 
 /** A slot in words: "Drive controller"; where there is one slot only, "Controller". */
 export function slotTitle(slot: string): string {
-  return slot ? `${slot.charAt(0).toUpperCase()}${slot.slice(1)} controller` : "Controller";
+  return slot ? `${capital(slot)} controller` : "Controller";
 }
 
-/** The controller of a later slot that drives the axis a slot is there for, so that this slot waits. */
+/** The controller of a later slot that drives the axis of a slot, so that this slot waits. */
 export function overridden(
   slot: string,
   slots: Record<string, string>,

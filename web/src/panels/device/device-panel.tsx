@@ -1,3 +1,4 @@
+import { Box } from "@mantine/core";
 import { hasAxes } from "../../api/fits";
 import { send } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
@@ -76,9 +77,9 @@ export function EnvironmentView() {
         />
       )}
       {!isFlat && (
-        <p className={styles.note}>
+        <Box component="p" className="note" m="6px 0">
           The device is sealed: air outside does not reach it. The fault Leak of the package raises the pressure inside.
-        </p>
+        </Box>
       )}
     </section>
   );
@@ -91,9 +92,9 @@ export function BoardView() {
   if (!rate || !dtMs) return <EmptyState title="No bench yet">Rate, drive and guard of the board are here.</EmptyState>;
   return (
     <section className={`view-page ${styles.panel}`} aria-label="Board">
-      <p className={styles.note}>
+      <Box component="p" className="note" m="6px 0">
         {formatSi(rate, "kHz")}, one tick each {formatSi(dtMs, "ms")}.
-      </p>
+      </Box>
       {BOARD_BLOCKS.map((id) => (
         <BlockValues key={id} id={id} isTitled />
       ))}

@@ -1,7 +1,6 @@
 import { Radio } from "@mantine/core";
-import { useEffect, useState } from "react";
 import { api } from "../../api/api";
-import { usePanelVisible } from "../../api/panel-visible";
+import { useAnswer } from "../../api/queries";
 import type { MeasuredPlant } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { send } from "../../bench/send";
@@ -9,7 +8,7 @@ import { useBench } from "../../stream/bench-store";
 import { formatSi } from "../../ui/format";
 import { Weaknesses } from "../../ui/weaknesses";
 
-/** How much of the physics is computed, live, and what a tick of this bench costs with it. */
+/** The model of the device, chosen while the bench runs, and the time of a tick with each. */
 export function PlantChoice() {
   const id = useBench((s) => s.bench?.id);
   const model = useBench((s) =>
@@ -17,20 +16,8 @@ export function PlantChoice() {
   );
   const axes = useBench((s) => s.bench?.axes.join());
   const dtMs = useBench((s) => s.bench?.dt_ms ?? 0);
-  const visible = usePanelVisible();
   const { blocks, block } = useCatalog();
-  const [costs, setCosts] = useState<MeasuredPlant[]>([]);
-  useEffect(() => {
-    if (!id || !visible) return;
-    let current = true;
-    api.plants(id).then(
-      (found) => current && setCosts(found.plants),
-      () => undefined,
-    );
-    return () => {
-      current = false;
-    };
-  }, [id, visible]);
+  const { value } = useAnswer(id ? ["plants", id] : undefined, () => api.plants(id ?? ""));
   const tickNs = dtMs * 1e6;
 
   return (
@@ -46,7 +33,7 @@ export function PlantChoice() {
         {blocks
           .filter((b) => b.family === "plant" && b.axes?.join() === axes)
           .map((b) => {
-            const cost = costs.find((c) => c.name === b.name);
+            const cost = value?.plants.find((c) => c.name === b.name);
             return (
               <Radio
                 key={b.name}

@@ -1,4 +1,4 @@
-import { Button, NativeSelect, Switch } from "@mantine/core";
+import { Box, Button, Group, NativeSelect, Switch } from "@mantine/core";
 import { useState } from "react";
 import type { Document } from "../../api/types";
 import { send } from "../../bench/send";
@@ -6,7 +6,6 @@ import { BYPASS, feeds, useSensor } from "../../bench/sensor";
 import { useBench } from "../../stream/bench-store";
 import { Prose } from "../../ui/prose";
 import { Weaknesses } from "../../ui/weaknesses";
-import styles from "./device.module.css";
 
 /** Which sensor feeds the controllers; the bypass is the ideal one, which sees the true displacement. */
 export function SensorChoice() {
@@ -22,7 +21,7 @@ export function SensorChoice() {
   };
   return (
     <>
-      <div className={styles.line}>
+      <Group gap={8} wrap="nowrap" align="stretch">
         <NativeSelect
           flex={1}
           aria-label="Sensor that feeds the controllers"
@@ -41,20 +40,20 @@ export function SensorChoice() {
             Bypass
           </Button>
         )}
-      </div>
+      </Group>
       {chosen && (
         <>
-          <p className={styles.note}>
+          <Box component="p" className="note" m="6px 0">
             <Prose text={chosen.summary} />
-          </p>
+          </Box>
           <Weaknesses of={chosen} />
         </>
       )}
       {optical.length > 0 && (
         <>
-          <p className={styles.note}>
+          <Box component="p" className="note" m="6px 0">
             Light and its recovery rest at 0 until the sensor in use needs them. Keep one running to watch it:
-          </p>
+          </Box>
           {optical.map((b) => (
             <Switch
               key={b.name}

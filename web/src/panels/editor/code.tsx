@@ -11,7 +11,7 @@ import { COLOURS, LOOK, NONCE } from "./code-look";
 import styles from "./editor.module.css";
 import { spanOf } from "./span";
 
-/** Escape belongs to the text, which closes its list of words by it: the drawer around it stays open. */
+/** Escape closes the list of words of the text, and not the drawer around it. */
 const ATTRIBUTES = {
   "aria-label": "Text of the unit",
   "data-mantine-stop-propagation": "true",
@@ -22,9 +22,9 @@ const ATTRIBUTES = {
 interface CodeProps {
   source: string;
   onChange(source: string): void;
-  /** What is wrong, and where. */
+  /** A mistake in the text, with its place. */
   mistake: UnitMistake | null | undefined;
-  /** The unit as it passed last: what can be said of x and p. */
+  /** The unit that passed last: the fields of x and p. */
   card: BlockCard | undefined;
 }
 

@@ -3,7 +3,7 @@ import { syntaxHighlighting } from "@codemirror/language";
 import { unifiedMergeView } from "@codemirror/merge";
 import { EditorState } from "@codemirror/state";
 import { EditorView, lineNumbers } from "@codemirror/view";
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { useEffect, useRef } from "react";
 import type { UnitVersion } from "../../bench/unit-draft";
 import { COLOURS, LOOK, NONCE } from "./code-look";
@@ -17,7 +17,7 @@ interface DifferenceProps {
   onClose(): void;
 }
 
-/** A version against the text of now: lines that have gone above those that have come. */
+/** A version and the text of now: removed lines above new lines. */
 export function Difference({ version, source, onBack, onClose }: DifferenceProps) {
   const place = useRef<HTMLDivElement>(null);
   useEffect(() => {
@@ -47,16 +47,16 @@ export function Difference({ version, source, onBack, onClose }: DifferenceProps
   }, [version, source]);
   return (
     <section className={`column ${styles.difference}`} aria-label="Difference">
-      <header>
-        <span>
+      <Box component="header" className="row" p="6px 12px" style={{ borderBottom: "1px solid var(--line)" }}>
+        <Box component="span" flex="1 1 24ch">
           From the version of {timeOf(version)} to the text of now
           {version.source === source && ": they are the same"}
-        </span>
+        </Box>
         <Button variant="filled" onClick={onBack} disabled={version.source === source}>
           Back to that version
         </Button>
         <Button onClick={onClose}>Close</Button>
-      </header>
+      </Box>
       <div ref={place} className={styles.code} />
     </section>
   );

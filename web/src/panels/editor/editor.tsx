@@ -1,4 +1,4 @@
-import { Button, Switch, TextInput } from "@mantine/core";
+import { Box, Button, Switch, Text, TextInput } from "@mantine/core";
 import { useEffect, useState } from "react";
 import { useWatches } from "../../api/me";
 import { useAnswer } from "../../api/queries";
@@ -7,6 +7,7 @@ import { editCopy } from "../../bench/edit-unit";
 import { beginWith, isUnitName, nameOfClass, useDraft } from "../../bench/unit-draft";
 import { sourceOnBench } from "../../bench/unit-values";
 import { useBench } from "../../stream/bench-store";
+import { sentence } from "../../ui/capital";
 import { EmptyState } from "../../ui/empty-state";
 import { Code } from "./code";
 import { Difference } from "./difference";
@@ -19,7 +20,7 @@ import { type Check, type Checked, useCheck } from "./use-check";
 import { type Run, useRun } from "./use-run";
 import { Versions } from "./versions";
 
-/** Write a unit: its text at the left, what it is at the right. */
+/** Write a unit: its text at the left, its facts at the right. */
 export function Editor() {
   const watches = useWatches();
   const list = useAnswer(watches ? undefined : ["texts of units"], units.all);
@@ -27,8 +28,6 @@ export function Editor() {
   if (list.value?.refusal) return <EmptyState title="No units here">{sentence(list.value.refusal)}</EmptyState>;
   return <Bench list={list} />;
 }
-
-const sentence = (text: string): string => `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
 
 function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
   const { name, source, asYouType } = useDraft();
@@ -40,7 +39,7 @@ function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
   const isThere = useBench((s) => sourceOnBench(s.bench?.parameters, name) !== undefined);
   const { unit } = checked;
 
-  // a text that comes without a name is called as its class
+  // a text without a name gets the name of its class
   useEffect(() => {
     const found = checked.now?.unit && !name ? nameOfClass(source) : "";
     if (found) useDraft.setState({ name: found });
@@ -48,7 +47,7 @@ function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
 
   return (
     <section className={`column ${styles.panel}`} aria-label="Editor">
-      <div className={`row ${styles.bar}`}>
+      <Box className="row" flex="none" p="6px 12px 2px">
         <StartFrom list={list} unit={checked.now?.unit ?? undefined} />
         <TextInput
           aria-label="Name of the unit"
@@ -60,8 +59,8 @@ function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
           onChange={(e) => useDraft.setState({ name: e.currentTarget.value })}
         />
         <Versions chosen={chosen} onChoose={choose} />
-      </div>
-      <div className={`row ${styles.bar}`}>
+      </Box>
+      <Box className="row" flex="none" p="6px 12px 2px">
         <State name={name} source={source} checked={checked} run={run} />
         <Switch
           label="Run as I type"
@@ -77,7 +76,7 @@ function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
         >
           Run
         </Button>
-      </div>
+      </Box>
       <div className={styles.body}>
         {version ? (
           <Difference
@@ -123,13 +122,20 @@ function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
   );
 }
 
-/** How the text stands, in a line. */
+/** The state of the text, in a line. */
 function State({ name, source, checked, run }: { name: string; source: string; checked: Checked; run: Run }) {
   const { text, isWrong } = stateOf(name, source, checked.now, checked.refusal, run);
   return (
-    <p role="status" className={styles.state} data-wrong={isWrong}>
+    <Text
+      inherit
+      role="status"
+      flex="1 1 30ch"
+      miw={0}
+      c={isWrong ? "var(--alarm)" : "dimmed"}
+      style={{ overflowWrap: "anywhere" }}
+    >
       {text}
-    </p>
+    </Text>
   );
 }
 

@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../../api/api";
 import { useAnswer } from "../../api/queries";
@@ -7,6 +7,7 @@ import { valuesOf } from "../../bench/unit-values";
 import { useBusy } from "../../bench/use-busy";
 import { openPlace } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
+import { Figure } from "../../ui/figure";
 import { metricScale } from "../../ui/metric-name";
 import styles from "./editor.module.css";
 
@@ -31,13 +32,17 @@ export function Headless({ card, source, ready }: { card: BlockCard; source: str
   return (
     <section aria-label="Headless run">
       <h3>Headless run</h3>
-      <p className={styles.summary}>
+      <Box component="p" className="note" mb={6}>
         {scenario} from its start to its end{card.family === "control" && `, ${card.title} drives`}.
-      </p>
+      </Box>
       <Button loading={busy || (run && !isOver(run))} disabled={!ready} onClick={() => void start()}>
         Use in a run
       </Button>
-      {run && started?.source !== source && <p className={styles.summary}>These figures are of an earlier text.</p>}
+      {run && started?.source !== source && (
+        <Box component="p" className="note" mb={6}>
+          These figures are of an earlier text.
+        </Box>
+      )}
       {run && isOver(run) && <Outcome run={run} card={card} />}
     </section>
   );
@@ -45,7 +50,7 @@ export function Headless({ card, source, ready }: { card: BlockCard; source: str
 
 const isOver = (run: Run | undefined): boolean => run !== undefined && !["queued", "running"].includes(run.state);
 
-/** The library's scenario, or what happened on the bench where it is none of the library. */
+/** The scenario of the library, or the events of the bench where the library has no such scenario. */
 async function wanted(card: BlockCard, source: string): Promise<NewRun> {
   const { bench } = useBench.getState();
   if (!bench) throw new Error("there is no bench");
@@ -55,7 +60,7 @@ async function wanted(card: BlockCard, source: string): Promise<NewRun> {
   return { scenario, set, label: `${card.title} on ${bench.scenario_id}`.slice(0, 120), all: false };
 }
 
-/** Where the figures of a family begin. */
+/** The beginning of the names of the figures of a family. */
 const figuresOf = ({ family, name }: BlockCard): string =>
   family === "diagnose" ? `diagnosis.${name}.` : family === "identify" ? `identify.${name}.` : "control.";
 
@@ -68,16 +73,14 @@ function Outcome({ run, card }: { run: Run; card: BlockCard }) {
         {figures.map(([name, value]) => {
           const { name: words, say } = metricScale(name, []);
           return (
-            <div key={name}>
-              <dt>{words}</dt>
-              <dd>{say(value)}</dd>
-            </div>
+            <Figure key={name} name={words}>
+              {say(value)}
+            </Figure>
           );
         })}
-        <div>
-          <dt>Digest</dt>
-          <dd className={styles.digest}>{digest ?? run.state}</dd>
-        </div>
+        <Figure name="Digest" className={styles.digest}>
+          {digest ?? run.state}
+        </Figure>
       </dl>
       <Button variant="subtle" onClick={() => openPlace("runs", run.id)}>
         Open under Runs

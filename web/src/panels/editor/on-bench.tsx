@@ -1,15 +1,14 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { useMemo } from "react";
 import type { BlockCard } from "../../api/types";
 import { actions } from "../../bench/actions";
 import { addScope, showPanel } from "../../bench/dock";
 import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
-import styles from "./editor.module.css";
 
 const MOST_TRACES = 6;
 
-/** What a unit does on the bench, and what can be done with it there. */
+/** The role of a unit on the bench, and its actions there. */
 export function OnBench({ card }: { card: BlockCard }) {
   const signals = useBench((s) => s.bench?.signals);
   const drives = useBench((s) => Object.values(s.bench?.slots ?? {}).includes(card.name));
@@ -19,7 +18,7 @@ export function OnBench({ card }: { card: BlockCard }) {
     [signals, card.name],
   );
   return (
-    <div className={`row ${styles.row}`}>
+    <Box className="row" pb={8} style={{ borderBottom: "1px solid var(--line)" }}>
       {card.family === "control" &&
         (drives ? (
           <span>It drives.</span>
@@ -48,6 +47,6 @@ export function OnBench({ card }: { card: BlockCard }) {
       {own.length > 0 && (
         <Button onClick={() => addScope(card.title, own.slice(0, MOST_TRACES), "time")}>Show its signals</Button>
       )}
-    </div>
+    </Box>
   );
 }

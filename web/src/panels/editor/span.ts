@@ -1,7 +1,7 @@
 import type { Text } from "@codemirror/state";
 import type { UnitMistake } from "../../api/types";
 
-/** Where a mistake stands in a text: the name there with its fields, or the sign. */
+/** The place of a mistake in a text: the name there with its fields, or the sign. */
 export function spanOf(
   doc: Text,
   { line, column }: Pick<UnitMistake, "line" | "column">,

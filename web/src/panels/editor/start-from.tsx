@@ -10,7 +10,7 @@ import { saveFile } from "../../ui/save-file";
 
 interface StartFromProps {
   list: Answer<{ units: UnitEntry[] }>;
-  /** The text as it is now, if it passes. */
+  /** The unit of the text of now, if it passes. */
   unit: CheckedUnit | undefined;
 }
 
@@ -23,7 +23,7 @@ const FAMILIES: Record<string, string> = {
   faults: "Faults",
 };
 
-/** Where a text comes from, and where it goes: the library, files, the folder of this server. */
+/** Sources and places of a text: the library, files, the folder of this server. */
 export function StartFrom({ list, unit }: StartFromProps) {
   const { name, source } = useDraft();
   const all = list.value?.units ?? [];
@@ -48,6 +48,7 @@ export function StartFrom({ list, unit }: StartFromProps) {
   return (
     <>
       <NativeSelect
+        w="20ch"
         aria-label="Start from"
         value=""
         data={[

@@ -1,31 +1,25 @@
 import { Box } from "@mantine/core";
 import type { BlockCard, CheckedUnit } from "../../api/types";
 import { formatCount, formatNumber, formatShort } from "../../ui/format";
-import { Formula } from "../../ui/formula";
 import { Prose } from "../../ui/prose";
 import { unitText } from "../../ui/unit-scale";
 import { Weaknesses } from "../../ui/weaknesses";
+import { BlockEquation } from "../card/block-equation";
 import styles from "./editor.module.css";
 
-/** What the text says of itself, as the catalogue would show it. */
+/** The facts of a unit, as the catalogue would show them. */
 export function UnitFacts({ unit: { card, operations, hash } }: { unit: CheckedUnit }) {
   return (
     <>
       <Box component="h2" m="8px 0 4px" fz="lg">
         {card.title}
       </Box>
-      <p className={styles.summary}>
+      <Box component="p" className="note" mb={6}>
         <Prose text={card.summary} />
-      </p>
+      </Box>
       <Weaknesses of={card} />
       {card.equations.map((equation) => (
-        <figure key={equation.label + equation.latex} className={styles.equation}>
-          <Formula latex={equation.latex} />
-          <figcaption>
-            {equation.label.replaceAll("_", " ")}
-            {equation.source && ` (${equation.source})`}
-          </figcaption>
-        </figure>
+        <BlockEquation key={equation.label + equation.latex} equation={equation} />
       ))}
       <Parameters card={card} />
       <section aria-label="Puts out">
@@ -38,9 +32,9 @@ export function UnitFacts({ unit: { card, operations, hash } }: { unit: CheckedU
           <Ports ports={card.inputs} />
         </details>
       )}
-      <p className={styles.summary}>
+      <Box component="p" className="note" mb={6}>
         At most {formatNumber(operations, 0)} operations a sample. Text <code>{hash.slice(0, 12)}</code>
-      </p>
+      </Box>
     </>
   );
 }

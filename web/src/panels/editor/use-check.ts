@@ -17,18 +17,18 @@ export interface Check {
 }
 
 export interface Checked {
-  /** Of the text as it is now; undefined while it is checked. */
+  /** The check of the text of now; undefined while it runs. */
   now: Check | undefined;
-  /** The newest unit that passed: what it is stays beside a text that is being changed. */
+  /** The newest unit that passed: its facts stay while the text changes. */
   unit: CheckedUnit | undefined;
   /** Why the server would not check. */
   refusal: string | undefined;
 }
 
-/** The name a text is checked under while it has none that is allowed. */
+/** The name for the check of a text without an allowed name. */
 const checkedName = (name: string, source: string): string => (isUnitName(name) ? name : nameOfClass(source) || "unit");
 
-/** Checks the text of the draft as one types. */
+/** Checks the text of the draft after each pause in typing. */
 export function useCheck(): Checked {
   const name = useDraft((s) => checkedName(s.name, s.source));
   const source = useDraft((s) => s.source);

@@ -10,7 +10,7 @@ import type { Check } from "./use-check";
 const PAUSE_MS = 300;
 
 export interface Run {
-  /** The text as it is now is on the bench of the page. */
+  /** The bench of the page runs the text of now. */
   isOn: boolean;
   busy: boolean;
   /** Why the bench stopped while the unit drove. */

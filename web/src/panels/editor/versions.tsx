@@ -20,6 +20,7 @@ export function Versions({ chosen, onChoose }: { chosen: number | undefined; onC
   return (
     <>
       <NativeSelect
+        w="20ch"
         aria-label="Version"
         value={chosen ?? ""}
         disabled={versions.length === 0}

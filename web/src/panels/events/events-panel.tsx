@@ -1,4 +1,4 @@
-import { ActionIcon, SegmentedControl } from "@mantine/core";
+import { ActionIcon, Box, SegmentedControl } from "@mantine/core";
 import { IconGitBranch } from "@tabler/icons-react";
 import { useState } from "react";
 import { useMay } from "../../api/me";
@@ -25,9 +25,12 @@ export function EventsPanel() {
   const [who, setWho] = useState(false);
   if (!bench || !teaches || !(shared || classes || who)) return <Events />;
   return (
-    <div className={`view ${styles.panel}`}>
+    <div className="view">
       <SegmentedControl
-        aria-label="What is listed"
+        flex="none"
+        m="6px 9px 0"
+        style={{ alignSelf: "flex-start" }}
+        aria-label="Contents of the list"
         data={[
           { value: "what", label: "What happened" },
           { value: "who", label: "Who did what" },
@@ -62,10 +65,10 @@ function Events() {
         .slice(-SHOWN)
         .reverse()
         .map((event) => (
-          <li key={event.seq} className={`line ${styles.row}`}>
+          <Box component="li" key={event.seq} className="line" pr={8}>
             <button
               type="button"
-              className={styles.event}
+              className={`${styles.entry} ${styles.event}`}
               data-tone={eventTone(event)}
               onClick={() => jump.to({ tick: event.tick })}
               title={`Tick ${event.tick}: show it on the scopes`}
@@ -73,20 +76,20 @@ function Events() {
               <span className={styles.number}>{event.seq}</span>
               <span className={styles.time}>{formatMoment(event.tick * dtMs)}</span>
               <span className={styles.text}>{event.text}</span>
-              <span className={styles.actor}>{event.actor}</span>
+              <small>{event.actor}</small>
             </button>
             {event.command && <CopyMenu event={event} />}
             {canBranch(event) && (
               <ActionIcon
                 size="sm"
                 aria-label={`Branch without this: ${event.text}`}
-                title="Go on from just before, without this, on a bench of its own"
+                title="Continue on a new bench from just before, without this"
                 onClick={() => void goOnWithout(event.tick, event.text)}
               >
                 <IconGitBranch size={14} />
               </ActionIcon>
             )}
-          </li>
+          </Box>
         ))}
     </ol>
   );

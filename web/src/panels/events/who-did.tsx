@@ -7,7 +7,7 @@ import styles from "./events.module.css";
 
 const EVERY_MS = 3000;
 
-/** Who did what to a bench, who drove it and who came, newest first; it is kept when the bench goes. */
+/** Actions of users on a bench, drivers and arrivals, newest first; the list outlives the bench. */
 export function WhoDid({ bench }: { bench: string }) {
   const { value, error, since, again } = useAnswer(
     ["bench-audit", bench],
@@ -17,11 +17,13 @@ export function WhoDid({ bench }: { bench: string }) {
   return (
     <>
       <Stale error={error} since={since} onRetry={again} />
-      {value?.length === 0 && <EmptyState title="Nothing yet">Who does something here will be listed.</EmptyState>}
+      {value?.length === 0 && <EmptyState title="Nothing yet">Actions on this bench are listed here.</EmptyState>}
       <ol className={styles.list} aria-label="Who did what, newest first">
         {value?.map(({ at, actor, text, tick }) => (
           <li key={`${at} ${actor} ${text}`} className={styles.did}>
-            <time dateTime={at}>{new Date(at).toLocaleTimeString()}</time>
+            <time className="note" dateTime={at}>
+              {new Date(at).toLocaleTimeString()}
+            </time>
             <span className={styles.text}>
               <b>{actor}</b>: {text}
             </span>

@@ -1,9 +1,10 @@
 import type { BlockCard, Command, FaultProfile, Parameter } from "../../api/types";
 import { type SeverityScale, severityText } from "../../bench/severity";
+import { groupBy } from "../../ui/group-by";
 import { roundTo } from "../../ui/unit-scale";
 import { type Condition, conditionText } from "../condition/condition";
 
-/** A number, or what stands in a field that holds none. */
+/** A number, or the text of a field without a number. */
 export type Entry = number | string;
 
 export interface FaultDraft {
@@ -15,13 +16,13 @@ export interface FaultDraft {
   moment: "now" | "at" | "when";
   atMs: Entry;
   when: Condition;
-  /** What else the fault lets one choose, as far as it was chosen. */
+  /** Chosen parameters of the fault. */
   parameters: Record<string, unknown>;
 }
 
 const SHARED = ["severity", "profile", "start_tick"];
 
-/** The parameters that are a fault's own. */
+/** The parameters that only this fault has. */
 export const ownParameters = (fault: Pick<BlockCard, "parameters">): Parameter[] =>
   fault.parameters.filter((p) => !SHARED.includes(p.name));
 
@@ -39,12 +40,8 @@ export function newDraft(severity: number): FaultDraft {
   };
 }
 
-/** What keeps the form from being sent, in words, by field; only fields that the choices use count. */
-export function refusals(
-  draft: FaultDraft,
-  scale: SeverityScale,
-  unit: string,
-): Partial<Record<keyof FaultDraft, string>> {
+/** Reasons against sending the form, by field; only fields that the choices use count. */
+export function refusals(draft: FaultDraft, scale: SeverityScale, unit: string) {
   const { severity, profile, durationMs, periodMs, duty, moment, atMs, when } = draft;
   const found: Partial<Record<keyof FaultDraft, string>> = {};
   if (!isNumber(severity)) found.severity = "Say how much";
@@ -62,11 +59,11 @@ export function refusals(
 
 const isNumber = (entry: Entry): entry is number => typeof entry === "number" && Number.isFinite(entry);
 
-/** An entry in another unit; what is no number stays as it was typed. */
+/** An entry in another unit; a text stays as it was typed. */
 export const scaled = (entry: Entry, factor: number): Entry =>
   typeof entry === "number" ? roundTo(entry * factor, 10) : entry;
 
-/** The command that does what the form says; ask first what keeps it from being sent. */
+/** The command of the form; ask for refusals first. */
 export function injectCommand(fault: string, draft: FaultDraft): Command {
   const profile: FaultProfile =
     draft.profile === "ramp"
@@ -88,15 +85,9 @@ export const draftSeverity = (
   unit: string,
 ): string => (typeof severity === "number" ? severityText(severity, scale, unit) : "–");
 
-/** Where faults stand that name no group, such as those of other packages. */
+/** The group of faults without one, such as faults of other packages. */
 const OTHERS = "Others";
 
 /** Blocks under their headings; groups and members come in the order of the catalogue. */
-export function groupsOf<T extends Pick<BlockCard, "group">>(blocks: readonly T[]): [string, T[]][] {
-  const groups = new Map<string, T[]>();
-  for (const block of blocks) {
-    const group = block.group || OTHERS;
-    groups.set(group, [...(groups.get(group) ?? []), block]);
-  }
-  return [...groups];
-}
+export const groupsOf = <T extends Pick<BlockCard, "group">>(blocks: readonly T[]): [string, T[]][] =>
+  groupBy(blocks, ({ group }) => group || OTHERS);

@@ -19,14 +19,14 @@ interface FaultFormProps {
   onInject(): void;
 }
 
-/** How much, how it comes, and when. */
+/** Severity, profile and moment of a fault. */
 export function FaultForm({ fault, parameter, scale, suggested, draft, onChange, onInject }: FaultFormProps) {
   const set = (part: Partial<FaultDraft>) => onChange({ ...draft, ...part });
   const wrong = refusals(draft, scale, parameter?.unit ?? "");
   const number = (key: "severity" | "durationMs" | "periodMs" | "duty" | "atMs", factor = 1) => ({
     value: scaled(draft[key], factor),
     error: wrong[key],
-    clampBehavior: "none" as const, // what is beyond the limits is refused in words
+    clampBehavior: "none" as const, // a value beyond the limits is refused in words
     onChange: (value: Entry) => set({ [key]: scaled(value, 1 / factor) }),
   });
   const own = ownParameters(fault);
@@ -71,7 +71,7 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
           />
         </Group>
         {own.length > 0 && (
-          <div className={styles.own}>
+          <div style={{ borderTop: "1px solid var(--line)" }}>
             {own.map((entry) => (
               <ParameterRow
                 key={entry.name}

@@ -30,7 +30,7 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
   const unit = parameter?.unit ?? "";
   const inject = () => {
     if (Object.keys(refusals(draft, scale, unit)).length > 0) {
-      if (!open) onToggle(); // the form says what is missing
+      if (!open) onToggle(); // the form has the refusals
       return;
     }
     void send(
@@ -41,17 +41,17 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
 
   return (
     <li className={styles.fault} data-active={active !== undefined}>
-      <div className={`row ${styles.row}`}>
+      <Box className="row" mih={40} p="4px 8px 4px 5px" style={{ justifyContent: "flex-end" }}>
         <button type="button" className={`line ${styles.name}`} aria-expanded={open} onClick={onToggle}>
           <IconChevronRight size={14} className={styles.chevron} aria-hidden="true" />
           <span>{fault.title}</span>
         </button>
         {active ? (
           <Box component="span" className="line" flex="none">
-            <b className={styles.acting}>
+            <Box component="b" c="var(--alarm)" fw={650} ta="right" style={{ whiteSpace: "nowrap" }}>
               {severityText(active.severity, scale, unit)}
               {active.since_tick !== undefined && <small> since {formatMoment(active.since_tick * dtMs)}</small>}
-            </b>
+            </Box>
             <Button onClick={() => send({ heal: [fault.name] }, `${fault.title} healed`)}>Heal</Button>
           </Box>
         ) : (
@@ -63,7 +63,7 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
             Inject {draftSeverity(draft, scale, unit)}
           </Button>
         )}
-      </div>
+      </Box>
       {active && <Chosen fault={fault} active={active} />}
       {open && (
         <FaultForm
@@ -80,7 +80,7 @@ export function FaultRow({ fault, active, open, onToggle }: FaultRowProps) {
   );
 }
 
-/** What was chosen about a fault that acts, such as where it sits. */
+/** Chosen parameters of an acting fault, such as its place. */
 function Chosen({ fault, active }: { fault: BlockCard; active: ActiveFault }) {
   const values = (active as { parameters?: Record<string, unknown> }).parameters ?? {};
   const words = ownParameters(fault)

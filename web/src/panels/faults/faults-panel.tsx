@@ -1,50 +1,38 @@
-import { Button } from "@mantine/core";
+import { Box, Button, Group } from "@mantine/core";
 import { useState } from "react";
 import { fits } from "../../api/fits";
 import { useCatalog } from "../../api/use-catalog";
 import { actions } from "../../bench/actions";
 import { useBench } from "../../stream/bench-store";
-import { EmptyState } from "../../ui/empty-state";
 import { formatCount } from "../../ui/format";
+import { CatalogueMissing } from "../card/catalogue-missing";
 import { groupsOf } from "./fault-draft";
 import { FaultRow } from "./fault-row";
-import styles from "./faults.module.css";
 
-/** Every fault that this bench may have: what it changes, how much, how and when; several at once. */
+/** Every fault that this bench may have: its effect, its severity, its profile and its moment; several at once. */
 export function FaultsPanel() {
-  const { blocks, failed, retry } = useCatalog();
+  const { blocks } = useCatalog();
   const active = useBench((s) => s.bench?.faults);
   const axes = useBench((s) => s.bench?.axes) ?? [];
   const [open, setOpen] = useState<string | undefined>(undefined);
   const faults = blocks.filter((b) => b.family === "faults" && fits(b, axes));
   if (faults.length === 0)
-    return (
-      <EmptyState
-        title={failed ? "The server did not send the catalogue" : "Loading the faults"}
-        action={
-          failed && (
-            <Button variant="filled" size="xs" onClick={retry}>
-              Ask again
-            </Button>
-          )
-        }
-      >
-        Faults come from the server's catalogue.
-      </EmptyState>
-    );
+    return <CatalogueMissing loading="Loading the faults">Faults come from the server's catalogue.</CatalogueMissing>;
   const acting = active?.filter((f) => f.severity !== 0) ?? [];
   return (
     <section className="view" aria-label="Faults">
-      <div className={styles.top}>
+      <Group justify="space-between" wrap="nowrap" p="8px 8px 8px 12px" c="dimmed" fz="sm">
         <span>{acting.length === 0 ? "The device is healthy" : formatCount(acting.length, "active fault")}</span>
-        <Button disabled={acting.length === 0} onClick={actions.healAll}>
+        <Button flex="none" disabled={acting.length === 0} onClick={actions.healAll}>
           Heal all
         </Button>
-      </div>
-      <div className={styles.list}>
+      </Group>
+      <Box flex={1} style={{ overflowY: "auto" }}>
         {groupsOf(faults).map(([group, members]) => (
           <section key={group} aria-label={group}>
-            <h3 className={styles.group}>{group}</h3>
+            <Box component="h3" className="remark" p="8px 12px 4px" style={{ borderTop: "1px solid var(--line)" }}>
+              {group}
+            </Box>
             <ul>
               {members.map((fault) => (
                 <FaultRow
@@ -58,7 +46,7 @@ export function FaultsPanel() {
             </ul>
           </section>
         ))}
-      </div>
+      </Box>
     </section>
   );
 }

@@ -1,13 +1,13 @@
+import { Box, Stack } from "@mantine/core";
 import type { GameCard, Parameter } from "../../api/types";
 import { setValue, useGame } from "../../bench/game";
 import { send } from "../../bench/send";
 import { ParameterRow } from "../card/parameter-row";
-import styles from "./games.module.css";
 
 /** The bank of every game. */
 const BANK = "diagnosers.kalman";
 
-/** What the bank assumes, and its sixth hypothesis; what may turn live is turned on the bench too. */
+/** The assumptions of the bank, and its sixth hypothesis; live values change on the bench too. */
 export function BankForm({ card, on }: { card: GameCard; on: boolean }) {
   const values = useGame((s) => s.values);
   const change = (name: string, value: unknown) => {
@@ -26,11 +26,15 @@ export function BankForm({ card, on }: { card: GameCard; on: boolean }) {
       />
     ));
   return (
-    <div className={`column ${styles.form}`}>
-      <h3>What the bank assumes</h3>
+    <Stack gap={8} maw="70ch">
+      <Box component="h3" mt={4} fz="sm">
+        Assumptions of the bank
+      </Box>
       {rows(card.hand_in.filter(({ name }) => card.live.includes(name)))}
-      <h3>A sixth hypothesis</h3>
+      <Box component="h3" mt={4} fz="sm">
+        A sixth hypothesis
+      </Box>
       {rows(card.hand_in.filter(({ name }) => !card.live.includes(name)))}
-    </div>
+    </Stack>
   );
 }

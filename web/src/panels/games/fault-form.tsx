@@ -1,4 +1,4 @@
-import { Button, NativeSelect } from "@mantine/core";
+import { Box, Button, NativeSelect, Stack } from "@mantine/core";
 import type { GameKind } from "../../api/types";
 import { setValue, useGame } from "../../bench/game";
 import { send } from "../../bench/send";
@@ -7,9 +7,8 @@ import exercise from "../../ui/exercise.module.css";
 import { formatShort } from "../../ui/format";
 import { NumberField } from "../../ui/number-field";
 import { unitText } from "../../ui/unit-scale";
-import styles from "./games.module.css";
 
-/** What the field says before anybody has chosen, as the server's own default. */
+/** The severity before a choice, the default of the server. */
 const FIRST = 0.01;
 
 /** A fault and its severity, to be tried on the bench and then named. */
@@ -21,7 +20,7 @@ export function FaultForm({ kinds, on }: { kinds: readonly GameKind[]; on: boole
   const severity = typeof values.severity === "number" ? values.severity : FIRST;
   const limit = (end: number) => formatShort(end * factor, unit);
   return (
-    <div className={`column ${styles.form}`}>
+    <Stack gap={8} maw="70ch">
       <div className={`row ${exercise.bar}`}>
         <NativeSelect
           aria-label="Fault"
@@ -40,9 +39,9 @@ export function FaultForm({ kinds, on }: { kinds: readonly GameKind[]; on: boole
             onCommit={(value) => setValue("severity", value / factor)}
           />
         </span>
-        <small className={styles.note}>
+        <Box component="small" maw="40ch">
           {limit(kind.minimum)} to {limit(kind.maximum)}
-        </small>
+        </Box>
       </div>
       {on && (
         <div className={`row ${exercise.bar}`}>
@@ -54,7 +53,7 @@ export function FaultForm({ kinds, on }: { kinds: readonly GameKind[]; on: boole
           </Button>
         </div>
       )}
-    </div>
+    </Stack>
   );
 }
 

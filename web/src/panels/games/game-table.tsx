@@ -14,7 +14,7 @@ import styles from "./games.module.css";
 const OWN = "";
 const EVERY_MS = 5000;
 
-/** Who has how many points at this seed; a teacher chooses the class. */
+/** Players and their points at this seed; a teacher chooses the class. */
 export function GameTable({ card, play }: { card: GameCard; play: GamePlay }) {
   const { all } = useClasses();
   const [chosen, setChosen] = useState(OWN);
@@ -42,7 +42,7 @@ export function GameTable({ card, play }: { card: GameCard; play: GamePlay }) {
           />
           {group && (
             <Checkbox
-              label="With what was handed in"
+              label="With the values handed in"
               checked={tells}
               onChange={(e) => setTells(e.currentTarget.checked)}
             />
@@ -53,7 +53,7 @@ export function GameTable({ card, play }: { card: GameCard; play: GamePlay }) {
         <table className={exercise.table}>
           <caption>
             {card.title}, seed {play.seed}: {formatCount(lines.length, "attempt")}
-            {!group && !isAlone(lines) && play.left > 0 && "; what others set is shown when your game is over"}
+            {!group && !isAlone(lines) && play.left > 0 && "; the values of others are shown when your game is over"}
           </caption>
           <TableHead names={["Place", "Who", "Points", isTold && "Handed in", "When"]} />
           <tbody>
@@ -75,7 +75,7 @@ export function GameTable({ card, play }: { card: GameCard; play: GamePlay }) {
 
 const isAlone = (lines: readonly GameLine[]) => lines.every(({ mine }) => mine);
 
-/** What was handed in, in one line: what differs from the defaults. */
+/** The values handed in, in one line: differences from the defaults. */
 function said(handed: HandedIn, { hand_in }: GameCard, { kinds = [] }: GamePlay): string {
   const kind = kinds.find(({ name }) => name === handed.fault);
   if (kind) {

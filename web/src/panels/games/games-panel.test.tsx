@@ -100,9 +100,9 @@ it("shows what is hidden once that is confirmed", async () => {
     hidden: [{ name: "Noise", said: "0.6 um" }],
   });
   const { user } = await mountGame();
-  await user.click(screen.getByRole("button", { name: "Show what is hidden" }));
+  await user.click(screen.getByRole("button", { name: "Show the solution" }));
   expect(server.asked("POST", `/games/${filter}/reveal`)).toEqual([]);
-  await user.click(screen.getByRole("button", { name: "Show what is hidden" }));
+  await user.click(screen.getByRole("button", { name: "Show the solution" }));
   expect(await screen.findByText("0.6 um")).toBeVisible();
   expect(server.asked("POST", `/games/${filter}/reveal`)[0].body).toEqual({ seed: 1 });
 });

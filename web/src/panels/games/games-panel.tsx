@@ -1,14 +1,15 @@
-import { Button, NativeSelect } from "@mantine/core";
-import { useEffect, useState } from "react";
+import { Box, Button, NativeSelect } from "@mantine/core";
+import { useEffect } from "react";
 import { games } from "../../api/games";
 import { queryClient, useAnswer } from "../../api/queries";
 import type { GameCard, GamePlay } from "../../api/types";
 import { chooseGame, useGame } from "../../bench/game";
 import { openOwn } from "../../bench/open-bench";
-import { showError } from "../../bench/send";
+import { useBusy } from "../../bench/use-busy";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import exercise from "../../ui/exercise.module.css";
+import { Figure } from "../../ui/figure";
 import { formatCount, formatNumber } from "../../ui/format";
 import { Formula } from "../../ui/formula";
 import { jump } from "../../ui/hover";
@@ -22,7 +23,7 @@ import styles from "./games.module.css";
 /** The table of a class grows while others play. */
 const EVERY_MS = 5000;
 
-/** Games with the bank: play on a bench that hides something, hand in numbers, see points and the table. */
+/** Games with the bank: play on a bench with hidden values, hand in numbers, see points and the table. */
 export function GamesPanel() {
   const { game, seed } = useGame();
   const cards = useAnswer(["games"], games.all);
@@ -72,27 +73,24 @@ export function GamesPanel() {
   );
 }
 
-/** One game at one seed: its task, the bench, what is handed in, what came of it, the table. */
+/** One game at one seed: its task, the bench, the hand-in, the outcome, the table. */
 function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean }) {
   const { seed, values } = useGame();
-  const [busy, setBusy] = useState<"begin" | "judge" | undefined>(undefined);
+  const [busy, during] = useBusy<"begin" | "judge">();
   const over = play.left === 0;
-  const run = (what: "begin" | "judge", asked: Promise<GamePlay>, then?: (now: GamePlay) => void) => {
-    setBusy(what);
-    void asked
-      .then((now) => {
-        queryClient.setQueryData(["game", card.id, seed], now);
-        then?.(now);
-      }, showError)
-      .finally(() => setBusy(undefined));
-  };
+  const run = (what: "begin" | "judge", ask: () => Promise<GamePlay>) =>
+    void during(async () => {
+      const now = await ask();
+      queryClient.setQueryData(["game", card.id, seed], now);
+      if (what === "begin" && now.bench) openOwn(now.bench);
+    }, what);
   const begin = () => {
     jump.to("live");
-    run("begin", games.begin(card.id, seed, values), (now) => now.bench && openOwn(now.bench));
+    run("begin", () => games.begin(card.id, seed, values));
   };
   const reveal = () => {
-    if (window.confirm("Show what is hidden? You cannot hand in at this seed any more."))
-      run("judge", games.reveal(card.id, seed));
+    if (window.confirm("Show the solution? You cannot hand in at this seed any more."))
+      run("judge", () => games.reveal(card.id, seed));
   };
   const last = play.attempts.at(-1);
   const isBank = (play.kinds ?? []).length === 0;
@@ -110,9 +108,9 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
           {on ? "Begin again" : "Play on a new bench"}
         </Button>
         {on && isBank && (
-          <small className={styles.note}>
+          <Box component="small" maw="40ch">
             R, Q and the floor act on the bench at once; a new sixth hypothesis when you begin again.
-          </small>
+          </Box>
         )}
       </div>
       {isBank ? <BankForm card={card} on={on} /> : <FaultForm kinds={play.kinds ?? []} on={on} />}
@@ -122,13 +120,13 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
           size="sm"
           loading={busy === "judge"}
           disabled={busy === "begin" || over}
-          onClick={() => run("judge", games.handIn(card.id, seed, handedIn(play, values)))}
+          onClick={() => run("judge", () => games.handIn(card.id, seed, handedIn(play, values)))}
         >
           Hand in
         </Button>
-        <small className={styles.note}>
+        <Box component="small" maw="40ch">
           {over ? "No attempt left at this seed." : `${formatCount(play.left, "attempt")} left`}
-        </small>
+        </Box>
         {over && (
           <Button variant="filled" size="sm" onClick={() => chooseGame(card.id, seed + 1)}>
             Next seed
@@ -136,26 +134,25 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
         )}
         {!over && play.attempts.length > 0 && (
           <Button variant="subtle" disabled={busy !== undefined} onClick={reveal}>
-            Show what is hidden
+            Show the solution
           </Button>
         )}
       </div>
       {last && (
-        <div className={styles.outcome} role="status">
-          <p>
+        <Box pl={12} style={{ borderLeft: "3px solid var(--accent)" }} role="status">
+          <Box component="p" maw="60ch" mb={8} fz="sm">
             {last.outcome.said}
             {play.best !== null && ` The best so far has ${formatNumber(play.best, 1)} points.`}
-          </p>
+          </Box>
           <Formula latex={last.outcome.worked} />
-        </div>
+        </Box>
       )}
       {play.hidden && (
-        <dl className={styles.facts} aria-label="What was hidden">
+        <dl className={styles.facts} aria-label="Solution">
           {play.hidden.map(({ name, said }) => (
-            <div key={name}>
-              <dt>{name}</dt>
-              <dd>{said}</dd>
-            </div>
+            <Figure key={name} name={name}>
+              {said}
+            </Figure>
           ))}
         </dl>
       )}
@@ -171,6 +168,6 @@ function Play({ card, play, on }: { card: GameCard; play: GamePlay; on: boolean 
   );
 }
 
-/** What is handed in; where a fault is to be named, the one shown first if none was chosen. */
+/** The values to hand in; a fault that was not chosen is the first one of the menu. */
 const handedIn = ({ kinds = [] }: GamePlay, values: Record<string, number | string>) =>
   kinds.length > 0 ? { fault: kinds[0].name, ...values } : values;

@@ -1,3 +1,4 @@
+import { Box as Part } from "@mantine/core";
 import { useMemo } from "react";
 import type { AliasReport } from "../../api/types";
 import { Painted } from "../../picture/painted";
@@ -6,7 +7,7 @@ import { PictureMenu } from "../../picture/picture-menu";
 import styles from "./hypotheses.module.css";
 import { aliasPicture, paintAliasSweep, paintPhasors } from "./paint-aliases";
 
-/** The motion of every hypothesis at the drive, as a point: those that lie together cannot be told apart. */
+/** The motion of every hypothesis at the drive, as a point: hypotheses at one point cannot be separated. */
 export function AliasPlot({ report }: { report: AliasReport }) {
   const [phasors, sweep] = useMemo(
     () =>
@@ -15,9 +16,9 @@ export function AliasPlot({ report }: { report: AliasReport }) {
   );
   return (
     <div className={styles.plots}>
-      <div className={styles.export}>
+      <Part pos="absolute" top={-30} right={0}>
         <PictureMenu take={() => aliasPicture(report)} />
-      </div>
+      </Part>
       <Painted label="Motion of every hypothesis at the drive frequency, in the complex plane" paint={phasors} />
       <Painted label="Distance of the closest pair over the drive frequency" paint={sweep} />
     </div>

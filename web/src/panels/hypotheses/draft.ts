@@ -1,6 +1,6 @@
 import { roundTo } from "../../ui/unit-scale";
 
-/** One hypothesis as a scenario has it: factors on the nominal device, those left out are 1. */
+/** One hypothesis as a scenario has it: factors on the nominal device; a missing factor is 1. */
 export interface Hypothesis {
   name: string;
   mass?: number;
@@ -16,7 +16,7 @@ export const LEAST = 2;
 export const MOST = 16;
 const LETTER: Record<Factor, string> = { mass: "m", stiffness: "k", damping: "b", gain: "g" };
 
-/** The name people give a hypothesis by what it changes: m+5, k-10b+30, healthy. */
+/** The usual name of a hypothesis, by its factors: m+5, k-10b+30, healthy. */
 export function usualName(hypothesis: Omit<Hypothesis, "name">): string {
   const parts = FACTORS.flatMap((factor) => {
     const percent = roundTo(((hypothesis[factor] ?? 1) - 1) * 100, 6);
@@ -25,13 +25,13 @@ export function usualName(hypothesis: Omit<Hypothesis, "name">): string {
   return parts.join("") || "healthy";
 }
 
-/** Change a factor; a name that said what it was follows. */
+/** Change a factor; a usual name follows. */
 export function withFactor(hypothesis: Hypothesis, factor: Factor, percent: number): Hypothesis {
   const next = { ...hypothesis, [factor]: roundTo(1 + percent / 100, 10) };
   return { ...next, name: hypothesis.name === usualName(hypothesis) ? usualName(next) : hypothesis.name };
 }
 
-/** Another hypothesis that is not there yet: more mass, in steps of 5 %. */
+/** A new hypothesis: more mass, in steps of 5 %. */
 export function another(list: readonly Hypothesis[]): Hypothesis {
   for (let percent = 5; ; percent += 5) {
     const made = { mass: 1 + percent / 100 };
@@ -40,7 +40,7 @@ export function another(list: readonly Hypothesis[]): Hypothesis {
   }
 }
 
-/** What keeps a list from being used, in words. */
+/** The reason against a list, in words. */
 export function refusal(list: readonly Hypothesis[]): string | undefined {
   if (list.length < LEAST) return `A bank needs at least ${LEAST} hypotheses.`;
   const names = list.map((h) => h.name);

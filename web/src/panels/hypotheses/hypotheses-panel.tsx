@@ -10,6 +10,7 @@ import { openVariant } from "../../bench/open-bench";
 import { useBusy } from "../../bench/use-busy";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
+import { RestartButton } from "../restart/restart-button";
 import { AliasPlot } from "./alias-plot";
 import { AliasWords } from "./alias-words";
 import { another, type Hypothesis, MOST, refusal } from "./draft";
@@ -18,7 +19,7 @@ import { HypothesisTable } from "./hypothesis-table";
 
 type Banks = Record<string, { kind?: string; hypotheses?: Hypothesis[] }>;
 
-/** The hypotheses of a bank: edit them, see which coincide under the drive, begin again with the new list. */
+/** The hypotheses of a bank: edit them, find coinciding ones, restart with the new list. */
 export function HypothesesPanel() {
   const bench = useBench((s) => s.bench?.id);
   const parameters = useBench((s) => s.bench?.parameters);
@@ -44,9 +45,10 @@ export function HypothesesPanel() {
     );
 
   const changed = JSON.stringify(list) !== JSON.stringify(bank.hypotheses);
-  const begin = (set: Record<string, unknown>, said: string) => {
-    void during(() => openVariant(set, said));
-  };
+  const race = (kind: string) =>
+    during(() =>
+      openVariant({ [`diagnosers.${kind}`]: { kind, hypotheses: list } }, "The bench restarts with another method."),
+    );
   const kinds = blocks.filter(
     (b) => b.family === "diagnose" && fits(b, []) && b.parameters.some((p) => p.name === "hypotheses"),
   );
@@ -77,16 +79,14 @@ export function HypothesesPanel() {
             As it was
           </Button>
         )}
-        {teaches && (
-          <Button
-            variant="filled"
-            loading={busy}
-            disabled={!changed || wrong !== undefined}
-            onClick={() => begin({ [`diagnosers.${id}.hypotheses`]: list }, "The bench restarts with the new list.")}
-          >
-            Restart with this list
-          </Button>
-        )}
+        <RestartButton
+          variant="filled"
+          disabled={!changed || wrong !== undefined}
+          set={{ [`diagnosers.${id}.hypotheses`]: list }}
+          said="The bench restarts with the new list."
+        >
+          Restart with this list
+        </RestartButton>
         {teaches && (
           <NativeSelect
             aria-label="Let another method race on the same list"
@@ -98,21 +98,14 @@ export function HypothesesPanel() {
                 .filter((b) => !(b.name in Object.fromEntries(banks)))
                 .map((b) => ({ value: b.name, label: b.title })),
             ]}
-            onChange={(e) => {
-              const kind = e.currentTarget.value;
-              if (kind)
-                begin(
-                  { [`diagnosers.${kind}`]: { kind, hypotheses: list } },
-                  "The bench restarts with another method.",
-                );
-            }}
+            onChange={(e) => e.currentTarget.value && void race(e.currentTarget.value)}
           />
         )}
       </Box>
       {wrong && (
-        <p role="alert" className={styles.wrong}>
+        <Box component="p" role="alert" className="wrong" m="4px 0">
           {wrong}
-        </p>
+        </Box>
       )}
       <div className={styles.halves}>
         <HypothesisTable list={list} onChange={(next) => setDrafts({ ...drafts, [key]: next })} />
@@ -121,9 +114,9 @@ export function HypothesesPanel() {
             Which of them coincide under this drive?
           </Box>
           {refused && (
-            <p role="alert" className={styles.wrong}>
+            <Box component="p" role="alert" className="wrong" m="4px 0">
               {refused.body.message}. {refused.body.hint}
-            </p>
+            </Box>
           )}
           {answer && !refused && (
             <>
@@ -137,10 +130,4 @@ export function HypothesesPanel() {
   );
 }
 
-const whole = ({ name, mass = 1, stiffness = 1, damping = 1, gain = 1 }: Hypothesis) => ({
-  name,
-  mass,
-  stiffness,
-  damping,
-  gain,
-});
+const whole = (one: Hypothesis) => ({ mass: 1, stiffness: 1, damping: 1, gain: 1, ...one });

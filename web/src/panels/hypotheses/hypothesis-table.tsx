@@ -1,4 +1,4 @@
-import { ActionIcon } from "@mantine/core";
+import { ActionIcon, ColorSwatch, Group } from "@mantine/core";
 import { IconX } from "@tabler/icons-react";
 import { NumberField } from "../../ui/number-field";
 import { TableHead } from "../../ui/table-head";
@@ -13,7 +13,7 @@ export function HypothesisTable({ list, onChange }: { list: Hypothesis[]; onChan
   const scheme = useScheme();
   const put = (index: number, next: Hypothesis) => onChange(list.map((h, i) => (i === index ? next : h)));
   return (
-    <div className={styles.scroll}>
+    <div style={{ overflowX: "auto" }}>
       <table className={styles.table}>
         <TableHead names={["Hypothesis", ...FACTORS, ""]} />
         <tbody>
@@ -21,8 +21,13 @@ export function HypothesisTable({ list, onChange }: { list: Hypothesis[]; onChan
             // biome-ignore lint/suspicious/noArrayIndexKey: a hypothesis is known by its place, its name can change
             <tr key={i}>
               <th scope="row">
-                <span className={`line ${styles.name}`}>
-                  <i style={{ background: traceColour(hypothesisStyle(i), scheme) }} />
+                <Group gap={8} wrap="nowrap" className={styles.name}>
+                  <ColorSwatch
+                    size={10}
+                    radius={2}
+                    withShadow={false}
+                    color={traceColour(hypothesisStyle(i), scheme)}
+                  />
                   <input
                     aria-label={`Name of hypothesis ${i + 1}`}
                     value={hypothesis.name}
@@ -30,7 +35,7 @@ export function HypothesisTable({ list, onChange }: { list: Hypothesis[]; onChan
                     spellCheck={false}
                     onChange={(e) => put(i, { ...hypothesis, name: e.currentTarget.value })}
                   />
-                </span>
+                </Group>
               </th>
               {FACTORS.map((factor) => (
                 <td key={factor}>

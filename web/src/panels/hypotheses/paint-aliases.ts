@@ -58,11 +58,8 @@ export function paintPhasors(pen: Pen, box: Box, report: AliasReport, look: Look
     });
     pen.font = fontFor(look.fontSize, 1);
     pen.fillStyle = ink.muted;
-    pen.fillText(
-      `rings: noise of one sample, ${formatSi(noise, "um", 3)}`,
-      field.left + 6,
-      field.bottom - look.fontSize,
-    );
+    const rings = `rings: noise of one sample, ${formatSi(noise, "um", 3)}`;
+    pen.fillText(rings, field.left + 6, field.bottom - look.fontSize);
   });
 }
 

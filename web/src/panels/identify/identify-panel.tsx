@@ -1,4 +1,4 @@
-import { Box, Button } from "@mantine/core";
+import { Box, Button, Group } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../../api/api";
 import type { Identification } from "../../api/types";
@@ -40,10 +40,10 @@ export function IdentifyPanel() {
       <Box className="row" pb={8}>
         {button}
         {FIELDS.map(({ name, ...field }) => (
-          <span key={name} className={styles.field}>
+          <Group key={name} gap={6} wrap="nowrap" className="note">
             {field.label}
             <NumberField {...field} value={how[name]} onCommit={(value) => setHow({ ...how, [name]: value })} />
-          </span>
+          </Group>
         ))}
       </Box>
       {result ? (
@@ -56,7 +56,7 @@ export function IdentifyPanel() {
       ) : (
         <EmptyState title="Not measured yet">
           Sines are played on a copy of this bench, with the faults and the air it has now; the bench itself runs on. A
-          mass, a damper and a spring are fitted to what the sensor sees.
+          mass, a damper and a spring are fitted to the output of the sensor.
         </EmptyState>
       )}
     </Box>

@@ -3,7 +3,7 @@ import type { Identification } from "../../api/types";
 import { decibels } from "../../picture/bode/bode-data";
 import { BodePlot } from "../../picture/bode/bode-plot";
 
-/** The measured tones over the response that was fitted and the one that is believed. */
+/** The measured tones over the fitted response and the nominal one. */
 export function SweepBode({ result }: { result: Identification }) {
   const shown = useMemo(() => {
     const { curve, tones, nominal } = result;

@@ -22,14 +22,14 @@ const block = (family: string, name: string) => cards[`${family} ${name}`];
 
 it("sets what is true beside what a bank assumes", () => {
   const labs = labsOf({ parameters }, "kalman", block);
-  expect(labs.map((l) => l.name)).toEqual(["What is true", "What it assumes"]);
+  expect(labs.map((l) => l.name)).toEqual(["True values", "Assumed values"]);
   expect(labs[0].knobs).toMatchObject([{ path: "sensor.noise_um", value: 0.05 }]);
   expect(labs[1].knobs[0]).toMatchObject({ path: "diagnosers.kalman.assumed_noise_scale", value: 4 });
 });
 
 it("gives one that forgets its factor, and leaves out what cannot change live", () => {
   const labs = labsOf({ parameters }, "adaptive", block);
-  expect(labs.at(-1)).toMatchObject({ name: "How long it remembers", knobs: [{ value: 0.9 }] });
+  expect(labs.at(-1)).toMatchObject({ name: "Memory", knobs: [{ value: 0.9 }] });
   expect(labs.flatMap((l) => l.knobs).some((k) => k.path === "reference.amplitude_v")).toBe(false);
 });
 

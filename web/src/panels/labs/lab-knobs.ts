@@ -1,4 +1,5 @@
-import type { Bench, BlockCard, Document } from "../../api/types";
+import type { Bench, BlockCard } from "../../api/types";
+import { section, textOf } from "../card/instances";
 
 /** A number that can be wrong on purpose, turned while the bench runs. */
 export interface LabKnob {
@@ -19,7 +20,7 @@ export interface Lab {
   knobs: LabKnob[];
 }
 
-/** What the labs turn, and over which range a slider goes. */
+/** Parameters of the labs, with the range of each slider. */
 const RANGES: Record<string, { label: string; low: number; high: number; log: boolean }> = {
   assumed_noise_scale: { label: "Assumed variance over true", low: 0.05, high: 20, log: true },
   process_noise_v: { label: "Assumed noise on the voltage", low: 0.003, high: 3, log: true },
@@ -37,17 +38,17 @@ const TRUE_ONES = ["sensor.noise_um", "plant.drive_noise_v", "reference.amplitud
 
 type Blocks = (family: string, name: string) => BlockCard | undefined;
 
-/** Noise lab and lambda lab of one diagnoser: what is true, what it assumes, and how long it remembers. */
+/** Noise lab and lambda lab of one diagnoser: true values, assumed values, and memory. */
 export function labsOf(bench: Pick<Bench, "parameters">, id: string, block: Blocks): Lab[] {
   const { parameters } = bench;
-  const sensor = text(parameters, "sensor", "kind", "ideal");
+  const sensor = textOf(parameters, "sensor", "kind", "ideal");
   const where: Record<string, { family: string; name: string; tables: string[] }> = {
     sensor: { family: "sense", name: sensor, tables: [`sensors.${sensor}`, "sensor"] },
-    plant: { family: "plant", name: text(parameters, "plant", "model", "linear"), tables: ["plant"] },
-    reference: { family: "reference", name: text(parameters, "reference", "kind", "sine"), tables: ["reference"] },
+    plant: { family: "plant", name: textOf(parameters, "plant", "model", "linear"), tables: ["plant"] },
+    reference: { family: "reference", name: textOf(parameters, "reference", "kind", "sine"), tables: ["reference"] },
     [`diagnosers.${id}`]: {
       family: "diagnose",
-      name: text(parameters, `diagnosers.${id}`, "kind", "mmae"),
+      name: textOf(parameters, `diagnosers.${id}`, "kind", "mmae"),
       tables: [`diagnosers.${id}`],
     },
   };
@@ -58,30 +59,22 @@ export function labsOf(bench: Pick<Bench, "parameters">, id: string, block: Bloc
     const place = where[table];
     const parameter = place && block(place.family, place.name)?.parameters.find((p) => p.name === name);
     if (!range || !parameter?.live) return [];
-    const stated = place.tables.map((t) => at(parameters, t)?.[name]).find((v) => typeof v === "number");
+    const stated = place.tables.map((t) => section(parameters, t)[name]).find((v) => typeof v === "number");
     const value = stated ?? parameter.default;
     if (typeof value !== "number") return [];
-    return [
-      {
-        path,
-        ...range,
-        unit: parameter.unit,
-        value,
-        minimum: parameter.minimum,
-        maximum: parameter.maximum,
-      },
-    ];
+    const { unit, minimum, maximum } = parameter;
+    return [{ path, ...range, unit, value, minimum, maximum }];
   };
   const own = (...names: string[]) => names.flatMap((name) => knob(`diagnosers.${id}.${name}`));
   const labs = [
-    { name: "What is true", advice: "The bench itself.", knobs: TRUE_ONES.flatMap(knob) },
+    { name: "True values", advice: "The bench itself.", knobs: TRUE_ONES.flatMap(knob) },
     {
-      name: "What it assumes",
+      name: "Assumed values",
       advice: "With too little assumed noise the diagnoser is too sure; with too much it cannot decide.",
       knobs: own("assumed_noise_scale", "process_noise_v", "probability_floor", "switching"),
     },
     {
-      name: "How long it remembers",
+      name: "Memory",
       advice:
         "A factor near 1 averages for long and notices late; a small one notices early and switches falsely more often.",
       knobs: own("forgetting", "gate"),
@@ -92,13 +85,3 @@ export function labsOf(bench: Pick<Bench, "parameters">, id: string, block: Bloc
 
 /** How long a forgetting factor remembers, in samples. */
 export const memorySamples = (forgetting: number): number => 1 / (1 - forgetting);
-
-function at(document: Document, path: string): Record<string, unknown> | undefined {
-  let found: unknown = document;
-  for (const key of path.split(".")) found = (found as Document | undefined)?.[key];
-  return found as Record<string, unknown> | undefined;
-}
-
-function text(document: Document, path: string, key: string, otherwise: string): string {
-  return String(at(document, path)?.[key] ?? otherwise);
-}

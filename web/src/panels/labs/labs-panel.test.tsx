@@ -38,13 +38,13 @@ it("groups the knobs by what is true and what the diagnoser assumes", async () =
     within(screen.getByRole("region", { name: lab }))
       .getAllByRole("textbox")
       .map((box) => box.getAttribute("aria-label"));
-  expect(knobs("What is true")).toEqual([
+  expect(knobs("True values")).toEqual([
     "True noise of the sensor, µm",
     "True noise on the drive, V",
     "Amplitude of the drive, V",
     "Frequency of the drive, Hz",
   ]);
-  expect(knobs("What it assumes")).toEqual([
+  expect(knobs("Assumed values")).toEqual([
     "Assumed variance over true",
     "Assumed noise on the voltage, V",
     "Floor of the probabilities",
@@ -131,7 +131,7 @@ it("says how long a forgetting factor remembers", async () => {
   diagnosers.kalman.kind = forgetful?.name as string;
   connect({ ...bench, parameters: { ...bench.parameters, diagnosers } });
   mount(<LabsPanel />);
-  const lab = await screen.findByRole("region", { name: "How long it remembers" });
+  const lab = await screen.findByRole("region", { name: "Memory" });
   expect(lab).toHaveTextContent(/remembers (everything|[\d.]+\ssamples)/);
 });
 

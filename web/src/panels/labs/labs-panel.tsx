@@ -4,13 +4,14 @@ import { useCatalog } from "../../api/use-catalog";
 import { send } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
+import { Figure } from "../../ui/figure";
 import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { Knob } from "../../ui/knob";
 import { meanDelay } from "../lanes/delays";
 import { type Lab, type LabKnob, labsOf, memorySamples } from "./lab-knobs";
 import styles from "./labs.module.css";
 
-/** Noise lab and lambda lab: make a diagnoser's assumptions wrong on purpose and watch what it costs. */
+/** Noise lab and lambda lab: make the assumptions of a diagnoser wrong on purpose and watch the cost. */
 export function LabsPanel() {
   const parameters = useBench((s) => s.bench?.parameters);
   const diagnosers = useBench((s) => s.bench?.diagnosers);
@@ -54,8 +55,12 @@ export function LabsPanel() {
       <div className={styles.labs}>
         {labs.map((lab) => (
           <section key={lab.name} aria-label={lab.name}>
-            <h2>{lab.name}</h2>
-            <p>{lab.advice}</p>
+            <Box component="h2" mt={8}>
+              {lab.name}
+            </Box>
+            <Box component="p" className="remark" mb={4}>
+              {lab.advice}
+            </Box>
             {lab.knobs.map((knob) => (
               <Turn
                 key={knob.path}
@@ -78,53 +83,44 @@ const kept = (labs: Lab[]): Record<string, number> =>
   Object.fromEntries(labs.flatMap((lab) => lab.knobs.map(({ path, value }) => [path, value])));
 
 function Turn({ knob, original, onChange }: { knob: LabKnob; original: number; onChange(value: number): void }) {
-  const { path, log, value, ...rest } = knob;
-  const memory = path.endsWith(".forgetting") ? memorySamples(value) : undefined;
+  const { path, ...rest } = knob;
+  const memory = path.endsWith(".forgetting") ? memorySamples(knob.value) : undefined;
   return (
     <Knob
       {...rest}
-      log={log}
       step={0}
-      value={value}
       original={original}
-      {...(memory === undefined
-        ? {}
-        : {
-            note: Number.isFinite(memory) ? `remembers ${formatCount(memory, "sample")}` : "remembers everything",
-          })}
+      note={
+        memory === undefined
+          ? undefined
+          : Number.isFinite(memory)
+            ? `remembers ${formatCount(memory, "sample")}`
+            : "remembers everything"
+      }
       onChange={onChange}
     />
   );
 }
 
-/** What the assumptions cost: read while turning. */
+/** The cost of the assumptions. */
 function Outcome({ id }: { id: string }) {
   const score = useBench((s) => s.scores[id]);
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   if (!score) return null;
   const mean = meanDelay(score.delays);
+  const isOff = score.nis !== null && (score.nis > OFF || score.nis < 1 / OFF);
   return (
-    <dl className={styles.outcome}>
-      <div>
-        <dt>correct</dt>
-        <dd>{formatPercent(score.correct_fraction, 2)}</dd>
-      </div>
-      <div>
-        <dt>mean delay</dt>
-        <dd>{mean === undefined ? "–" : formatSi(mean * dtMs, "ms", 3)}</dd>
-      </div>
-      <div>
-        <dt>false switches</dt>
-        <dd>{formatNumber(score.false_switches, 0)}</dd>
-      </div>
-      <div>
-        <dt>residuals against assumed</dt>
-        <dd data-off={score.nis !== null && (score.nis > OFF || score.nis < 1 / OFF)}>
-          {score.nis === null ? "–" : formatNumber(score.nis, 2)}
-          <small>1 if the assumptions are true</small>
-        </dd>
-      </div>
-    </dl>
+    <Box component="dl" className={`row ${styles.outcome}`} mb={8}>
+      <Figure name="correct">{formatPercent(score.correct_fraction, 2)}</Figure>
+      <Figure name="mean delay">{mean === undefined ? "–" : formatSi(mean * dtMs, "ms", 3)}</Figure>
+      <Figure name="false switches">{formatNumber(score.false_switches, 0)}</Figure>
+      <Figure name="residuals against assumed" data-off={isOff} c={isOff ? "var(--alarm)" : undefined}>
+        {score.nis === null ? "–" : formatNumber(score.nis, 2)}
+        <Box component="small" ml={8}>
+          1 if the assumptions are true
+        </Box>
+      </Figure>
+    </Box>
   );
 }
 

@@ -1,9 +1,9 @@
 import type { Bench } from "../../api/types";
 
-/** A diagnoser as the race shows it: what its bands are called, and which signals feed it. */
+/** A diagnoser as the race shows it: the names of its bands, and its signals. */
 export interface Contestant {
   id: string;
-  /** Of the hypotheses, or of the states of one that does not choose between hypotheses. */
+  /** Of its hypotheses, or of its states where it has no hypotheses. */
   names: string[];
   probabilities: string[];
   /** Signal of the index that the band of verdicts shows. */
@@ -12,13 +12,13 @@ export interface Contestant {
   truth: boolean;
 }
 
-/** States of the diagnosers that say something else than a hypothesis, by the signal that says it. */
+/** States of diagnosers without hypotheses, by their signal. */
 const STATES: Record<string, string[]> = {
   region: ["required", "degraded", "unacceptable", "danger"],
   alarm: ["quiet", "alarm"],
 };
 
-/** Whatever on a bench has a verdict; those that choose between hypotheses first. */
+/** The diagnosers of a bench with a verdict; diagnosers with hypotheses come first. */
 export function contestants(bench: Pick<Bench, "diagnosers" | "signals">): Contestant[] {
   const known = new Set(bench.signals.map((s) => s.name));
   const found = Object.entries(bench.diagnosers).flatMap(([id, { names }]): Contestant[] => {

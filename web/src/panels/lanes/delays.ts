@@ -21,8 +21,8 @@ export function meanDelay([_startUp, ...delays]: readonly (number | null)[]): nu
 const NONE = "none of the hypotheses";
 
 /**
- * The truth's changes as one diagnoser met them, from the log. A twin's log is not kept: what it found is
- * repeated behind its name, and the truth is that of the board, which has the same faults.
+ * The changes of the truth with the delays of one diagnoser, from the log. The log of a twin is not kept: its findings are
+ * repeated behind its name, and its truth is the truth of the board, which has the same faults.
  */
 export function truthSwitches(events: readonly LogEntry[], diagnoser: string): TruthSwitch[] {
   const [own, twin] = diagnoser.split(":").reverse();
@@ -45,8 +45,9 @@ export function truthSwitches(events: readonly LogEntry[], diagnoser: string): T
 }
 
 /**
- * Places by the delay of the latest change of the truth; equal delays share one. A diagnoser that has not found it has
- * none, and neither has one that said so before: a bank that never leaves "healthy" is not quick. A start-up is no race.
+ * Places by the delay of the latest change of the truth; equal delays share one. A diagnoser that has not found it has no
+ * place, nor has a diagnoser with this verdict before: a bank that never leaves "healthy" is not quick. A start-up is no
+ * race.
  */
 export function racePlaces(switches: Record<string, TruthSwitch[]>): Record<string, number> {
   const latest = Math.max(...Object.values(switches).map((list) => list.at(-1)?.tick ?? -1));

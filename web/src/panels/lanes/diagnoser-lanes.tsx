@@ -17,13 +17,13 @@ import { paintVotes, votesInWords } from "./paint-votes";
 import type { LaneTime } from "./use-lane-time";
 import { useRevealed } from "./use-revealed";
 
-/** Share of the panel that the words of the hypotheses may take; otherwise their names stand there. */
+/** Most share of the panel for the words of the hypotheses; longer words give way to names. */
 const WORDS_SHARE = 0.42;
 
 interface DiagnoserLanesProps {
   id: string;
   names: string[];
-  /** Whether it is told what is true. */
+  /** Whether the bench gives it the truth. */
   withTruth: boolean;
   time: LaneTime;
   onWindow(ms: number): void;

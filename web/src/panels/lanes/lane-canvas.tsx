@@ -22,7 +22,7 @@ export interface LaneShown {
 
 interface LaneCanvasProps {
   label: string;
-  /** What the names at the left stand for. */
+  /** An explanation of the names at the left. */
   legend?: string;
   signals: string[];
   time: LaneTime;
@@ -35,7 +35,7 @@ interface LaneCanvasProps {
   onPick?(tick: number): void;
 }
 
-/** Signals over time on a canvas that shares its window with others: pans, zooms, and says what was clicked. */
+/** Signals over time on a canvas that shares its window with others: it pans, zooms, and reports clicks. */
 export function LaneCanvas({ label, legend, signals, time, left, right, paint, onPick }: LaneCanvasProps) {
   const dtMs = useBench((s) => s.bench?.dt_ms);
   const over = useRef<HTMLDivElement>(null);
@@ -96,7 +96,7 @@ export function LaneCanvas({ label, legend, signals, time, left, right, paint, o
   const point = (offset: number | undefined) => {
     const width = over.current?.clientWidth ?? 1;
     const { start, end } = shown.current;
-    hover.set(offset === undefined ? undefined : start + (offset / width) * (end - start), shown);
+    hover.set(offset === undefined ? undefined : start + (offset / width) * (end - start));
   };
 
   return (

@@ -10,7 +10,7 @@ interface LaneToolsProps {
   take: TakePicture;
 }
 
-/** How much time the lanes show, what they show as a file, and the way back to now. */
+/** The window of the lanes, their picture as a file, and the way back to now. */
 export function LaneTools({ time, onWindow, take }: LaneToolsProps) {
   return (
     <>

@@ -184,9 +184,3 @@ it("has no truth while a fault is to be found", async () => {
   await drawOnce();
   expect(penOf(screen.getByRole("img")).words).not.toContain("truth");
 });
-
-it("says that all is hidden where a bench serves no diagnoser while a fault is to be found", () => {
-  connect({ ...bench, diagnosers: {}, blind: { id: "b" } as never });
-  mount(<LanesPanel />);
-  expect(screen.getByText("Hidden while you look for the fault")).toBeVisible();
-});

@@ -1,14 +1,15 @@
-import { Tooltip } from "@mantine/core";
+import { Box, Tooltip } from "@mantine/core";
 import type { Score } from "../../api/types";
 import { hypothesisWords } from "../../bench/hypothesis-words";
 import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
+import { Figure } from "../../ui/figure";
 import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";
 import type { TruthSwitch } from "./delays";
 import { FalseSwitches } from "./false-switches";
 import styles from "./lanes.module.css";
 
-/** The figures of a diagnoser that are read from the last row. */
+/** The figures of a diagnoser, to be read from the last row. */
 export function LanesHeadline({ id, names, switches }: { id: string; names: string[]; switches: TruthSwitch[] }) {
   const score = useBench((s) => s.scores[id]);
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
@@ -35,20 +36,11 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
           </dd>
         )}
       </div>
-      <div>
-        <dt title={last?.isStartUp ? START_UP : undefined}>{last?.isStartUp ? "start-up" : "delay"}</dt>
-        <dd>
-          <Delay last={last} dtMs={dtMs} />
-        </dd>
-      </div>
-      <div>
-        <dt>correct</dt>
-        <dd>{score ? formatPercent(score.correct_fraction) : "–"}</dd>
-      </div>
-      <div>
-        <dt>false switches</dt>
-        <dd>{score ? <FalseSwitches score={score} /> : "–"}</dd>
-      </div>
+      <Figure name={last?.isStartUp ? "start-up" : "delay"} title={last?.isStartUp ? START_UP : undefined}>
+        <Delay last={last} dtMs={dtMs} />
+      </Figure>
+      <Figure name="correct">{score ? formatPercent(score.correct_fraction) : "–"}</Figure>
+      <Figure name="false switches">{score ? <FalseSwitches score={score} /> : "–"}</Figure>
     </dl>
   );
 }
@@ -74,7 +66,7 @@ function Delay({ last, dtMs }: { last: TruthSwitch | undefined; dtMs: number }) 
   );
 }
 
-/** The bank itself knows from its residuals that what it names is not so. */
+/** The residuals of the bank contradict its verdict. */
 export function FitsNone({ least }: { least: number }) {
   const times = formatNumber(Math.sqrt(least), 1);
   return (
@@ -83,7 +75,9 @@ export function FitsNone({ least }: { least: number }) {
       w={280}
       label={`Even the hypothesis that fits best misses by ${times} times what its filter expects. Something acts that is not in the list, or the assumed noise is too small.`}
     >
-      <b className={styles.none}>fits none</b>
+      <Box component="b" ml={8} p="1px 6px" bdrs={3} bg="var(--alarm)" c="var(--panel)" fz="xs">
+        fits none
+      </Box>
     </Tooltip>
   );
 }

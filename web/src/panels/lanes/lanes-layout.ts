@@ -1,4 +1,4 @@
-/** Where the parts of the lanes lie, in CSS pixels. */
+/** Places of the parts of the lanes, in CSS pixels. */
 export interface LanesLayout {
   left: number;
   right: number;
@@ -10,7 +10,7 @@ export interface LanesLayout {
   axis: number;
 }
 
-/** Less than this and the names of the hypotheses would lie over each other. */
+/** Below this height the names of the hypotheses would overlap. */
 export const leastHeight = (lanes: number, fontSize: number): number => lanes * (fontSize + 2) + 4 * fontSize + 47;
 
 export function lanesLayout(width: number, height: number, lanes: number, fontSize: number, left: number): LanesLayout {

@@ -13,7 +13,7 @@ import { useRunWindow } from "./use-run-window";
 
 const ALL = "";
 
-/** What the diagnosers of the bench believe, against what is true: all of them in a race, or one in full. */
+/** Probabilities by the diagnosers of the bench under the truth: all of them in a race, or one in full. */
 export function LanesPanel() {
   const diagnosers = useBench((s) => s.bench?.diagnosers);
   const signals = useBench((s) => s.bench?.signals);
@@ -29,19 +29,13 @@ export function LanesPanel() {
     () => contestants({ diagnosers: diagnosers ?? {}, signals: signals ?? [] }),
     [diagnosers, signals],
   );
-  if (all.length === 0 && blind)
-    return (
-      <EmptyState title="Hidden while you look for the fault">
-        The server hides the verdicts of the diagnosers until you answer in Lesson, Hidden fault.
-      </EmptyState>
-    );
   if (all.length === 0)
     return (
       <EmptyState title="No diagnoser on this bench" action={<OfferDiagnoser />}>
         A diagnoser that weighs hypotheses about the device fills these lanes, one for each hypothesis.
       </EmptyState>
     );
-  // a bank whose truth is hidden has lanes too, but for that
+  // a bank with a hidden truth has lanes too
   const one = all.length === 1 && (all[0].truth || blind) ? all[0] : all.find((c) => c.id === wanted && c.truth);
   return (
     <div className="view">

@@ -2,48 +2,58 @@ import { hypothesisWords } from "../../bench/hypothesis-words";
 import { type Place, placeOn } from "../../picture/axes";
 import type { Look, Pen } from "../../picture/pen";
 import { fillHatched } from "../../picture/traces";
-import { type PanelFrame, tickOf } from "../../stream/panel-frame";
+import { tickOf } from "../../stream/panel-frame";
 import { formatCount, formatNumber, formatSi } from "../../ui/format";
 import { CANVAS, fontFor, inkOn } from "../../ui/palette";
+import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 import type { TruthSwitch } from "./delays";
+import type { LaneShown } from "./lane-canvas";
 import type { LanesLayout } from "./lanes-layout";
 
 const FITS_NONE = "fits none";
 const NO_NAME = "none of these";
 
-/** What every picture of lanes has: a span of time, the truth's changes in it, and where things lie. */
-export interface LanesGround extends Look {
-  frame: PanelFrame;
-  span: { start: number; end: number };
+/** The ground of every picture of lanes: a span of time, the changes of the truth in it, and the layout. */
+interface LanesGround extends LaneShown, Look {
   layout: LanesLayout;
   switches: TruthSwitch[];
+  names: string[];
+  /** The sample that is explained. */
+  picked: number | undefined;
 }
 
-/** Where ticks and columns lie. */
-export function placesOf({ span, frame, layout }: LanesGround): { x: Place; columnX: Place } {
+/** The places of ticks and columns. */
+export function placesOf({ span, frame, layout }: Pick<LanesGround, "span" | "frame" | "layout">) {
   const x = placeOn({ range: [span.start, span.end] }, layout.left, layout.right);
-  return { x, columnX: (column) => x(tickOf(frame, column)) };
+  const columnX: Place = (column) => x(tickOf(frame, column));
+  return { x, columnX };
 }
 
-/** Stretches of an index signal as a band with names: solid for what is known, otherwise a guess. */
+/** The colour of a hypothesis by its index; grey for none of them. */
+export const inkOf =
+  ({ scheme }: Pick<Look, "scheme">) =>
+  (index: number): string =>
+    index >= 0 ? traceColour(hypothesisStyle(index), scheme) : CANVAS[scheme].muted;
+
+/** Stretches of an index signal as a band with names: solid for the truth, hatched for a guess. */
 export function paintBand(
   ctx: Pen,
-  stretches: ReturnType<typeof runs>,
-  columnX: (c: number) => number,
+  ground: LanesGround,
+  values: Float32Array,
   top: number,
-  height: number,
-  colour: (index: number) => string,
-  names: string[],
-  colours: (typeof CANVAS)["dark"],
-  fontSize: number,
-  solid: boolean,
+  isSolid: boolean,
+  height = ground.layout.band,
 ): void {
+  const { scheme, fontSize, names } = ground;
+  const colours = CANVAS[scheme];
+  const colour = inkOf(ground);
+  const { columnX } = placesOf(ground);
   ctx.font = fontFor(fontSize - 1, 1, 650);
   ctx.textAlign = "left";
-  for (const run of stretches) {
+  for (const run of runs(values)) {
     const left = columnX(run.from);
     const width = columnX(run.to) - left;
-    if (solid || run.value < 0) {
+    if (isSolid || run.value < 0) {
       ctx.fillStyle = run.value < 0 ? colours.axis : colour(run.value);
       ctx.fillRect(left, top, width, height);
     } else fillHatched(ctx, left, top, width, height, colour(run.value));
@@ -54,35 +64,30 @@ export function paintBand(
       (words) => ctx.measureText(words).width <= room,
     );
     if (label === undefined) continue;
-    const needed = ctx.measureText(label).width;
-    if (!solid) {
+    if (!isSolid) {
       ctx.fillStyle = colours.panel;
-      ctx.fillRect(at - 4, top + 2, needed + 8, height - 4);
+      ctx.fillRect(at - 4, top + 2, ctx.measureText(label).width + 8, height - 4);
     }
-    ctx.fillStyle = solid && run.value >= 0 ? inkOn(colour(run.value)) : colours.text;
+    ctx.fillStyle = isSolid && run.value >= 0 ? inkOn(colour(run.value)) : colours.text;
     ctx.fillText(label, at, top + height / 2 + 0.5);
   }
 }
 
 /** Where no hypothesis fits: a bar under the verdict, which is only the least wrong one then. */
-export function paintUnexplained(
-  ctx: Pen,
-  stretches: ReturnType<typeof runs>,
-  columnX: (c: number) => number,
-  picture: LanesGround,
-): void {
-  const { layout, scheme, fontSize } = picture;
+export function paintUnexplained(ctx: Pen, ground: LanesGround, values: Float32Array): void {
+  const { layout, scheme, fontSize } = ground;
   const colours = CANVAS[scheme];
+  const { columnX } = placesOf(ground);
   ctx.font = fontFor(fontSize - 1, 1, 650);
   ctx.textAlign = "right";
-  for (const run of stretches) {
+  for (const run of runs(values)) {
     if (run.value !== 1) continue;
     const left = Math.max(columnX(run.from), layout.left);
     const right = Math.min(columnX(run.to), layout.right);
     ctx.fillStyle = colours.alarm;
     ctx.fillRect(left, layout.winner + layout.band - 4, right - left, 4);
     const needed = ctx.measureText(FITS_NONE).width;
-    if (right - left < 2.5 * needed) continue; // the verdict stands at the left
+    if (right - left < 2.5 * needed) continue; // the verdict is at the left
     ctx.fillStyle = colours.panel;
     ctx.fillRect(right - needed - 12, layout.winner, needed + 12, layout.band - 4);
     ctx.fillStyle = colours.alarm;
@@ -90,28 +95,29 @@ export function paintUnexplained(
   }
 }
 
-/** The sample that is being explained: a line with a flag. */
-export function paintPicked(
-  ctx: Pen,
-  tick: number | undefined,
-  x: (tick: number) => number,
-  bottom: number,
-  colours: (typeof CANVAS)["dark"],
-): void {
-  if (tick === undefined) return;
-  const at = Math.round(x(tick + 0.5));
-  ctx.fillStyle = colours.text;
-  ctx.fillRect(at - 1, 0, 2, bottom);
-  ctx.beginPath();
-  ctx.moveTo(at - 6, 0);
-  ctx.lineTo(at + 6, 0);
-  ctx.lineTo(at, 8);
-  ctx.fill();
+/** The explained sample as a line with a flag, and the tick under the pointer as a line. */
+export function paintMarks(ctx: Pen, ground: LanesGround): void {
+  const { picked, hover, layout, scheme } = ground;
+  const { x } = placesOf(ground);
+  if (picked !== undefined) {
+    const at = Math.round(x(picked + 0.5));
+    ctx.fillStyle = CANVAS[scheme].text;
+    ctx.fillRect(at - 1, 0, 2, layout.axis);
+    ctx.beginPath();
+    ctx.moveTo(at - 6, 0);
+    ctx.lineTo(at + 6, 0);
+    ctx.lineTo(at, 8);
+    ctx.fill();
+  }
+  if (hover === undefined) return;
+  ctx.fillStyle = CANVAS[scheme].accent;
+  ctx.fillRect(Math.round(x(hover)), 0, 1, layout.axis);
 }
 
-/** Between the truth's change and its recognition stands a bar; its length is the delay. */
-export function paintDelays(ctx: Pen, picture: LanesGround, x: (tick: number) => number, winner: Float32Array): void {
-  const { layout, frame, switches, scheme, fontSize, span } = picture;
+/** A bar from each change of the truth to its recognition; its length is the delay. */
+export function paintDelays(ctx: Pen, ground: LanesGround, winner: Float32Array): void {
+  const { layout, frame, switches, scheme, fontSize, span } = ground;
+  const { x } = placesOf(ground);
   const colours = CANVAS[scheme];
   const head = winner.length && !frame.frozen ? frame.endTick : span.end;
   ctx.font = fontFor(fontSize, 1, 600);
@@ -149,7 +155,7 @@ function delayWords({ delay, findable, isStartUp }: TruthSwitch, dtMs: number): 
 }
 
 /** A stretch of columns over which an index signal keeps one value. */
-export interface Run {
+interface Run {
   value: number;
   from: number;
   /** One past the last column. */

@@ -6,24 +6,23 @@ import { within } from "../../picture/traces";
 import { columnAt, largest, lowest } from "../../stream/panel-frame";
 import { formatPercent } from "../../ui/format";
 import { CANVAS, fontFor } from "../../ui/palette";
-import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 import type { TruthSwitch } from "./delays";
 import type { LaneShown } from "./lane-canvas";
 import { lanesLayout } from "./lanes-layout";
-import { paintBand, paintDelays, paintPicked, paintUnexplained, placesOf, runs } from "./paint-bands";
+import { inkOf, paintBand, paintDelays, paintMarks, paintUnexplained, placesOf } from "./paint-bands";
 
 export interface LanesShown extends LaneShown {
   switches: TruthSwitch[];
   names: string[];
-  /** What the lanes are called: the hypotheses in words, or by name where words have no room. */
+  /** Names of the lanes: the hypotheses in words, or by name where words have no room. */
   labels: string[];
   /** Room for them, in sizes of the letters. */
   gutter: number;
-  /** Whether what is true is among the signals, behind the verdict; not while it is to be found. */
+  /** Whether the truth is among the signals, behind the verdict; not while a fault is hidden. */
   withTruth: boolean;
-  /** Whether the signals end with what says that no hypothesis fits. */
+  /** Whether the signals end with the flag that no hypothesis fits. */
   withUnexplained: boolean;
-  /** The sample that is being explained. */
+  /** The sample that is explained. */
   picked: number | undefined;
 }
 
@@ -39,10 +38,10 @@ export function paintLanes(ctx: Pen, box: Box, shown: LanesShown, look: Look): v
   const { frame, span, names, hover } = shown;
   const { scheme, fontSize } = look;
   const layout = layoutOf(box, shown, look);
-  const picture = { ...shown, ...look, layout };
+  const ground = { ...shown, ...look, layout };
   const colours = CANVAS[scheme];
-  const colour = (i: number) => (i >= 0 ? traceColour(hypothesisStyle(i), scheme) : colours.muted);
-  const { x, columnX } = placesOf(picture);
+  const colour = inkOf(look);
+  const { columnX } = placesOf(ground);
   const reading = (signal: number) => (hover === undefined ? frame.latest[signal] : columnAt(frame, signal, hover));
   const winnerNow = reading(names.length);
   const truthNow = shown.withTruth ? reading(names.length + 1) : undefined;
@@ -66,30 +65,14 @@ export function paintLanes(ctx: Pen, box: Box, shown: LanesShown, look: Look): v
       ctx.fillStyle = colours.axis;
       ctx.fillRect(layout.left, base, layout.right - layout.left, 1);
     });
-    paintBand(
-      ctx,
-      runs(largest(frame, names.length)),
-      columnX,
-      layout.winner,
-      layout.band,
-      colour,
-      names,
-      colours,
-      fontSize,
-      false,
-    );
+    paintBand(ctx, ground, largest(frame, names.length), layout.winner, false);
     const last = names.length + (shown.withTruth ? 2 : 1);
-    if (shown.withUnexplained) paintUnexplained(ctx, runs(largest(frame, last)), columnX, picture);
+    if (shown.withUnexplained) paintUnexplained(ctx, ground, largest(frame, last));
     if (shown.withTruth) {
-      const truth = runs(largest(frame, names.length + 1));
-      paintBand(ctx, truth, columnX, layout.truth, layout.band, colour, names, colours, fontSize, true);
-      paintDelays(ctx, picture, x, lowest(frame, names.length));
+      paintBand(ctx, ground, largest(frame, names.length + 1), layout.truth, true);
+      paintDelays(ctx, ground, lowest(frame, names.length));
     }
-    paintPicked(ctx, shown.picked, x, layout.axis, colours);
-    if (hover !== undefined) {
-      ctx.fillStyle = colours.accent;
-      ctx.fillRect(Math.round(x(hover)), 0, 1, layout.axis);
-    }
+    paintMarks(ctx, ground);
   });
   ctx.textBaseline = "middle";
 

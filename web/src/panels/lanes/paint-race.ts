@@ -3,11 +3,10 @@ import type { Box, Look, Pen } from "../../picture/pen";
 import { within } from "../../picture/traces";
 import { largest, lowest } from "../../stream/panel-frame";
 import { CANVAS } from "../../ui/palette";
-import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 import type { TruthSwitch } from "./delays";
 import type { LaneShown } from "./lane-canvas";
 import type { LanesLayout } from "./lanes-layout";
-import { paintBand, paintDelays, paintPicked, placesOf, runs } from "./paint-bands";
+import { inkOf, paintBand, paintDelays, paintMarks, placesOf, runs } from "./paint-bands";
 
 export interface RaceShown extends LaneShown {
   switches: TruthSwitch[];
@@ -19,7 +18,7 @@ export interface RaceShown extends LaneShown {
   picked: number | undefined;
 }
 
-/** Where the parts of one row of the race lie: probabilities, verdict, delay, truth. */
+/** The layout of one row of the race: probabilities, verdict, delay, truth. */
 function rowLayout({ width, height }: Box, { fontSize }: Look): LanesLayout {
   const band = fontSize + 5;
   const truth = height - 7;
@@ -28,22 +27,21 @@ function rowLayout({ width, height }: Box, { fontSize }: Look): LanesLayout {
   return { left: 0, right: width, lanes: [{ top: 2, height: winner - 4 }], winner, delay, truth, band, axis: height };
 }
 
-/** One diagnoser of the race: what it believes as one filled field, what it says, and how long it took. */
+/** One diagnoser of the race: its probabilities as one filled field, its verdict, and its delay. */
 export function paintRow(ctx: Pen, box: Box, shown: RaceShown, look: Look): void {
-  const { frame, span, names, probabilities } = shown;
+  const { frame, span, probabilities } = shown;
   const layout = rowLayout(box, look);
-  const picture = { ...shown, ...look, layout };
-  const colours = CANVAS[look.scheme];
-  const colour = (i: number) => (i >= 0 ? traceColour(hypothesisStyle(i), look.scheme) : colours.muted);
-  const { x, columnX } = placesOf(picture);
+  const ground = { ...shown, ...look, layout };
+  const colour = inkOf(look);
+  const { columnX } = placesOf(ground);
   const field = { left: 0, right: layout.right, top: 0, bottom: layout.axis };
-  // the head says the times
+  // the head has the times
   within(ctx, field, () => paintColumns(ctx, field, timeAxis(span, frame.dtMs), look));
   ctx.textBaseline = "middle";
 
   const { top, height } = layout.lanes[0];
   const edges = stack(Array.from({ length: probabilities }, (_, i) => middle(lowest(frame, i), largest(frame, i))));
-  // the last layer is drawn first and fills down to the axis; each before it covers what lies below
+  // the last layer is drawn first and fills down to the axis; each earlier layer covers the lower part
   for (let i = edges.length - 1; i >= 0; i -= 1) {
     ctx.fillStyle = colour(i);
     ctx.beginPath();
@@ -51,37 +49,28 @@ export function paintRow(ctx: Pen, box: Box, shown: RaceShown, look: Look): void
     ctx.fill();
   }
   const winner = lowest(frame, probabilities);
-  paintBand(ctx, runs(winner), columnX, layout.winner, layout.band - 1, colour, names, colours, look.fontSize, false);
+  paintBand(ctx, ground, winner, layout.winner, false, layout.band - 1);
   if (shown.withTruth) {
     for (const run of runs(largest(frame, probabilities + 1))) {
-      ctx.fillStyle = run.value < 0 ? colours.axis : colour(run.value);
+      ctx.fillStyle = run.value < 0 ? CANVAS[look.scheme].axis : colour(run.value);
       ctx.fillRect(columnX(run.from), layout.truth, columnX(run.to) - columnX(run.from), 6);
     }
   }
-  paintDelays(ctx, picture, x, winner);
-  paintPicked(ctx, shown.picked, x, layout.axis, colours);
-  if (shown.hover !== undefined) {
-    ctx.fillStyle = colours.accent;
-    ctx.fillRect(Math.round(x(shown.hover)), 0, 1, layout.axis);
-  }
+  paintDelays(ctx, ground, winner);
+  paintMarks(ctx, ground);
 }
 
-/** The head of the race: the axis of time over what is true. */
+/** The head of the race: the axis of time over the truth. */
 export function paintHead(ctx: Pen, box: Box, shown: RaceShown, look: Look): void {
   const field = { left: 0, right: box.width, top: 0, bottom: 0 };
   paintColumns(ctx, field, timeAxis(shown.span, shown.frame.dtMs), look, [0, box.width]);
   paintTruth(ctx, box, shown, look, look.fontSize + 10);
 }
 
-/** What is true, as a band; its index is the only signal. */
+/** The truth as a band; its index is the only signal. */
 export function paintTruth(ctx: Pen, box: Box, shown: RaceShown, look: Look, top: number): void {
-  const layout = rowLayout(box, look);
-  const colours = CANVAS[look.scheme];
-  const colour = (i: number) => (i >= 0 ? traceColour(hypothesisStyle(i), look.scheme) : colours.muted);
-  const { columnX } = placesOf({ ...shown, ...look, layout });
   ctx.textBaseline = "middle";
-  const truth = runs(largest(shown.frame, 0));
-  paintBand(ctx, truth, columnX, top, layout.band, colour, shown.names, colours, look.fontSize, true);
+  paintBand(ctx, { ...shown, ...look, layout: rowLayout(box, look) }, largest(shown.frame, 0), top, true);
 }
 
 const middle = (low: Float32Array, high: Float32Array) => low.map((value, i) => 0.5 * (value + high[i]));

@@ -9,7 +9,7 @@ import type { Votes } from "./use-revealed";
 /** Share of the field that the longest bar takes. */
 const LONGEST = 0.45;
 
-/** Paint what was predicted over the lanes: a bar for each lane, and a mark at each moment that was guessed. */
+/** Paint the predictions over the lanes: a bar for each lane, and a mark at each guessed moment. */
 export function paintVotes(ctx: Pen, box: Box, shown: LanesShown, look: Look, votes: Votes): void {
   const { scheme, fontSize } = look;
   const layout = layoutOf(box, shown, look);
@@ -37,6 +37,6 @@ export function paintVotes(ctx: Pen, box: Box, shown: LanesShown, look: Look, vo
   });
 }
 
-/** The same for who hears it. */
+/** The same for a screen reader. */
 export const votesInWords = ({ counts }: Votes, labels: readonly string[]): string =>
   counts.map((count, i) => `${formatCount(count, "vote")} for ${labels[i]}`).join(", ");

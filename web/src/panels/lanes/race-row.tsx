@@ -5,6 +5,7 @@ import { useView } from "../../bench/view-store";
 import { pickSample } from "../../bench/why";
 import type { Box, Look, Pen } from "../../picture/pen";
 import { useBench } from "../../stream/bench-store";
+import { Figure } from "../../ui/figure";
 import { formatPercent, formatSi } from "../../ui/format";
 import type { Contestant } from "./contestants";
 import { meanDelay, type TruthSwitch } from "./delays";
@@ -99,27 +100,19 @@ function Figures({ id, switches, place }: { id: string; switches: TruthSwitch[];
   const mean = meanDelay(score.delays);
   return (
     <dl className={styles.figures}>
-      <div>
-        <dt>correct</dt>
-        <dd>{formatPercent(score.correct_fraction)}</dd>
-      </div>
-      <div>
-        <dt title={last?.isStartUp ? START_UP : undefined}>{last?.isStartUp ? "start-up" : "last delay"}</dt>
-        <dd data-place={place}>
-          {lastDelay(last, dtMs)}
-          {place !== undefined && <b>{ORDINAL[place] ?? `${place}th`}</b>}
-        </dd>
-      </div>
-      <div>
-        <dt>mean delay</dt>
-        <dd>{mean === undefined ? "–" : formatSi(mean * dtMs, "ms", 3)}</dd>
-      </div>
-      <div>
-        <dt>false switches</dt>
-        <dd>
-          <FalseSwitches score={score} />
-        </dd>
-      </div>
+      <Figure name="correct">{formatPercent(score.correct_fraction)}</Figure>
+      <Figure
+        name={last?.isStartUp ? "start-up" : "last delay"}
+        title={last?.isStartUp ? START_UP : undefined}
+        data-place={place}
+      >
+        {lastDelay(last, dtMs)}
+        {place !== undefined && <b>{ORDINAL[place] ?? `${place}th`}</b>}
+      </Figure>
+      <Figure name="mean delay">{mean === undefined ? "–" : formatSi(mean * dtMs, "ms", 3)}</Figure>
+      <Figure name="false switches">
+        <FalseSwitches score={score} />
+      </Figure>
     </dl>
   );
 }

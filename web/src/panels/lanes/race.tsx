@@ -22,7 +22,7 @@ interface RaceProps {
   picture: Ref<TakePicture>;
 }
 
-/** All diagnosers of the bench on one axis of time, under the truth: who finds it first, and who is right longest. */
+/** All diagnosers of the bench on one axis of time, under the truth, with delays and places. */
 export function Race({ contestants, time, picture }: RaceProps) {
   const fontSize = useView((s) => s.fontPx);
   const events = useBench((s) => s.events);

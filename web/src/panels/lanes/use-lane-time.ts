@@ -1,12 +1,7 @@
 import { useEffect, useMemo, useRef } from "react";
-import { type TimeWindow, useTimeView } from "../scope/use-time-view";
+import { type Span, type TimeWindow, useTimeView } from "../scope/use-time-view";
 
-export interface Span {
-  start: number;
-  end: number;
-}
-
-/** One window into time for any number of canvases: those that draw it hear when it moves under the hand. */
+/** One window into time for any number of canvases, which are called when the hand moves it. */
 export interface LaneTime {
   windowMs: number;
   view: TimeWindow;

@@ -2,13 +2,13 @@ import { useMemo } from "react";
 import { useMe } from "../../api/me";
 import { useVote } from "../../bench/vote";
 
-/** What was said for the lane of each hypothesis. */
+/** Votes for the lane of each hypothesis. */
 export interface Votes {
   counts: number[];
   atMs: number[][];
 }
 
-/** What was predicted of the lanes of a diagnoser, once it is revealed. */
+/** Predictions for the lanes of a diagnoser, once they are revealed. */
 export function useRevealed(id: string, names: readonly string[]): Votes | undefined {
   const asked = useVote((s) => s.vote);
   const mine = useMe((s) => s.me?.vote);

@@ -4,7 +4,7 @@ import { useAnswer } from "../../api/queries";
 import { hasEnded, longestStep, useSteps } from "../../bench/steps";
 import { useBench } from "../../stream/bench-store";
 import { TIME_WINDOWS_MS } from "../../ui/time-axis";
-import type { Span } from "./use-lane-time";
+import type { Span } from "../scope/use-time-view";
 
 const USUAL_MS = 20;
 /** A window holds a step and half a step before it. */

@@ -10,7 +10,7 @@ export interface LocusAxes {
   y: Range;
 }
 
-/** Axes about the rest that hold every trace; on one scale, or y stretched to its own. */
+/** Axes about zero that hold every trace; on one scale, or y stretched to its own. */
 export function locusAxes(before: LocusAxes | undefined, traces: readonly Points[], stretched: boolean): LocusAxes {
   const reach = (axis: "x" | "y") =>
     Math.max(1e-9, ...traces.map((t) => Math.max(...(extent(t[axis]) ?? [0, 0]).map(Math.abs))));
@@ -22,7 +22,7 @@ export function locusAxes(before: LocusAxes | undefined, traces: readonly Points
 }
 
 /**
- * The long axis of a locus against x, in degrees from -90 to 90: that of the largest scatter,
+ * The long axis of a locus against x, in degrees from -90 to 90: the axis of the largest scatter,
  * tan 2a = 2 cov(x, y) / (var x - var y). Undefined when nothing moves.
  */
 export function tiltDeg(x: ArrayLike<number>, y: ArrayLike<number>): number | undefined {

@@ -1,35 +1,36 @@
-import { NativeSelect, SegmentedControl } from "@mantine/core";
+import { Group, NativeSelect, SegmentedControl } from "@mantine/core";
 import { useMemo, useRef, useState } from "react";
-import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
+import { PictureMenu } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-axis";
 import styles from "../phase/phase.module.css";
 import { LocusPlot, type Mass } from "./locus-plot";
+import { type LocusShown, locusPicture } from "./paint-locus";
 
 const MASS: Mass = { name: "Mass", x: "plant.x", y: "plant.y" };
 const PARTNER: Mass = { name: "Partner", x: "plant.partner_x", y: "plant.partner_y" };
 
-/** What the path tells, by the controller that drives along y. */
+/** The meaning of the path, by the controller along y. */
 const WORDS: Record<string, string> = {
   open_loop_rate:
     "A spring between the axes tilts the line: that is the quadrature. A turning frame opens it to an ellipse, wider with the rate.",
-  force_to_rebalance: "The controller holds y at rest. The force it needs for this is the rate.",
+  force_to_rebalance: "The controller keeps y at zero. The force it needs for this is the rate.",
   whole_angle: "The line of oscillation turns back by the angle that the frame has turned.",
 };
 
-/** The path of the mass in the plane it moves in, with the tilt of its long axis; that of a partner beside it. */
+/** The path of the mass in its plane, with the tilt of its long axis; and the path of a partner. */
 export function LocusPanel() {
   const axes = useBench((s) => s.bench?.axes);
   const words = useBench((s) => WORDS[s.bench?.controller ?? ""]);
   const [windowMs, setWindowMs] = useState(2);
   const [stretched, setStretched] = useState(true);
-  const picture = useRef<TakePicture>(null);
+  const painted = useRef<LocusShown | undefined>(undefined);
   const masses = useMemo(() => (axes?.includes("partner_x") ? [MASS, PARTNER] : [MASS]), [axes]);
   if (!axes) return <EmptyState title="No bench yet">The path of the mass appears with the bench.</EmptyState>;
   return (
     <section className={`view ${styles.panel}`} aria-label="Motion">
-      <div className={`row ${styles.bar}`}>
+      <Group gap="6px 8px" p="6px 12px">
         <NativeSelect
           w={84}
           aria-label="Length of the path"
@@ -46,9 +47,9 @@ export function LocusPanel() {
           ]}
           onChange={(value) => setStretched(value === "own")}
         />
-        <PictureMenu take={() => picture.current?.()} />
-      </div>
-      <LocusPlot masses={masses} windowMs={windowMs} stretched={stretched} picture={picture} />
+        <PictureMenu take={() => painted.current && locusPicture(painted.current)} />
+      </Group>
+      <LocusPlot masses={masses} windowMs={windowMs} stretched={stretched} painted={painted} />
       {words && <p className={styles.words}>{words}</p>}
     </section>
   );

@@ -1,19 +1,16 @@
-import { type Ref, useEffect, useImperativeHandle, useMemo, useRef } from "react";
+import { type RefObject, useEffect, useMemo, useRef } from "react";
 import { LiveCanvas } from "../../picture/live-canvas";
 import type { Box, Look, Pen } from "../../picture/pen";
-import type { TakePicture } from "../../picture/picture-menu";
-import { useBench } from "../../stream/bench-store";
 import { middles } from "../../stream/panel-frame";
-import type { Subscription } from "../../stream/wire";
+import { TraceSwatch } from "../../ui/trace-swatch";
 import { unitScale } from "../../ui/unit-scale";
 import styles from "../phase/phase.module.css";
+import { useTicks } from "../phase/use-ticks";
 import { useTraces } from "../scope/use-traces";
 import { type LocusAxes, locusAxes, type Points, tiltDeg } from "./locus-axes";
-import { type LocusShown, locusPicture, paintLocus, tiltText } from "./paint-locus";
+import { type LocusShown, paintLocus, tiltText } from "./paint-locus";
 
-const MOST_COLUMNS = 4096;
-
-/** A mass in its plane: what it is called, and its two signals. */
+/** A mass in its plane: its name, and its two signals. */
 export interface Mass {
   name: string;
   x: string;
@@ -24,25 +21,18 @@ interface LocusPlotProps {
   masses: readonly Mass[];
   windowMs: number;
   stretched: boolean;
-  picture: Ref<TakePicture>;
+  /** Keeps the newest picture. */
+  painted: RefObject<LocusShown | undefined>;
 }
 
 /** The canvas of a locus, and the tilt of each trace in words. */
-export function LocusPlot({ masses, windowMs, stretched, picture }: LocusPlotProps) {
-  const dtMs = useBench((s) => s.bench?.dt_ms);
+export function LocusPlot({ masses, windowMs, stretched, painted }: LocusPlotProps) {
   const names = useMemo(() => masses.flatMap(({ x, y }) => [x, y]), [masses]);
   const traces = useTraces(names);
   const words = useRef<(HTMLElement | null)[]>([]);
   const points = useRef<Points[]>([]);
   const axes = useRef<LocusAxes | undefined>(undefined);
-  const painted = useRef<LocusShown | undefined>(undefined);
-  useImperativeHandle(picture, () => () => painted.current && locusPicture(painted.current), []);
-
-  const subscription = useMemo<Subscription | undefined>(() => {
-    if (!dtMs) return undefined;
-    const width = Math.max(2, Math.min(MOST_COLUMNS, Math.round(windowMs / dtMs)));
-    return { mode: "roll", signals: names, window_ms: windowMs, width };
-  }, [names, windowMs, dtMs]);
+  const subscription = useTicks(names, windowMs);
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: another scale begins with other axes
   useEffect(() => {
@@ -84,8 +74,7 @@ export function LocusPlot({ masses, windowMs, stretched, picture }: LocusPlotPro
       <p className={styles.words}>
         {masses.map(({ name, x }, i) => (
           <span key={name} style={{ marginRight: 16 }}>
-            <i className={styles.key} style={{ background: traces.find((t) => t.name === x)?.colour }} /> {name}: long
-            axis{" "}
+            <TraceSwatch colour={traces.find((t) => t.name === x)?.colour ?? ""} dash={0} /> {name}: long axis{" "}
             <b
               data-testid="tilt"
               ref={(place) => {

@@ -8,7 +8,7 @@ import type { UnitScale } from "../../ui/unit-scale";
 import { roundTo } from "../../ui/unit-scale";
 import type { LocusAxes, Points } from "./locus-axes";
 
-export interface LocusTrace {
+interface LocusTrace {
   name: string;
   /** In `TRACE_COLOURS`. */
   slot: number;

@@ -28,7 +28,7 @@ function mountPanel(of = bench, told = sentences, after = 0) {
   board.say({ type: "narration", after, sentences: told } as never);
   return { board, user };
 }
-const list = () => within(screen.getByRole("list", { name: "What the narrator says, newest last" }));
+const list = () => within(screen.getByRole("list", { name: "Sentences of the narrator, newest last" }));
 
 it("says that there is nothing to tell yet", () => {
   connect(bench);

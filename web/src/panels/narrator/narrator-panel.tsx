@@ -1,20 +1,28 @@
+import { Box } from "@mantine/core";
 import { useEffect, useRef } from "react";
 import { showSentence, useNarrator, useSaid, useVoting } from "../../bench/narrator";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatCount } from "../../ui/format";
 import { CopyMenu } from "../events/copy-menu";
-import styles from "./narrator.module.css";
+import styles from "../events/events.module.css";
 
 const SHOWN = 300;
+const TONES: Record<string, string> = {
+  trip: "alarm",
+  fault: "alarm",
+  verdict: "found",
+  settled: "found",
+  false_verdict: "doubt",
+};
 
-/** Copy of the command that a sentence tells of; nothing where the bench did it by itself. */
+/** A menu to copy the command of a sentence; empty for an event of the bench itself. */
 function CopySentence({ tick }: { tick: number }) {
   const event = useBench((s) => s.events.findLast((one) => one.tick === tick && one.command));
   return event && <CopyMenu event={event} />;
 }
 
-/** What has happened, in sentences, newest last; a click takes the scopes there. A replay lists what is to come as well. */
+/** Events in sentences, newest last; a click takes the scopes there. A replay lists later sentences as well. */
 export function NarratorPanel() {
   const { before, sentences } = useBench((s) => s.narration);
   const said = useSaid();
@@ -38,14 +46,18 @@ export function NarratorPanel() {
     );
   const first = Math.max(0, sentences.length - SHOWN);
   return (
-    <ol ref={list} className={styles.list} aria-label="What the narrator says, newest last">
-      {before + first > 0 && <li className={styles.earlier}>Earlier: {formatCount(before + first, "sentence")}</li>}
+    <ol ref={list} className={styles.list} aria-label="Sentences of the narrator, newest last">
+      {before + first > 0 && (
+        <Box component="li" className="note" p="3px 12px">
+          Earlier: {formatCount(before + first, "sentence")}
+        </Box>
+      )}
       {sentences.slice(first).map((sentence, at) => (
-        <li key={`${sentence.tick} ${sentence.text}`}>
+        <Box component="li" className="line" pr={6} key={`${sentence.tick} ${sentence.text}`}>
           <button
             type="button"
-            className={styles.sentence}
-            data-kind={sentence.kind}
+            className={styles.entry}
+            data-tone={TONES[sentence.kind]}
             data-chosen={sentence === chosen}
             data-ahead={first + at >= said}
             aria-current={first + at === said - 1 ? "step" : undefined}
@@ -55,7 +67,7 @@ export function NarratorPanel() {
             {sentence.text}
           </button>
           {sentence.tick === sentence.span[0] && <CopySentence tick={sentence.tick} />}
-        </li>
+        </Box>
       ))}
     </ol>
   );

@@ -7,7 +7,7 @@ import { CANVAS, TRACE_COLOURS } from "../../ui/palette";
 import type { UnitScale } from "../../ui/unit-scale";
 import type { Range } from "./phase-range";
 
-export interface PhaseAxis {
+interface PhaseAxis {
   range: Range;
   scale: UnitScale;
   name: string;
@@ -20,7 +20,7 @@ export interface PhaseShown {
   /** The point under the pointer of another panel. */
   hovered: number | undefined;
   map: UnstableRegion | undefined;
-  /** Which parts of the map lie beneath these signals. */
+  /** The parts of the map for these signals. */
   fits: { folds: boolean; boundary: boolean };
   /** In `TRACE_COLOURS`. */
   slot: number;

@@ -1,13 +1,14 @@
-import { Button, NativeSelect } from "@mantine/core";
+import { Button, Group, NativeSelect } from "@mantine/core";
 import { useRef, useState } from "react";
 import { hasAxes } from "../../api/fits";
 import { useMay } from "../../api/me";
 import { send } from "../../bench/send";
-import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
+import { PictureMenu } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { NumberField } from "../../ui/number-field";
 import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-axis";
+import { type PhaseShown, phasePicture } from "./paint-phase";
 import styles from "./phase.module.css";
 import { PhasePlot } from "./phase-plot";
 import { mapFits, mapWords } from "./unstable-map";
@@ -27,7 +28,7 @@ export function PhasePanel() {
   const y = up ?? (isFlat ? "plant.velocity" : "plant.x_velocity");
   const [windowMs, setWindowMs] = useState(4);
   const [driveV, setDriveV] = useState(0);
-  const picture = useRef<TakePicture>(null);
+  const painted = useRef<PhaseShown | undefined>(undefined);
   const { map, failed } = useUnstableRegion(driveV);
   if (!signals)
     return (
@@ -39,7 +40,7 @@ export function PhasePanel() {
   const flat = plant !== "planar" && plant !== "slaved_lateral";
   return (
     <section className={`view ${styles.panel}`} aria-label="Phase plane">
-      <div className={`row ${styles.bar}`}>
+      <Group gap="6px 8px" p="6px 12px">
         <NativeSelect aria-label="Across" value={x} data={names} onChange={(e) => setX(e.currentTarget.value)} />
         <NativeSelect aria-label="Up" value={y} data={names} onChange={(e) => setY(e.currentTarget.value)} />
         <NativeSelect
@@ -50,7 +51,7 @@ export function PhasePanel() {
           onChange={(e) => setWindowMs(Number(e.currentTarget.value))}
         />
         {!flat && fits.boundary && (
-          <span className={styles.held}>
+          <Group gap={6} wrap="nowrap" className="note">
             map with the drive held at
             <NumberField
               label="Drive held"
@@ -60,17 +61,17 @@ export function PhasePanel() {
               maximum={1000}
               onCommit={setDriveV}
             />
-          </span>
+          </Group>
         )}
-        <PictureMenu take={() => picture.current?.()} />
-      </div>
+        <PictureMenu take={() => painted.current && phasePicture(painted.current)} />
+      </Group>
       <PhasePlot
         x={x}
         y={y}
         windowMs={windowMs}
         map={fits.folds && !flat ? map : undefined}
         fits={fits}
-        picture={picture}
+        painted={painted}
       />
       <p className={`${styles.words} ${styles.beside}`}>
         {failed ??

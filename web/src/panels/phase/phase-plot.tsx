@@ -1,18 +1,14 @@
-import { type Ref, useEffect, useImperativeHandle, useMemo, useRef } from "react";
+import { type RefObject, useEffect, useMemo, useRef } from "react";
 import type { UnstableRegion } from "../../api/types";
 import { LiveCanvas } from "../../picture/live-canvas";
-import type { TakePicture } from "../../picture/picture-menu";
-import { useBench } from "../../stream/bench-store";
 import { middles } from "../../stream/panel-frame";
-import type { Subscription } from "../../stream/wire";
 import { hover } from "../../ui/hover";
 import { unitScale } from "../../ui/unit-scale";
 import { useTraces } from "../scope/use-traces";
-import { type PhaseShown, paintPhase, phasePicture } from "./paint-phase";
+import { type PhaseShown, paintPhase } from "./paint-phase";
 import { extent, follow, type Range, union } from "./phase-range";
 import { mapExtent } from "./unstable-map";
-
-const MOST_COLUMNS = 4096;
+import { useTicks } from "./use-ticks";
 
 interface PhasePlotProps {
   x: string;
@@ -20,25 +16,19 @@ interface PhasePlotProps {
   windowMs: number;
   map: UnstableRegion | undefined;
   fits: { folds: boolean; boundary: boolean };
-  picture: Ref<TakePicture>;
+  /** Keeps the newest picture. */
+  painted: RefObject<PhaseShown | undefined>;
 }
 
 /** The canvas of a phase plane: every tick of the window is a point. */
-export function PhasePlot({ x, y, windowMs, map, fits, picture }: PhasePlotProps) {
-  const dtMs = useBench((s) => s.bench?.dt_ms);
+export function PhasePlot({ x, y, windowMs, map, fits, painted }: PhasePlotProps) {
   const names = useMemo(() => (x === y ? [x] : [x, y]), [x, y]);
   const traces = useTraces(names);
   const points = useRef({ x: new Float32Array(0), y: new Float32Array(0) });
   const ranges = useRef<{ x: Range | undefined; y: Range | undefined }>({ x: undefined, y: undefined });
   const shown = useRef<{ start: number; end: number } | undefined>(undefined);
-  const painted = useRef<PhaseShown | undefined>(undefined);
-  useImperativeHandle(picture, () => () => painted.current && phasePicture(painted.current), []);
 
-  const subscription = useMemo<Subscription | undefined>(() => {
-    if (!dtMs) return undefined;
-    const width = Math.max(2, Math.min(MOST_COLUMNS, Math.round(windowMs / dtMs)));
-    return { mode: "roll", signals: names, window_ms: windowMs, width };
-  }, [names, windowMs, dtMs]);
+  const subscription = useTicks(names, windowMs);
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: other signals or another map begin with other axes
   useEffect(() => {

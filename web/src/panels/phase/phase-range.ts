@@ -16,7 +16,7 @@ export function extent(values: ArrayLike<number>): Range | undefined {
   return low <= high ? [low, high] : undefined;
 }
 
-/** An axis that holds what must be seen: it grows at once and shrinks slowly, so that the picture does not breathe. */
+/** An axis around a range of values: it grows at once and shrinks slowly, so that the picture is steady. */
 export function follow(before: Range | undefined, seen: Range): Range {
   const half = Math.max((seen[1] - seen[0]) / 2, 1e-9);
   const middle = (seen[0] + seen[1]) / 2;

@@ -4,13 +4,13 @@ import type { Range } from "./phase-range";
 
 const DISPLACEMENTS = ["plant.displacement", "sensor.displacement", "model.displacement"];
 
-/** Whether the map of the unstable region lies beneath two signals: folds need the travel, the boundary its speed too. */
+/** The parts of the map of the unstable region for two signals: folds need the travel, the boundary its speed too. */
 export function mapFits(x: string, y: string): { folds: boolean; boundary: boolean } {
   const folds = DISPLACEMENTS.includes(x);
   return { folds, boundary: folds && y === "plant.velocity" };
 }
 
-/** What an axis must hold to show the map: the boundary where there is one, else the folds. */
+/** The range of the map on an axis: the boundary if it has one, else the folds. */
 export function mapExtent(map: UnstableRegion | undefined, axis: "x" | "y"): Range | undefined {
   if (!map) return undefined;
   if (map.boundary) {
@@ -23,7 +23,7 @@ export function mapExtent(map: UnstableRegion | undefined, axis: "x" | "y"): Ran
   return [Math.min(...places, 0) * 1.15, Math.max(...places, 0) * 1.15];
 }
 
-/** In words what the map shows, or why there is none. */
+/** The map in words, or why it is empty. */
 export function mapWords(map: UnstableRegion): string {
   if (map.folds.some((f) => f.x_um === 0)) return "The rest position is unstable: lower the bias.";
   const fold = map.folds[0];

@@ -1,6 +1,8 @@
-import { useEffect, useState } from "react";
+import { useDebouncedValue } from "@mantine/hooks";
+import { useMemo } from "react";
 import { api } from "../../api/api";
 import { usePanelVisible } from "../../api/panel-visible";
+import { useAsked } from "../../api/queries";
 import type { UnstableRegion } from "../../api/types";
 import { useBench } from "../../stream/bench-store";
 
@@ -16,27 +18,10 @@ export function useUnstableRegion(driveV: number): { map: UnstableRegion | undef
     const faults = s.bench?.faults.map((f) => [f.name, f.severity]);
     return JSON.stringify([device, plant, environment, faults, (s.bench?.tick ?? 0) > 0]);
   });
-  const [map, setMap] = useState<UnstableRegion | undefined>(undefined);
-  const [failed, setFailed] = useState<string | undefined>(undefined);
-
-  // biome-ignore lint/correctness/useExhaustiveDependencies: `now` says when the map is out of date
-  useEffect(() => {
-    if (!id || !visible) return;
-    let current = true;
-    const timer = setTimeout(() => {
-      api.unstableRegion(id, driveV).then(
-        (found) => {
-          if (!current) return;
-          setMap(found);
-          setFailed(undefined);
-        },
-        (error: Error) => current && setFailed(error.message),
-      );
-    }, SETTLE_MS);
-    return () => {
-      current = false;
-      clearTimeout(timer);
-    };
-  }, [id, visible, driveV, now]);
-  return { map, failed };
+  const question = useMemo(() => ({ id, driveV, now }), [id, driveV, now]);
+  const [settled] = useDebouncedValue(question, SETTLE_MS);
+  const { answer, refusal } = useAsked(settled.id && visible ? ["unstable region", settled] : undefined, () =>
+    api.unstableRegion(settled.id ?? "", settled.driveV),
+  );
+  return { map: answer, failed: refusal?.body.message };
 }

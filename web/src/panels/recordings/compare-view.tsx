@@ -1,5 +1,5 @@
-import { Button, CloseButton, NativeSelect, NumberInput, SegmentedControl } from "@mantine/core";
-import { useState } from "react";
+import { Box, Button, CloseButton, NativeSelect, NumberInput, SegmentedControl } from "@mantine/core";
+import { type ReactNode, useState } from "react";
 import { api } from "../../api/api";
 import type { Comparison, Recording } from "../../api/types";
 import { showError } from "../../bench/send";
@@ -16,7 +16,7 @@ interface CompareViewProps {
   onClose(): void;
 }
 
-/** Two recordings beside each other: signal by signal the largest difference, the tolerance, pass or fail. */
+/** Two recordings compared: for each signal the largest difference, the tolerance, pass or fail. */
 export function CompareView({ first, others, onClose }: CompareViewProps) {
   const candidates = others.filter((one) => one.id !== first.id && one.ticks > 0);
   const [second, setSecond] = useState(candidates[0]?.id ?? "");
@@ -30,7 +30,7 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
   const rows = [...(found?.signals ?? [])].sort((a, b) => Number(a.ok) - Number(b.ok));
   const failed = rows.filter((row) => !row.ok).length;
   return (
-    <section className={styles.compare} aria-label="Comparison">
+    <section aria-label="Comparison">
       <div className={shared.form}>
         <b>{first.name} with</b>
         <NativeSelect
@@ -65,37 +65,47 @@ export function CompareView({ first, others, onClose }: CompareViewProps) {
         </Button>
         <CloseButton size="sm" aria-label="Close the comparison" onClick={onClose} />
       </div>
-      {candidates.length === 0 && <p>Make a second recording to compare with.</p>}
+      {candidates.length === 0 && <Words>Make a second recording to compare with.</Words>}
       {found && (
         <>
-          <p className={styles.verdict} data-ok={found.ok} role="status">
+          <Box component="p" p="8px 12px" c={found.ok ? "var(--running)" : "var(--alarm)"} fw={600} role="status">
             {found.ok ? "Pass" : "Fail"}: {found.signals.length - failed} of {found.signals.length} signals within{" "}
             {formatShort(percent, "%")} over {formatCount(found.ticks, "tick")}
             {found.only_in_first.length + found.only_in_second.length > 0 &&
               `; ${found.only_in_first.length + found.only_in_second.length} are in one recording alone`}
-          </p>
-          <table className={`numbers ${styles.table}`}>
-            <TableHead names={["signal", "largest difference", "at tick", "rms", "tolerance", "verdict"]} />
-            <tbody>
-              {rows.slice(0, SHOWN).map((row) => (
-                <tr key={row.signal} data-ok={row.ok}>
-                  <th scope="row">{row.signal}</th>
-                  <td>{formatSi(row.max_difference, row.unit)}</td>
-                  <td>{formatNumber(row.at_tick, 0)}</td>
-                  <td>{formatSi(row.rms_difference, row.unit)}</td>
-                  <td>{formatSi(row.tolerance, row.unit)}</td>
-                  <td>{row.ok ? "pass" : "fail"}</td>
-                </tr>
-              ))}
-            </tbody>
-          </table>
+          </Box>
+          <div style={{ overflowX: "auto" }}>
+            <table className={`numbers ${styles.table}`}>
+              <TableHead names={["signal", "largest difference", "at tick", "rms", "tolerance", "verdict"]} />
+              <tbody>
+                {rows.slice(0, SHOWN).map((row) => (
+                  <tr key={row.signal} data-ok={row.ok}>
+                    <th scope="row">{row.signal}</th>
+                    <td>{formatSi(row.max_difference, row.unit)}</td>
+                    <td>{formatNumber(row.at_tick, 0)}</td>
+                    <td>{formatSi(row.rms_difference, row.unit)}</td>
+                    <td>{formatSi(row.tolerance, row.unit)}</td>
+                    <td>{row.ok ? "pass" : "fail"}</td>
+                  </tr>
+                ))}
+              </tbody>
+            </table>
+          </div>
           {rows.length > SHOWN && (
-            <p>
+            <Words>
               The first {SHOWN} of {rows.length}, failures first.
-            </p>
+            </Words>
           )}
         </>
       )}
     </section>
+  );
+}
+
+function Words({ children }: { children: ReactNode }) {
+  return (
+    <Box component="p" p="8px 12px">
+      {children}
+    </Box>
   );
 }

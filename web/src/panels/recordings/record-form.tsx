@@ -10,7 +10,7 @@ import rows from "../../ui/row-list.module.css";
 import { type Condition, conditionText } from "../condition/condition";
 import { ConditionFields } from "../condition/condition-fields";
 
-/** What to record: now or when a condition holds, with how much of the past, and for how long. */
+/** A new recording: now or on a condition, with a part of the past, and its length. */
 export function RecordForm({ onChanged }: { onChanged(): void }) {
   const id = useBench((s) => s.bench?.id) ?? "";
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 1;
@@ -98,8 +98,8 @@ export function RecordForm({ onChanged }: { onChanged(): void }) {
   );
 }
 
-/** What the form asks to be recorded; times in ms of the device. */
-export interface RecordDraft {
+/** The contents of the form; times in ms of the device. */
+interface RecordDraft {
   name: string;
   pastMs: number;
   /** 0: until it is stopped. */

@@ -1,4 +1,4 @@
-import { ActionIcon, Button } from "@mantine/core";
+import { ActionIcon, Box, Button } from "@mantine/core";
 import { IconPlayerPlay, IconTrash } from "@tabler/icons-react";
 import { api } from "../../api/api";
 import { useMay } from "../../api/me";
@@ -9,13 +9,17 @@ import { useBusy } from "../../bench/use-busy";
 import { Downloads, TRACE_FORMATS } from "../../ui/downloads";
 import { formatCount, formatMoment, formatSi } from "../../ui/format";
 import rows from "../../ui/row-list.module.css";
-import styles from "./recordings.module.css";
 
-/** How a recording ended that did not end as it was meant to. */
+/** The end of a recording that failed. */
 const ENDED: Partial<Record<Recording["state"], string>> = {
   cut_short: "was cut short",
   failed: "holds nothing",
   aborted: "was interrupted",
+};
+
+const EDGE: Partial<Record<Recording["state"], string>> = {
+  recording: "3px solid var(--alarm)",
+  armed: "3px solid var(--paused)",
 };
 
 interface RecordingRowProps {
@@ -26,7 +30,7 @@ interface RecordingRowProps {
   onChanged(): void;
 }
 
-/** One recording: what it is, and what can be done with it. */
+/** One recording: its facts and its actions. */
 export function RecordingRow({ recording, isHere, onCompare, onChanged }: RecordingRowProps) {
   const [busy, during] = useBusy();
   const teaches = useMay("teach");
@@ -38,7 +42,7 @@ export function RecordingRow({ recording, isHere, onCompare, onChanged }: Record
       api.removeRecording(id).then(onChanged, showError);
   };
   return (
-    <li className={`${rows.row} ${styles.recording}`} data-state={state}>
+    <li className={rows.row} style={{ borderLeft: EDGE[state] }}>
       <div className={rows.what}>
         <b>{name}</b>
         <span>
@@ -54,10 +58,10 @@ export function RecordingRow({ recording, isHere, onCompare, onChanged }: Record
           {isHere ? "this bench" : "another bench"},{" "}
           {new Date(created).toLocaleString([], { dateStyle: "short", timeStyle: "short" })}
           {ENDED[state] && (
-            <em>
+            <Box component="em" c="var(--alarm)" fs="normal">
               {" "}
               · {ENDED[state]}: {reason}
-            </em>
+            </Box>
           )}
         </span>
       </div>
@@ -65,26 +69,24 @@ export function RecordingRow({ recording, isHere, onCompare, onChanged }: Record
         <div className={`row ${rows.do}`}>
           <Downloads href={(format) => `./api/v1/recordings/${id}/trace?format=${format}`} formats={TRACE_FORMATS} />
           {teaches && (
-            <Button
-              size="compact-xs"
-              variant="light"
-              loading={busy}
-              leftSection={<IconPlayerPlay size={13} />}
-              onClick={play}
-              aria-label={`Replay ${name}`}
-            >
-              Replay
-            </Button>
-          )}
-          {teaches && (
-            <Button size="compact-xs" onClick={onCompare} aria-label={`Compare ${name} with another`}>
-              Compare
-            </Button>
-          )}
-          {teaches && (
-            <ActionIcon size={22} aria-label={`Delete ${name}`} onClick={remove}>
-              <IconTrash size={14} />
-            </ActionIcon>
+            <>
+              <Button
+                size="compact-xs"
+                variant="light"
+                loading={busy}
+                leftSection={<IconPlayerPlay size={13} />}
+                onClick={play}
+                aria-label={`Replay ${name}`}
+              >
+                Replay
+              </Button>
+              <Button size="compact-xs" onClick={onCompare} aria-label={`Compare ${name} with another`}>
+                Compare
+              </Button>
+              <ActionIcon size={22} aria-label={`Delete ${name}`} onClick={remove}>
+                <IconTrash size={14} />
+              </ActionIcon>
+            </>
           )}
         </div>
       )}

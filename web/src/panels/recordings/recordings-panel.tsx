@@ -42,7 +42,7 @@ function Recordings() {
           Record now, or set a condition and leave it waiting: the moments before it are kept too.
         </EmptyState>
       ) : (
-        <ul className={rows.list}>
+        <ul>
           {value?.map((recording) => (
             <RecordingRow
               key={recording.id}

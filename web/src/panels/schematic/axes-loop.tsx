@@ -17,7 +17,7 @@ import {
 } from "./two-axis-loop";
 import { useActingFaults } from "./use-live-values";
 
-/** The two loops of a gyroscope: the one that makes x swing, and the one that reads the rate from y. */
+/** The two loops of a gyroscope: the drive loop makes x swing, the sense loop reads the rate from y. */
 export function AxesLoop({ axes, slots }: Pick<Bench, "axes" | "slots">) {
   const document = useBench((s) => s.bench?.parameters) ?? {};
   const { block } = useCatalog();

@@ -1,3 +1,4 @@
+import { Box } from "@mantine/core";
 import { useMemo, useState } from "react";
 import { useShallow } from "zustand/react/shallow";
 import type { BlockCard } from "../../api/types";
@@ -6,11 +7,13 @@ import { useBench } from "../../stream/bench-store";
 import { formatPercent } from "../../ui/format";
 import { BlockEquation } from "../card/block-equation";
 import type { Instance } from "../card/instances";
+import { ArrowHead } from "./arrow-head";
 import { insideOf, quantityOf } from "./inside";
-import styles from "./inside.module.css";
+import { pressable } from "./pressable";
+import styles from "./schematic.module.css";
 import { useLiveValues } from "./use-live-values";
 
-/** The inside of a block with what flows in it now; a stage shows its equations below. */
+/** The inside of a block with its values now; a stage shows its equations below. */
 export function InsideDrawing({ instance, block }: { instance: Instance; block: BlockCard }) {
   const [chosen, setChosen] = useState<number | undefined>(undefined);
   const signals = useBench((s) => s.bench?.signals);
@@ -29,25 +32,25 @@ export function InsideDrawing({ instance, block }: { instance: Instance; block: 
   );
   const stage = chosen === undefined ? undefined : block.structure[chosen];
   if (block.structure.length === 0) return <p>{block.title} does not name its stages.</p>;
-  const choose = (number: number) => setChosen(number === chosen ? undefined : number);
   return (
     <>
-      <div className={styles.place}>
+      <Box flex="1 1 auto" mih={120} ta="center" style={{ overflow: "auto" }}>
         {/* biome-ignore lint/a11y/useSemanticElements: stages of a drawing */}
         <svg
           viewBox={`0 0 ${inside.width} ${inside.height}`}
-          style={{ width: inside.width, minWidth: 0.93 * inside.width }}
-          className={styles.drawing}
+          style={{ width: inside.width, minWidth: 0.93 * inside.width, maxWidth: "100%", height: "auto" }}
           role="group"
           aria-label={`Stages of ${block.title}`}
         >
-          <defs>
-            <marker id="into" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" markerHeight="7" orient="auto">
-              <path d="M0 0.5 L8 4 L0 7.5 Z" className={styles.head} />
-            </marker>
-          </defs>
+          <ArrowHead />
           {inside.lines.map(({ id, d, enters }) => (
-            <path key={id} d={d} className={styles.line} markerEnd={enters ? "url(#into)" : undefined} />
+            <path
+              key={id}
+              d={d}
+              className={styles.wire}
+              style={{ strokeWidth: 1.2 }}
+              markerEnd={enters ? "url(#arrow)" : undefined}
+            />
           ))}
           {inside.quantities.map((quantity) => (
             <g key={quantity.name} transform={`translate(${quantity.x} ${quantity.y})`} className={styles.quantity}>
@@ -65,7 +68,7 @@ export function InsideDrawing({ instance, block }: { instance: Instance; block: 
                   <text
                     x={label ? quantity.width - 4 : quantity.width / 2}
                     textAnchor={label ? "end" : "middle"}
-                    className={styles.value}
+                    className={styles.quantityValue}
                     ref={live(name)}
                   />
                 </g>
@@ -78,38 +81,39 @@ export function InsideDrawing({ instance, block }: { instance: Instance; block: 
             </g>
           ))}
           {inside.stages.map(({ title, stage: number, x, y, width, height }) => (
-            // biome-ignore lint/a11y/useSemanticElements: SVG has no button
             <g
               key={title}
-              role="button"
-              tabIndex={0}
-              aria-pressed={number === chosen}
-              className={styles.stage}
+              {...pressable(() => setChosen(number === chosen ? undefined : number), number === chosen)}
+              className={styles.box}
               transform={`translate(${x} ${y})`}
-              onClick={() => choose(number)}
-              onKeyDown={(event) => {
-                if (event.key !== "Enter" && event.key !== " ") return;
-                event.preventDefault();
-                event.stopPropagation();
-                choose(number);
-              }}
             >
               <rect width={width} height={height} rx="5" />
-              <text x={width / 2} y="19" textAnchor="middle">
+              <text x={width / 2} y="19" textAnchor="middle" className={styles.kind}>
                 {title}
               </text>
             </g>
           ))}
         </svg>
-      </div>
+      </Box>
       {stage && (
-        <section className={styles.equations} aria-label={`Equations: ${stage.title}`} aria-live="polite">
-          <h3>{stage.title}</h3>
+        <Box
+          component="section"
+          flex="none"
+          mah="45%"
+          m="4px 0"
+          p={4}
+          style={{ borderTop: "1px solid var(--line)", overflowY: "auto" }}
+          aria-label={`Equations: ${stage.title}`}
+          aria-live="polite"
+        >
+          <Box component="h3" m="4px 0">
+            {stage.title}
+          </Box>
           {stage.equations.map((equation) => (
             <BlockEquation key={equation.label} equation={equation} />
           ))}
-          {stage.equations.length === 0 && <p>The text gives this stage no equation of its own.</p>}
-        </section>
+          {stage.equations.length === 0 && <p className="note">The text gives this stage no equation of its own.</p>}
+        </Box>
       )}
     </>
   );

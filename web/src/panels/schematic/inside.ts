@@ -1,11 +1,11 @@
 import { Graph, layout } from "@dagrejs/dagre";
 import type { BlockCard, Signal } from "../../api/types";
 
-/** A value that stands on a line: its name on the drawing, and the signals that it is, none for what no signal tells. */
-export interface Quantity {
+/** A value on a line: its name on the drawing, and its signals, if it has any. */
+interface Quantity {
   name: string;
   signals: { label: string; name: string }[];
-  /** How many signals find no room. */
+  /** Number of signals without room. */
   more: number;
 }
 
@@ -34,7 +34,7 @@ const MOST_ROWS = 6;
 
 type Slots = Record<string, string>;
 
-/** Where the signals of a port begin: what an input is wired to, or the block's own. */
+/** The beginning of the names of the signals of a port: the source of an input, or the block itself. */
 function sourceOf(name: string, key: string, block: BlockCard, slots: Slots): string {
   const source = block.inputs.find((port) => port.name === name)?.source;
   if (source === undefined) return `${key}.${name}`;
@@ -61,7 +61,7 @@ export function quantityOf(
   };
 }
 
-/** Rows of a quantity: its name, then a row for each signal and one for those that find no room. */
+/** Rows of a quantity: its name, a row for each signal, and a row for the signals without room. */
 const rowsOf = ({ signals, more }: Quantity): number => 1 + signals.length + (more > 0 ? 1 : 0);
 
 function widthOf({ name, signals }: Quantity): number {
@@ -69,7 +69,7 @@ function widthOf({ name, signals }: Quantity): number {
   return LETTER * Math.max(name.length, ...letters) + 8;
 }
 
-/** Lay the inside of a block out, from what it takes at the top to what it gives at the bottom. */
+/** Lay the inside of a block out, from its inputs at the top to its outputs at the bottom. */
 export function insideOf(block: BlockCard, quantity: (name: string) => Quantity): Inside {
   const graph = new Graph();
   graph.setGraph({ rankdir: "TB", nodesep: 10, ranksep: 14, marginx: 4, marginy: 4 });

@@ -1,6 +1,8 @@
 import { showPanel } from "../../bench/dock";
 import { useView } from "../../bench/view-store";
+import { ArrowHead } from "./arrow-head";
 import { BOX, DRAWING, type DrawnBox, faultLines, type Wire } from "./loop";
+import { pressable } from "./pressable";
 import styles from "./schematic.module.css";
 import { useLiveValues } from "./use-live-values";
 
@@ -8,11 +10,11 @@ interface LoopDrawingProps {
   label: string;
   boxes: readonly DrawnBox[];
   wires: readonly Wire[];
-  /** Signals whose newest values stand in the boxes, by box. */
+  /** Signals with newest values in the boxes, by box. */
   shown: Record<string, string>;
-  /** The words of a value, where a number with its unit is not what is wanted. */
+  /** The words of a value, in place of a number with its unit. */
   say?: (box: string, value: number) => string | undefined;
-  /** Names of the faults that act, arrows from there to what they act on, and where the names stand. */
+  /** Names of the acting faults, arrows from there to the faulty boxes, and the place of the names. */
   faults: { titles: readonly string[]; arrows: readonly string[]; at: [number, number] | undefined };
 }
 
@@ -28,19 +30,7 @@ export function LoopDrawing({ label, boxes, wires, shown, say, faults }: LoopDra
   return (
     // biome-ignore lint/a11y/useSemanticElements: boxes of a drawing
     <svg viewBox={`0 0 ${DRAWING.width} ${DRAWING.height}`} className={styles.drawing} role="group" aria-label={label}>
-      <defs>
-        <marker
-          id="arrow"
-          viewBox="0 0 8 8"
-          refX="7"
-          refY="4"
-          markerWidth="7"
-          markerHeight="7"
-          orient="auto-start-reverse"
-        >
-          <path d="M0 0.5 L8 4 L0 7.5 Z" className={styles.head} />
-        </marker>
-      </defs>
+      <ArrowHead />
       {wires.map((wire) => (
         <g key={wire.id}>
           <path d={wire.d} className={styles.wire} markerEnd="url(#arrow)" />
@@ -63,23 +53,14 @@ export function LoopDrawing({ label, boxes, wires, shown, say, faults }: LoopDra
         </g>
       )}
       {boxes.map((box) => (
-        // biome-ignore lint/a11y/useSemanticElements: SVG has no button
         <g
           key={box.id}
-          role="button"
-          tabIndex={0}
+          {...pressable(() => open(box.card))}
           className={styles.box}
           data-chosen={box.card !== undefined && box.card === card}
           data-faulty={box.faulty}
           data-waits={box.waits}
           transform={`translate(${box.x} ${box.y})`}
-          onClick={() => open(box.card)}
-          onKeyDown={(event) => {
-            if (event.key !== "Enter" && event.key !== " ") return;
-            event.preventDefault();
-            event.stopPropagation();
-            open(box.card);
-          }}
         >
           <title>{`${box.title} ${box.kind}: show its equations and parameters`}</title>
           <rect width={BOX.width} height={BOX.height} rx="5" />

@@ -7,8 +7,8 @@ export interface LoopBox {
 }
 
 /**
- * The loop, drawn once round: reference, controller, drive above; device, sensor, diagnosis below; under them what
- * the controllers compare with and what identifies the device.
+ * The loop, drawn once round: reference, controller, drive above; device, sensor, diagnosis below; under them the
+ * reference model and the identifier.
  */
 export const LOOP: LoopBox[] = [
   { id: "reference", title: "Reference", x: 1, y: 2 },
@@ -21,16 +21,16 @@ export const LOOP: LoopBox[] = [
   { id: "identifier", title: "Identifier", x: 118, y: 166 },
 ];
 
-/** From the names of faults to the box on which they act. */
+/** From the names of faults to their box. */
 export const FAULT_ARROWS: Record<FaultedBox, string> = {
   plant: "M287 166 V148",
   sensor: "M281 158 H204 V148",
   drive: "M293 158 H344 V30 H341",
 };
 
-export type FaultedBox = "plant" | "sensor" | "drive";
+type FaultedBox = "plant" | "sensor" | "drive";
 
-/** The box on which a fault is seen; all parts but sensor and drive belong to the device. */
+/** The box that shows a fault; every part except sensor and drive belongs to the device. */
 export const boxOf = (shows: string | null | undefined): FaultedBox =>
   shows === "sensor" || shows === "drive" ? shows : "plant";
 
@@ -60,14 +60,14 @@ export interface DrawnBox {
   title: string;
   x: number;
   y: number;
-  /** What stands in it now. */
+  /** Its contents now. */
   kind: string;
   /** The card it opens. */
   card: string | undefined;
   /** A value in words, where no signal tells it. */
   says?: string;
   faulty: boolean;
-  /** Something else does its work. */
+  /** Another controller does its work. */
   waits?: boolean;
 }
 

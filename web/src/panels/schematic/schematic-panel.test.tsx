@@ -108,7 +108,7 @@ it("marks the box a fault is seen on, and names the fault", async () => {
 
 it("names a fault below the drawing where the drawing has no room for it", async () => {
   await mountPanel(driving("mrac"));
-  expect(await screen.findByText(/Added mass/, { selector: "footer span" })).toBeVisible();
+  expect(await screen.findByText(/Added mass/, { selector: "p span" })).toBeVisible();
 });
 
 it("draws a controller from inside: its stages in order, with what flows between them", async () => {

@@ -1,4 +1,4 @@
-import { NativeSelect } from "@mantine/core";
+import { Box, Group, NativeSelect } from "@mantine/core";
 import { useState } from "react";
 import { useShallow } from "zustand/react/shallow";
 import { useCatalog } from "../../api/use-catalog";
@@ -9,15 +9,15 @@ import { useInstances } from "../card/instances";
 import { AxesLoop } from "./axes-loop";
 import { InsideDrawing } from "./inside-drawing";
 import { ResonatorLoop } from "./resonator-loop";
-import styles from "./schematic.module.css";
 import { useActingFaults } from "./use-live-values";
 import { useStructure } from "./use-structure";
 
 const LOOP = "";
+const PADDING = "6px 8px 4px";
 /** Families whose blocks are drawn from inside too. */
 const OPENED = ["control", "identify", "diagnose"];
 
-/** The loop with what flows in it now, or the inside of a controller, an identifier or a diagnoser. */
+/** The loop with its values now, or the inside of a controller, an identifier or a diagnoser. */
 export function SchematicPanel() {
   const axes = useBench((s) => s.bench?.axes);
   const slots = useBench(useShallow((s) => s.bench?.slots));
@@ -37,7 +37,8 @@ export function SchematicPanel() {
   const isFlat = axes.length === 0;
   const choice = (
     <NativeSelect
-      className={styles.choice}
+      maw="100%"
+      ml="auto"
       aria-label="Drawing"
       value={instance ? wanted : LOOP}
       data={[
@@ -52,28 +53,31 @@ export function SchematicPanel() {
   );
   if (instance && card)
     return (
-      <section className={`view ${styles.panel}`} aria-label={`Inside: ${card.title}`}>
+      <Box component="section" className="view" p={PADDING} aria-label={`Inside: ${card.title}`}>
         <InsideDrawing key={`${instance.id} ${instance.name}`} instance={instance} block={card} />
-        <footer className={`row ${styles.foot}`}>{choice}</footer>
-      </section>
+        {choice}
+      </Box>
     );
   return (
-    <section className={`view ${styles.panel}`} aria-label="Diagram">
+    <Box component="section" className="view" p={PADDING} aria-label="Diagram">
       {isFlat ? (
         <ResonatorLoop controller={controller} diagnosers={diagnosers} structure={structure} />
       ) : (
         <AxesLoop axes={axes} slots={slots} />
       )}
-      <footer className={`row ${styles.foot}`}>
-        <p className={styles.device}>
+      <Group justify="space-between" gap="4px 8px">
+        <Box component="p" className="remark" m="0 4px">
           {rate === undefined ? "" : formatShort(rate, "kHz")}
           {isFlat && structure.figure && ` · drawn as figure ${structure.figure}`}
           {isFlat && !structure.hasRoom && acting.length > 0 && (
-            <span className={styles.acting}> · {acting.map((fault) => fault.title).join(", ")}</span>
+            <Box component="span" c="var(--alarm)" fw={650}>
+              {" "}
+              · {acting.map((fault) => fault.title).join(", ")}
+            </Box>
           )}
-        </p>
+        </Box>
         {choice}
-      </footer>
-    </section>
+      </Group>
+    </Box>
   );
 }

@@ -1,6 +1,6 @@
 import { LOOP, type LoopBox, WIRES, type Wire } from "./loop";
 
-/** What of a bench decides how its loop is drawn. */
+/** The parts of a bench that decide the drawing of its loop. */
 export interface Parts {
   controller: string;
   /** Whether the error of direct MRAC is augmented. */
@@ -12,8 +12,8 @@ export interface Parts {
   hasIdentifier: boolean;
 }
 
-/** A box that is there in some structures only: what stands in it, and the signal whose value it shows. */
-export interface ExtraBox extends Omit<LoopBox, "id"> {
+/** A box of some structures only: its contents, and the signal for its value. */
+interface ExtraBox extends Omit<LoopBox, "id"> {
   id: "adaptation" | "augmentation" | "estimator" | "gains" | "light" | "detector";
   kind: string;
   signal?: string;
@@ -21,7 +21,7 @@ export interface ExtraBox extends Omit<LoopBox, "id"> {
   card?: string;
 }
 
-/** How the loop of a bench is drawn, after a figure of the dissertation where the parts are those of one. */
+/** The drawing of the loop of a bench, after a figure of the dissertation with the same parts, if there is one. */
 export interface Structure {
   figure?: string;
   boxes: readonly LoopBox[];
@@ -55,7 +55,7 @@ const LIGHT_WIRES: readonly Wire[] = [
   { id: "signal", d: "M170 166 V146", label: "", at: [0, 0] },
 ];
 
-/** Light by the unit that recovers a displacement from it: what it is, who detects it, and the signal. */
+/** Light by the unit that recovers a displacement from it: its kind, its detector, and the signal. */
 type Light = [kind: string, detector: string, signal: string];
 const LIGHTS: Record<string, Light | undefined> = {
   through_wafer: ["Through wafer", "Photodiode", "through_wafer.intensity"],
@@ -75,7 +75,7 @@ const SELF_TUNING: Record<string, { figure: string; estimator: string } | undefi
 const PLAIN: Structure = { boxes: LOOP, extra: [], wires: WIRES, hasRoom: true };
 const OPTICAL_TITLES: Partial<Record<LoopBox["id"], string>> = { plant: "Device, grating", sensor: "Recovery unit" };
 
-/** Return how the loop of a bench is drawn. An identifier of the bench's own needs the place of what the figures add. */
+/** Return the drawing of the loop of a bench. An identifier of the bench takes the place of the additions of a figure. */
 export function structureOf(parts: Parts): Structure {
   if (parts.hasIdentifier) return PLAIN;
   const light = LIGHTS[lightOf(parts) ?? ""];
@@ -86,7 +86,7 @@ export function structureOf(parts: Parts): Structure {
   return PLAIN;
 }
 
-/** The boxes of the loop without an identifier, and without a diagnosis that is not there; the model hears r. */
+/** The boxes of the loop without an identifier, and without a missing diagnosis; the model has the input r. */
 function around({ hasDiagnoser }: Parts): Pick<Structure, "boxes" | "wires"> {
   const gone = hasDiagnoser ? ["zi"] : ["zi", "ud", "zd"];
   return {
@@ -115,7 +115,7 @@ function optical(parts: Parts, [kind, detector, signal]: Light): Structure {
   };
 }
 
-/** An identifier, and what computes the gains from its estimate. */
+/** An identifier, and the design of the gains from its estimate. */
 function selfTuning(parts: Parts, figure: string, estimator: string): Structure {
   const { boxes, wires } = around(parts);
   const signal = `${parts.controller}.prediction_error`;

@@ -33,13 +33,13 @@ export const PARTNER_WIRES: readonly Wire[] = [{ id: "ps", d: "M235 126 H228 V18
 
 export const PARTNER_DRIVEN: Wire = { id: "px", d: "M287 71 V84", label: "F", at: [293, 82] };
 
-/** The boxes on which a fault is seen. */
+/** The boxes that show a fault. */
 export const twoAxisBoxesOf = (shows: string | null | undefined): string[] => {
   if (shows === "sensor") return ["pick_x", "pick_y"];
   return shows === "drive" ? ["force_x"] : ["plant"];
 };
 
-/** Signals whose values stand in the boxes. */
+/** Signals for the values in the boxes. */
 export const twoAxisSignals = (drive: string, sense: string): Record<string, string> => ({
   pick_x: "sensor.x.displacement",
   drive: `${drive}.amplitude`,

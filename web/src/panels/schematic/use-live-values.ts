@@ -40,25 +40,17 @@ export function useLiveValues(shown: Record<string, string>, say?: (key: string,
       entries.forEach(({ key, unit }, i) => {
         const value = frame.latest[i];
         const high = Math.max(Math.abs(frame.data[i * 2 * frame.columns]) || 0, Math.abs(value) || 0);
+        const words = () => {
+          if (frame.endTick <= 0) return "–"; // no sample has come
+          if (!Number.isFinite(value) || high > IMMENSE) return "not finite";
+          const said = say?.(key, value);
+          if (said !== undefined) return said;
+          const peak = Math.max(high, (peaks.current.get(key) ?? 0) * FORGET);
+          peaks.current.set(key, peak);
+          return formatOn(unitScale(unit, peak, 3), value);
+        };
         const element = elements.current.get(key);
-        if (!element) return;
-        if (frame.endTick <= 0) {
-          element.textContent = "–"; // no sample has come: that says nothing of the value
-          return;
-        }
-        if (!Number.isFinite(value) || high > IMMENSE) {
-          element.textContent = "not finite";
-          return;
-        }
-        const words = say?.(key, value);
-        if (words !== undefined) {
-          element.textContent = words;
-          return;
-        }
-        const peak = Math.max(high, (peaks.current.get(key) ?? 0) * FORGET);
-        peaks.current.set(key, peak);
-        const scale = unitScale(unit, peak, 3);
-        element.textContent = formatOn(scale, value);
+        if (element) element.textContent = words();
       });
     },
     EVERY_MS,

@@ -2,13 +2,13 @@ import { type TickedRange, type TickRoom, tickedRange } from "../../picture/tick
 
 /** A vertical range that grows at once and shrinks only when it has been too wide for a while. */
 export interface AxisRange extends TickedRange {
-  /** Since when the data would fit a much smaller range, in ms; undefined while they do not. */
+  /** Since when the data would fit a much smaller range, ms; undefined while they would not. */
   looseSince: number | undefined;
 }
 
 const LOOSE = 0.55;
 export const SHRINK_AFTER_MS = 1200;
-/** Half a range over half of what it holds, at least. */
+/** Least ratio of a range to the values in it. */
 const AIR = 1.06;
 const ROOM: TickRoom = { most: 8 };
 
@@ -35,7 +35,7 @@ export function nextRange(
 export const roundRange = (low: number, high: number, room = ROOM): TickedRange =>
   tickedRange(...withAir(low, high), room);
 
-/** What values need: a little air beyond both ends, and a flat line some around it. */
+/** The values with a little air beyond both ends; a flat line gets air around it. */
 function withAir(low: number, high: number): [number, number] {
   const middle = (low + high) / 2;
   const least = Math.max(Math.abs(middle) * 1e-3, 1e-12);

@@ -1,7 +1,7 @@
 import { beforeAll, expect, it, vi } from "vitest";
 import { BarRaster } from "./bar-raster";
 
-/** What a canvas has of an image: its size, and red, green, blue and alpha of each pixel. */
+/** An image as a canvas keeps it: its size, and red, green, blue and alpha of each pixel. */
 class Image {
   readonly data: Uint8ClampedArray;
   readonly width: number;
@@ -31,7 +31,7 @@ const raster = (bars: Bar[]) => {
   return made;
 };
 
-/** The same by the definition: each pixel is covered as far as bars lie over it, one upon the other. */
+/** The same by the definition: the share of each pixel under each bar, bar after bar. */
 function oracle(bars: Bar[]): number[] {
   return Array.from({ length: WIDTH * HEIGHT }, (_, at) => {
     const [column, row] = [at % WIDTH, Math.floor(at / WIDTH)];

@@ -3,8 +3,8 @@ const FULL = 255;
 /**
  * Upright bars written into pixels: a scope has thousands of them a frame.
  *
- * It takes the calls of a canvas and leaves the same pixels. A canvas without a graphics card keeps a list of all that is
- * filled and goes through it at the end of the frame, which takes several times as long.
+ * It takes the calls of a canvas and leaves the same pixels. A canvas without a graphics card keeps a list of all fills and
+ * works through it at the end of the frame, which takes several times as long.
  */
 export class BarRaster {
   image = new ImageData(1, 1);
@@ -14,7 +14,7 @@ export class BarRaster {
   /** Blue, green and red, as pixels have them below their alpha. */
   private colour = 0;
 
-  /** Begin anew, as large as it now has to be. */
+  /** Begin anew with this size. */
   clear(width: number, height: number): void {
     if (this.image.width !== width || this.image.height !== height) {
       this.image = new ImageData(width, height);
@@ -52,7 +52,7 @@ export class BarRaster {
     }
   }
 
-  /** Lay the colour over a pixel of which a share is covered. */
+  /** Lay the colour over a share of a pixel. */
   private cover(at: number, share: number): void {
     const under = this.pixels[at];
     const alpha = share * FULL + (under >>> 24) * (1 - share);

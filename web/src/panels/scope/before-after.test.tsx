@@ -102,7 +102,7 @@ it("draws the last periods before the change faded, in phase, on an axis that ho
     return Math.max(...ys) - Math.min(...ys);
   };
   expect(height(ghost) / height(live)).toBeCloseTo(4, 1);
-  // the crests lie whole periods apart: 400 ticks are 8 periods
+  // the crests are whole periods apart: 400 ticks are 8 periods
   const width = Math.max(...live.map(([x]) => x)) - Math.min(...live.map(([x]) => x));
   const periods = ((top(ghost)[0] - top(live)[0]) / width) * (399 / 50);
   expect(Math.abs(periods - Math.round(periods))).toBeLessThan(0.02);

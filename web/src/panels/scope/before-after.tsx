@@ -1,4 +1,4 @@
-import { ActionIcon, Button } from "@mantine/core";
+import { ActionIcon, Button, Text } from "@mantine/core";
 import { IconX } from "@tabler/icons-react";
 import { type RefObject, useEffect, useRef } from "react";
 import { usePanelVisible } from "../../api/panel-visible";
@@ -35,7 +35,7 @@ interface BeforeAfterProps {
 /** The last change in words, with the figures of the scope before and after it. */
 export function BeforeAfter({ change, isHidden, figures, traces, plot }: BeforeAfterProps) {
   const dtMs = useBench((s) => s.bench?.dt_ms ?? 1);
-  useCatalog(); // the words are those of its cards
+  useCatalog(); // the words come from its cards
   const box = useRef<HTMLElement>(null);
   const compared = figures && !isHidden ? comparedOf(traces, figures, change.tick) : [];
   const words = changeWords(change, useBench.getState().bench);
@@ -50,9 +50,9 @@ export function BeforeAfter({ change, isHidden, figures, traces, plot }: BeforeA
   useSlideKey(canSlide, box, compared[0]?.strength ?? 0, slide);
   return (
     <section ref={box} className={styles.change} aria-label="Before and after">
-      <p>
+      <Text inherit truncate>
         <b>{words}</b> at {formatMoment(change.tick * dtMs)}
-      </p>
+      </Text>
       {isHidden ? <p className={styles.figures}>{HIDDEN}</p> : <ComparedList compared={compared} />}
       {canSlide && (
         <Button size="compact-xs" title="This picture as one slide, 16:9 (S)" onClick={slide}>

@@ -1,8 +1,7 @@
-import { ActionIcon } from "@mantine/core";
+import { ActionIcon, Box, Group, Text } from "@mantine/core";
 import { IconChevronLeft, IconChevronRight, IconChevronsRight } from "@tabler/icons-react";
 import type { CaptureList, CaptureMark } from "../../stream/wire";
 import { formatCount, formatMoment } from "../../ui/format";
-import styles from "./scope.module.css";
 
 interface CaptureStripProps {
   captures: CaptureList;
@@ -26,13 +25,7 @@ export function CaptureStrip({ captures: list, standing, dtMs, onStand, onBrowse
     { name: "Newest", key: "End", Icon: IconChevronsRight, by: Number.POSITIVE_INFINITY, isEnd: isNewest },
   ];
   return (
-    // biome-ignore lint/a11y/useSemanticElements: a fieldset would draw a frame of its own
-    <div
-      className={`line ${styles.captures}`}
-      role="group"
-      aria-label="Captures"
-      data-standing={standing !== undefined}
-    >
+    <Group role="group" aria-label="Captures" gap={4} wrap="nowrap" flex="none" p="0 12px 4px" c="dimmed" fz="sm">
       {ways.map(({ name, key, Icon, by, isEnd }) => (
         <ActionIcon
           key={name}
@@ -47,7 +40,14 @@ export function CaptureStrip({ captures: list, standing, dtMs, onStand, onBrowse
         </ActionIcon>
       ))}
       {captures.length > 1 && (
-        <input
+        <Box
+          component="input"
+          flex="1 1 60px"
+          miw={60}
+          maw={220}
+          h={24}
+          m="0 4px"
+          style={{ accentColor: standing ? "var(--accent)" : "var(--muted)" }}
           type="range"
           aria-label="Capture"
           aria-valuetext={words}
@@ -58,15 +58,18 @@ export function CaptureStrip({ captures: list, standing, dtMs, onStand, onBrowse
           onChange={(event) => onStand(captures[Number(event.currentTarget.value)])}
         />
       )}
-      <output title={list.is_short ? SHORT : KEPT}>{words}</output>
-    </div>
+      <Text component="output" inherit truncate {...(standing && STANDING)} title={list.is_short ? SHORT : KEPT}>
+        {words}
+      </Text>
+    </Group>
   );
 }
 
+const STANDING = { c: "var(--accent)", fw: 560 };
 const KEPT = "The last captures keep their full rate, even after the history has passed them. L returns to live.";
 const SHORT = "The memory of the bench has no room for more captures of this window: the oldest go first.";
 
-/** Where the scope stands among its captures, or how many there are. */
+/** The capture that the scope shows, or the number of captures. */
 export function captureWords(
   { captures, most, is_short }: CaptureList,
   standing: CaptureMark | undefined,

@@ -1,11 +1,10 @@
-import { Tooltip } from "@mantine/core";
+import { Box, Tooltip } from "@mantine/core";
 import { type RefObject, useEffect } from "react";
 import { stream } from "../../stream/stream";
 import { formatCount, formatShort } from "../../ui/format";
 import { useChanged } from "../../ui/use-changed";
 import type { Banded } from "./envelope-rule";
 import type { PlotTrace } from "./paint-scope";
-import styles from "./scope.module.css";
 import type { ScopePlot } from "./scope-plot";
 
 const EVERY_MS = 300;
@@ -15,7 +14,7 @@ interface EnvelopeNoteProps {
   plot: RefObject<ScopePlot | undefined>;
 }
 
-/** Says that a filled band is the envelope of a tone too fast for the window, so that nobody takes it for a signal. */
+/** Says that a filled band is the envelope of a tone too fast for the window and not a signal. */
 export function EnvelopeNote({ traces, plot }: EnvelopeNoteProps) {
   const [bands, setBands] = useChanged<Banded | undefined>(undefined);
   useEffect(() => {
@@ -34,10 +33,21 @@ export function EnvelopeNote({ traces, plot }: EnvelopeNoteProps) {
     `The band reaches from the least to the largest value in it: ${names}. A shorter window shows the signal.`;
   return (
     <Tooltip label={label} multiline w={280}>
-      {/* biome-ignore lint/a11y/noNoninteractiveTabindex: what it means is read by keys too */}
-      <span className={styles.band} role="note" aria-label={`envelope: ${label}`} tabIndex={0}>
+      <Box
+        pos="absolute"
+        top={2}
+        right={12}
+        p="0 6px"
+        lh="18px"
+        bdrs={4}
+        bg="var(--hover)"
+        className="remark"
+        role="note"
+        aria-label={`envelope: ${label}`}
+        tabIndex={0}
+      >
         envelope
-      </span>
+      </Box>
     </Tooltip>
   );
 }

@@ -3,7 +3,7 @@ import type { Pen } from "../../picture/pen";
 import { SvgPen } from "../../picture/svg-pen";
 import { differenceOf, magnitudesOf, paintEnvelope, shadeBetween } from "./envelope-path";
 
-/** Keeps what was inked instead of writing it down. */
+/** Keeps the ink instead of writing it down. */
 class Notes extends SvgPen {
   points: [number, number][] = [];
   override moveTo(x: number, y: number) {

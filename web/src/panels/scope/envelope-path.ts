@@ -4,7 +4,7 @@ import type { BarRaster } from "./bar-raster";
 /** The least and the most of a signal in each column; NaN where it has no data. */
 export type Envelope = { low: Float32Array; high: Float32Array };
 
-/** Where a trace lies: the field in pixels of the pen, and the time and the values at its edges. */
+/** The place of a trace: the field in pixels of the pen, and the time and the values at its edges. */
 export interface TraceField {
   left: number;
   top: number;
@@ -16,12 +16,12 @@ export interface TraceField {
   max: number;
 }
 
-export interface TraceInk {
+interface TraceInk {
   colour: string;
   /** px of the pen, as are the dashes. */
   width: number;
   dashes: readonly number[];
-  /** The columns hold so few samples that the trace is a line, however close they stand. */
+  /** The columns hold so few samples that the trace is a line, however close they are. */
   isLine?: boolean;
 }
 
@@ -29,7 +29,7 @@ export interface TraceInk {
 const CLOSE = 1.3;
 
 /**
- * Paint min/max columns: a bar for each column, as high as what it covers and up or down to the one before.
+ * Paint min/max columns: a bar for each column, from its least to its largest value and on to the bar before.
  *
  * Bars are rectangles and no path: eight scopes of six fast traces are drawn in a tenth of the time that a stroke takes
  * where no graphics card helps. A spike of one tick is a bar of its full height, dashes or not, so it cannot be missed.
@@ -50,7 +50,7 @@ export function paintEnvelope(
   const bottom = top + height;
   const zero = bottom + min * perValue;
   const step = (perTime * (times[times.length - 1] - times[0])) / (times.length - 1);
-  // as wide as a column and no wider: what is filled is what costs
+  // as wide as a column and no wider: time grows with the filled area
   const bar = Math.max(1, Math.ceil(Math.min(CLOSE, step)));
   const half = ink.width / 2;
   const isInk = dashing(ink.dashes);
@@ -61,7 +61,7 @@ export function paintEnvelope(
   pen.setLineDash([...ink.dashes]);
   pen.beginPath();
   const before = { x: Number.NaN, high: 0, low: 0 };
-  let y = 0; // where the line has come to
+  let y = 0; // the end of the line so far
   let drawing = false;
   let hasLines = false;
   for (let c = 0; c < times.length; c += 1) {
@@ -98,7 +98,7 @@ export function paintEnvelope(
 
 const clamp = (y: number, top: number, bottom: number) => (y < top ? top : y > bottom ? bottom : y);
 
-/** Whether a column covers far more than those beside it: a spike, which the gap of a dashed line must not hide. */
+/** Whether a column covers far more than its neighbours: a spike, which the gap of a dashed line must not hide. */
 function standsOut(low: Float32Array, high: Float32Array, column: number): boolean {
   const span = (c: number) => (c in low && !Number.isNaN(low[c]) ? high[c] - low[c] : 0);
   return span(column) > 2 * Math.max(span(column - 1), span(column + 1));
@@ -147,7 +147,7 @@ export function shadeBetween(
   pen.restore();
 }
 
-/** What a trace has more than another, sample by sample; nothing where columns hold several. */
+/** The difference of two traces, sample by sample; no data where columns hold several samples. */
 export function differenceOf(one: Envelope, other: Envelope, isSampled: boolean): Envelope {
   const less = one.low.map((value, c) => (isSampled ? value - other.low[c] : Number.NaN));
   return { low: less, high: less };

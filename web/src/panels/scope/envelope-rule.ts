@@ -2,16 +2,16 @@ import type { PanelFrame } from "../../stream/panel-frame";
 import type { AxisRange } from "./axis-range";
 import type { Envelope } from "./envelope-path";
 
-/** Of the axis: what is thinner looks like a line. */
+/** Least thickness of a band, as a share of the axis; a thinner trace looks like a line. */
 const THIN = 0.03;
-/** Of the columns: from here on the picture is a band. */
+/** Least share of the columns that makes a trace a band. */
 const MOST = 0.5;
 
 /**
  * Whether a trace is drawn as a filled band and not as a signal.
  *
- * A signal that is resolved goes on in each column where it was at the end of the one before, so its columns meet. One
- * that turns several times within a column fills the same heights again in the next.
+ * The columns of a resolved signal meet: each begins where the column before ended. A signal that turns several times
+ * within a column fills the same heights again in the next.
  */
 export function isEnvelope({ low, high }: Envelope, height: number): boolean {
   let filled = 0;
@@ -26,7 +26,7 @@ export function isEnvelope({ low, high }: Envelope, height: number): boolean {
   return drawn > 0 && filled > MOST * drawn;
 }
 
-/** What a scope draws as bands: which traces, and how much time each of their pixels takes. */
+/** The traces that a scope draws as bands, and the time that each of their pixels takes. */
 export interface Banded {
   traces: number[];
   perPixelMs: number;

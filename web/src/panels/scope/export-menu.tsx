@@ -9,11 +9,11 @@ import type { ScopePlot } from "./scope-plot";
 
 interface ExportMenuProps {
   plot: RefObject<ScopePlot | undefined>;
-  /** The capture it stands on. */
+  /** The capture that the scope shows. */
   capture: CaptureMark | undefined;
 }
 
-/** What the scope shows as a file: a picture with titled axes and events, or every sample of the span. */
+/** Files of the scope: a picture with titled axes and events, or every sample of the span. */
 export function ExportMenu({ plot, capture }: ExportMenuProps) {
   const take = () => {
     const { bench } = useBench.getState();

@@ -11,7 +11,7 @@ export interface Ghost {
   period: number | null | undefined;
 }
 
-/** How much later the ghost is drawn than it was: whole periods, so that it lies in phase with the live trace. */
+/** The ghost is drawn this much later than it was: whole periods, so that it is in phase with the live trace. */
 export function shiftOf(period: Ghost["period"], elapsed: number): number {
   return period ? Math.ceil(elapsed / period) * period : elapsed;
 }

@@ -1,12 +1,12 @@
-import { type RefObject, useEffect, useState } from "react";
+import { Box } from "@mantine/core";
+import { type RefObject, useId } from "react";
 import { api } from "../../api/api";
-import { ApiError } from "../../api/client";
-import { usePanelVisible } from "../../api/panel-visible";
+import { useAnswer } from "../../api/queries";
 import { useBench } from "../../stream/bench-store";
 import { columnAt } from "../../stream/panel-frame";
 import { formatCount, formatIn, formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { SignalName, TraceSwatch } from "../../ui/trace-swatch";
-import { type Columns, type Measurement, measure, referenceFor } from "./measure";
+import { type Columns, measure, referenceFor } from "./measure";
 import type { PlotTrace } from "./paint-scope";
 import styles from "./scope.module.css";
 import type { CursorPair } from "./scope-cursors";
@@ -21,65 +21,36 @@ interface MeasureStripProps {
   at: CursorPair;
 }
 
-interface Reading {
-  a: number;
-  b: number;
-  figures: Measurement | undefined;
-}
-
 /** Values at the cursors and figures over the visible span, of every trace. */
 export function MeasureStrip({ traces, plot, at }: MeasureStripProps) {
-  const id = useBench((s) => s.bench?.id);
-  const visible = usePanelVisible();
-  const [found, setFound] = useState<{ readings: Reading[]; deltaMs: number; exact: boolean } | undefined>(undefined);
+  const panel = useId();
+  const id = useBench((s) => s.bench?.id) ?? "";
+  const names = traces.map((t) => t.name);
+  const { value: found } = useAnswer(
+    ["measure", panel, id, names],
+    async () => {
+      if (!plot.current?.frame) return null;
+      const { span } = plot.current;
+      const [start, end] = [Math.floor(span.start), Math.ceil(span.end)];
+      const trace = await api.trace(id, names, start, end, MOST_COLUMNS);
+      const columns = names.map((name): Columns => numbers(trace.signals[name]));
+      const width = ((trace.end_tick - trace.start_tick) * trace.dt_ms) / columns[0].low.length;
+      const figures = traces.map(({ name, unit }, i) => {
+        const reference = referenceFor(name, unit, traces);
+        return measure(columns[i], width, reference === undefined ? undefined : columns[reference]);
+      });
+      return { figures, isExact: end - start <= MOST_COLUMNS };
+    },
+    () => EVERY_MS,
+  );
 
-  useEffect(() => {
-    if (!id || !visible) return;
-    let gone = false;
-    let timer: ReturnType<typeof setTimeout>;
-    const look = async () => {
-      const shown = plot.current;
-      if (shown?.frame) {
-        const { frame, span } = shown;
-        const [start, end] = [Math.floor(span.start), Math.ceil(span.end)];
-        try {
-          const trace = await api.trace(
-            id,
-            traces.map((t) => t.name),
-            start,
-            end,
-            MOST_COLUMNS,
-          );
-          const columns = traces.map(({ name }): Columns => numbers(trace.signals[name]));
-          const width = ((trace.end_tick - trace.start_tick) * trace.dt_ms) / columns[0].low.length;
-          const tick = (share: number) => span.start + share * (span.end - span.start);
-          const readings = traces.map(({ name, unit }, i) => {
-            const reference = referenceFor(name, unit, traces);
-            return {
-              a: columnAt(frame, i, tick(at[0])),
-              b: columnAt(frame, i, tick(at[1])),
-              figures: measure(columns[i], width, reference === undefined ? undefined : columns[reference]),
-            };
-          });
-          const deltaMs = (at[1] - at[0]) * (span.end - span.start) * frame.dtMs;
-          if (!gone) setFound({ readings, deltaMs, exact: end - start <= MOST_COLUMNS });
-        } catch (error) {
-          if (!(error instanceof ApiError)) throw error; // the page says elsewhere that the server does not answer
-        }
-      }
-      if (!gone) timer = setTimeout(look, EVERY_MS);
-    };
-    void look();
-    return () => {
-      gone = true;
-      clearTimeout(timer);
-    };
-  }, [id, visible, traces, plot, at]);
-
-  if (!found) return null;
-  const { readings, deltaMs, exact } = found;
+  const { frame, span } = plot.current ?? {};
+  if (!found || !frame || !span) return null;
+  const length = span.end - span.start;
+  const deltaMs = (at[1] - at[0]) * length * frame.dtMs;
+  const valueAt = (trace: number, cursor: 0 | 1) => columnAt(frame, trace, span.start + at[cursor] * length);
   return (
-    <section className={styles.measure} aria-label="Measurements">
+    <Box component="section" className={styles.measure} flex="none" p="0 12px 6px" fz="sm" aria-label="Measurements">
       <table>
         <thead>
           <tr>
@@ -95,7 +66,8 @@ export function MeasureStrip({ traces, plot, at }: MeasureStripProps) {
         </thead>
         <tbody>
           {traces.map((trace, i) => {
-            const { a, b, figures } = readings[i] ?? {};
+            const [a, b] = [valueAt(i, 0), valueAt(i, 1)];
+            const figures = found.figures[i];
             const say = (value: number | undefined) => (value === undefined ? "–" : formatSi(value, trace.unit));
             return (
               <tr key={trace.name}>
@@ -105,7 +77,7 @@ export function MeasureStrip({ traces, plot, at }: MeasureStripProps) {
                 </th>
                 <td>{say(a)}</td>
                 <td>{say(b)}</td>
-                <td>{a === undefined || b === undefined ? "–" : say(b - a)}</td>
+                <td>{say(b - a)}</td>
                 <td>{say(figures?.rms)}</td>
                 <td>{say(figures?.peak)}</td>
                 <td>{figures?.frequency === undefined ? "–" : formatSi(figures.frequency, "kHz")}</td>
@@ -118,17 +90,17 @@ export function MeasureStrip({ traces, plot, at }: MeasureStripProps) {
           })}
         </tbody>
       </table>
-      {!exact && (
+      {!found.isExact && (
         <small>Figures from minima and maxima: the span is longer than {formatCount(MOST_COLUMNS, "tick")}.</small>
       )}
-    </section>
+    </Box>
   );
 }
 
 const MEANINGS: Record<string, string> = {
   RMS: "over the visible span",
   peak: "largest distance from zero",
-  overshoot: "beyond a reference that stands still",
+  overshoot: "beyond a constant reference",
   "settles in": "from the left edge until the distance to the reference stays within 2 % of its amplitude",
   lag: "behind the reference voltage or the model, at its frequency",
   ratio: "of amplitudes to the reference voltage (the effort ratio) or to the model, at its frequency",

@@ -1,3 +1,5 @@
+import { extent } from "../phase/phase-range";
+
 /** A trace as columns of equal width: where a column holds one sample, both ends are that sample. */
 export interface Columns {
   low: ArrayLike<number>;
@@ -12,9 +14,9 @@ export interface Measurement {
   frequency: number | undefined;
   /** Degrees behind the reference, at the reference's frequency. */
   phaseLag: number | undefined;
-  /** Amplitude over that of the reference, both at the reference's frequency. */
+  /** Amplitude over the amplitude of the reference, both at its frequency. */
   ratio: number | undefined;
-  /** Share beyond a reference that stands still. */
+  /** Share beyond a constant reference. */
   overshoot: number | undefined;
   /** Time from the left edge until the distance to the reference stays within its band. */
   settling: number | undefined;
@@ -27,7 +29,7 @@ const LEAST = 6;
 
 const middle = ({ low, high }: Columns, i: number) => (low[i] + high[i]) / 2;
 
-/** Figures of a trace over a span, and against what it should follow if that is given. */
+/** Figures of a trace over a span, and against its reference if there is one. */
 export function measure(trace: Columns, width: number, reference?: Columns): Measurement | undefined {
   const n = trace.low.length;
   let square = 0;
@@ -57,15 +59,11 @@ export function measure(trace: Columns, width: number, reference?: Columns): Mea
 }
 
 /** From the first to the last rising crossing of the mean, with a tenth of the swing as hysteresis. */
-export function frequencyOf(trace: Columns, width: number): number | undefined {
+function frequencyOf(trace: Columns, width: number): number | undefined {
   const n = trace.low.length;
-  let low = Number.POSITIVE_INFINITY;
-  let high = Number.NEGATIVE_INFINITY;
-  for (let i = 0; i < n; i += 1) {
-    if (trace.low[i] < low) low = trace.low[i];
-    if (trace.high[i] > high) high = trace.high[i];
-  }
-  if (!(high > low)) return undefined;
+  const [low] = extent(trace.low) ?? [];
+  const high = extent(trace.high)?.[1];
+  if (low === undefined || high === undefined || low === high) return undefined;
   const mean = (low + high) / 2;
   const dead = (high - low) / 10;
   let below = false;
@@ -124,15 +122,15 @@ function follow(trace: Columns, width: number, reference: Columns): Pick<Measure
     if (Math.abs(value - middle(reference, i)) > BAND * swing) last = i;
     most = Math.max(most, high > 0 ? trace.high[i] : -trace.low[i]);
   }
-  const standsStill = high - low <= 1e-3 * swing;
+  const isConstant = high - low <= 1e-3 * swing;
   return {
-    overshoot: standsStill ? most / swing - 1 : undefined,
-    // what is outside to the very end has not settled
+    overshoot: isConstant ? most / swing - 1 : undefined,
+    // a trace outside the band at the very end has not settled
     settling: last === n - 1 ? undefined : (last + 1) * width,
   };
 }
 
-/** What each trace should follow: the reference voltage for voltages, the model for displacements. */
+/** The reference of a trace: the reference voltage for voltages, the model for displacements. */
 export function referenceFor(name: string, unit: string, traces: readonly { name: string; unit: string }[]) {
   const wanted = /^(?:[^:]+:)?(?:reference|model)\./;
   const found = traces.findIndex((t) => t.unit === unit && wanted.test(t.name));

@@ -22,7 +22,7 @@ export interface PlotTrace {
   colour: string;
   /** In `DASHES`. */
   dash: number;
-  /** What the bench is called that it is of, where that lies behind the one on the page; `BEFORE` of a ghost. */
+  /** The name of its bench, for a trace behind the traces of the page; `BEFORE` for a ghost. */
   behind?: string;
   /** When its controller drove, where it is shown for that time alone. */
   drives?: readonly Driven[];
@@ -34,13 +34,13 @@ export const BEFORE = "before";
 /** Before the unit of a difference, which has an axis of its own. */
 export const DIFFERENCE = "Δ ";
 
-/** The order in which traces are inked: what lies behind comes first. */
+/** The order in which traces are inked: traces of other benches come first. */
 export const inkOrder = (traces: readonly PlotTrace[], inked: readonly number[]): number[] => [
   ...inked.filter((i) => traces[i].behind !== undefined),
   ...inked.filter((i) => traces[i].behind === undefined),
 ];
 
-/** All that a scope shows at a moment. */
+/** Everything a scope shows at a moment. */
 export interface ScopeShown {
   traces: PlotTrace[];
   envelopes: Envelope[];
@@ -62,11 +62,11 @@ export interface ScopeShown {
   isLog: boolean;
   dtMs: number;
   marks: Marks;
-  /** What is printed of the figure, to be drawn under the traces. */
+  /** Printed marks, drawn under the traces. */
   printed: readonly PrintedMark[];
 }
 
-/** Room for an upright axis, in sizes of its letters: with its unit above it, and with its title beside it. */
+/** Room for an upright axis in sizes of its letters, with a unit above it, and with a title at its side. */
 export const AXIS = 4;
 const TITLED_AXIS = 5.4;
 const FEET_PX = 22;
@@ -94,10 +94,8 @@ export function paintScope(pen: Pen, field: Field, shown: ScopeShown, look: Look
       pen.fillStyle = CANVAS[look.scheme].text;
       const names = traces.filter((trace) => trace.unit === unit).map(({ name }) => name);
       pen.save();
-      pen.translate(
-        onLeft ? left - (TITLED_AXIS - 0.6) * fontSize : edge + (TITLED_AXIS - 0.9) * fontSize,
-        (top + bottom) / 2,
-      );
+      const place = onLeft ? left - (TITLED_AXIS - 0.6) * fontSize : edge + (TITLED_AXIS - 0.9) * fontSize;
+      pen.translate(place, (top + bottom) / 2);
       pen.rotate(-Math.PI / 2);
       pen.textAlign = "center";
       pen.fillText(axisTitle(names, scales[i]), 0, 0, bottom - top);
@@ -114,7 +112,7 @@ export function paintScope(pen: Pen, field: Field, shown: ScopeShown, look: Look
   paintFrame(pen, field, look);
 }
 
-/** Where printed marks lie on a scope, and in which colours. */
+/** Places and colours of printed marks on a scope. */
 function printedOn({ traces, units, ranges, span }: ScopeShown, { bottom, top }: Field, scheme: Scheme) {
   const traceOf = (signal: string) => traces.find(({ name, behind }) => name === signal && behind === undefined);
   return {
@@ -145,7 +143,7 @@ function magnitudeAxis(range: TickedRange, unit: string): Axis {
 
 const words = (name: string) => name.replaceAll(/[._]/g, " ");
 
-/** What an axis shows: the quantities on it, and their unit. */
+/** The title of an axis: the quantities on it, and their unit. */
 export function axisTitle(names: readonly string[], scale: UnitScale): string {
   const quantities = [...new Set(names.map((name) => words(name.split(".").slice(1).join(" ") || name)))];
   const alike = new Set(quantities.map((quantity) => quantity.split(" ")[0]));
@@ -156,7 +154,7 @@ export function axisTitle(names: readonly string[], scale: UnitScale): string {
 
 const titled = (said: string, { unit }: UnitScale) => (unit ? `${said}, ${unit}` : said);
 
-/** The colour of a trace in a scheme, whatever it is on the screen. */
+/** The colour of a trace in a scheme, whichever scheme the screen has. */
 function inkOf({ slot, behind }: PlotTrace, scheme: Scheme): string {
   const colour = TRACE_COLOURS[scheme][slot];
   return behind === undefined ? colour : faded(colour, scheme);

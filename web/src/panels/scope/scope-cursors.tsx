@@ -8,7 +8,7 @@ export interface PlotArea {
   height: number;
 }
 
-/** Where the cursors stand, as shares of the width. */
+/** The places of the cursors, as shares of the width. */
 export type CursorPair = [number, number];
 
 interface ScopeCursorsProps {
@@ -17,7 +17,7 @@ interface ScopeCursorsProps {
   /** Time at a share of the width, in words. */
   say(share: number): string;
   onMove(at: CursorPair): void;
-  /** They have been let go of. */
+  /** A move has ended. */
   onRest(): void;
 }
 

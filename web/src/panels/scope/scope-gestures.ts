@@ -1,16 +1,11 @@
-import { zoomSpan } from "./use-time-view";
+import { type Span, zoomSpan } from "./use-time-view";
 
 export interface ScopeGestures {
   /** The span moved under the hand; ticks. */
   onSpan(start: number, end: number): void;
   onLive(): void;
-  /** Pressed and let go in one place. */
+  /** Pressed and released in one place. */
   onClick?(tick: number): void;
-}
-
-interface Span {
-  start: number;
-  end: number;
 }
 
 const WHEEL_STEP = 1.2;
@@ -20,7 +15,8 @@ const STILL_PX = 3;
 /** Drag pans, wheel zooms about the pointer, two fingers pinch, double click goes live. Returns how to stop. */
 export function listenForGestures(over: HTMLElement, gestures: ScopeGestures, span: () => Span): () => void {
   const stop = new AbortController();
-  const { signal } = stop;
+  const on = <K extends keyof HTMLElementEventMap>(kind: K, heard: (event: HTMLElementEventMap[K]) => void) =>
+    over.addEventListener(kind, heard, { signal: stop.signal, passive: false });
   const pointers = new Map<number, number>();
   let grabbed: Span | undefined;
   let grabbedAt: number[] = [];
@@ -32,70 +28,50 @@ export function listenForGestures(over: HTMLElement, gestures: ScopeGestures, sp
     grabbedAt = [...pointers.values()];
   };
 
-  over.addEventListener(
-    "pointerdown",
-    (event) => {
-      if (event.button !== 0) return;
-      over.setPointerCapture(event.pointerId);
-      pointers.set(event.pointerId, event.offsetX);
-      moved = pointers.size > 1;
-      grab();
-    },
-    { signal },
-  );
-  over.addEventListener(
-    "pointermove",
-    (event) => {
-      if (!grabbed || !pointers.has(event.pointerId)) return;
-      pointers.set(event.pointerId, event.offsetX);
-      const xs = [...pointers.values()];
-      if (!moved && xs.length === 1 && Math.abs(xs[0] - grabbedAt[0]) < STILL_PX) return;
-      moved = true;
-      if (xs.length >= 2) {
-        const zoom = Math.max(10, Math.abs(grabbedAt[1] - grabbedAt[0])) / Math.max(10, Math.abs(xs[1] - xs[0]));
-        const next = zoomSpan(grabbed.start, grabbed.end, tickAt((grabbedAt[0] + grabbedAt[1]) / 2, grabbed), zoom);
-        gestures.onSpan(next.start, next.end);
-        return;
-      }
-      const shift = tickAt(grabbedAt[0], grabbed) - tickAt(xs[0], grabbed);
-      gestures.onSpan(grabbed.start + shift, grabbed.end + shift);
-    },
-    { signal },
-  );
+  on("pointerdown", (event) => {
+    if (event.button !== 0) return;
+    over.setPointerCapture(event.pointerId);
+    pointers.set(event.pointerId, event.offsetX);
+    moved = pointers.size > 1;
+    grab();
+  });
+  on("pointermove", (event) => {
+    if (!grabbed || !pointers.has(event.pointerId)) return;
+    pointers.set(event.pointerId, event.offsetX);
+    const xs = [...pointers.values()];
+    if (!moved && xs.length === 1 && Math.abs(xs[0] - grabbedAt[0]) < STILL_PX) return;
+    moved = true;
+    if (xs.length >= 2) {
+      const zoom = Math.max(10, Math.abs(grabbedAt[1] - grabbedAt[0])) / Math.max(10, Math.abs(xs[1] - xs[0]));
+      const next = zoomSpan(grabbed.start, grabbed.end, tickAt((grabbedAt[0] + grabbedAt[1]) / 2, grabbed), zoom);
+      gestures.onSpan(next.start, next.end);
+      return;
+    }
+    const shift = tickAt(grabbedAt[0], grabbed) - tickAt(xs[0], grabbed);
+    gestures.onSpan(grabbed.start + shift, grabbed.end + shift);
+  });
   const release = (event: PointerEvent) => {
     pointers.delete(event.pointerId);
     if (pointers.size) grab();
     else grabbed = undefined;
   };
-  over.addEventListener(
-    "pointerup",
-    (event) => {
-      release(event);
-      if (!moved && event.button === 0) gestures.onClick?.(tickAt(event.offsetX, span()));
-    },
-    { signal },
-  );
-  over.addEventListener("pointercancel", release, { signal });
-  over.addEventListener(
-    "wheel",
-    (event) => {
-      event.preventDefault();
-      const now = span();
-      if (event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY)) {
-        const shift = (Math.sign(event.deltaX || event.deltaY) * (now.end - now.start)) / 12;
-        gestures.onSpan(now.start + shift, now.end + shift);
-        return;
-      }
-      const next = zoomSpan(
-        now.start,
-        now.end,
-        tickAt(event.offsetX, now),
-        event.deltaY > 0 ? WHEEL_STEP : 1 / WHEEL_STEP,
-      );
-      gestures.onSpan(next.start, next.end);
-    },
-    { signal, passive: false },
-  );
-  over.addEventListener("dblclick", () => gestures.onLive(), { signal });
+  on("pointerup", (event) => {
+    release(event);
+    if (!moved && event.button === 0) gestures.onClick?.(tickAt(event.offsetX, span()));
+  });
+  on("pointercancel", release);
+  on("wheel", (event) => {
+    event.preventDefault();
+    const now = span();
+    if (event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY)) {
+      const shift = (Math.sign(event.deltaX || event.deltaY) * (now.end - now.start)) / 12;
+      gestures.onSpan(now.start + shift, now.end + shift);
+      return;
+    }
+    const zoom = event.deltaY > 0 ? WHEEL_STEP : 1 / WHEEL_STEP;
+    const next = zoomSpan(now.start, now.end, tickAt(event.offsetX, now), zoom);
+    gestures.onSpan(next.start, next.end);
+  });
+  on("dblclick", gestures.onLive);
   return () => stop.abort();
 }

@@ -43,9 +43,7 @@ export function ScopeLegend({ traces, plot, onRemove }: ScopeLegendProps) {
             </button>
           </Popover.Target>
           <Popover.Dropdown>
-            <ul className={styles.others} aria-label="Other signals">
-              {traces.slice(fits).map((trace, i) => entry(trace, fits + i))}
-            </ul>
+            <ul aria-label="Other signals">{traces.slice(fits).map((trace, i) => entry(trace, fits + i))}</ul>
           </Popover.Dropdown>
         </Popover>
       )}

@@ -1,6 +1,5 @@
-import { Box } from "@mantine/core";
-import "uplot/dist/uPlot.min.css";
-import { useCallback, useEffect, useMemo, useRef, useState } from "react";
+import { Box, Text } from "@mantine/core";
+import { useEffect, useMemo, useRef, useState } from "react";
 import { behindText, useBehind } from "../../bench/behind";
 import { marksNow } from "../../bench/marks";
 import { marksOver, useMarks, usePrinted } from "../../bench/printed";
@@ -26,7 +25,7 @@ import { ScopeLegend } from "./scope-legend";
 import { ScopePlot } from "./scope-plot";
 import { ScopeToolbar } from "./scope-toolbar";
 import { SignalPicker } from "./signal-picker";
-import { RearmContext, type TriggerState } from "./trigger-menu";
+import type { TriggerState } from "./trigger-menu";
 import { useBeforeAfter } from "./use-before-after";
 import { useCaptures } from "./use-captures";
 import { useOnBench } from "./use-on-bench";
@@ -39,7 +38,7 @@ interface ScopePanelProps {
   onChange(config: ScopeConfig): void;
 }
 
-/** An oscilloscope: rolls, triggers, or stands still on a span of the past while the board runs on. */
+/** An oscilloscope: it rolls, triggers, or shows a span of the past while the board runs on. */
 export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
   const { config, drives } = useOnBench(kept);
   const scheme = useScheme();
@@ -51,14 +50,8 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
   const tracesBehind = useTracesBehind(traces, behind, difference);
   const marks = useMarks();
   const isPrinted = usePrinted((s) => s.isShown);
-  const printed = useMemo(
-    () =>
-      marksOver(
-        marks,
-        traces.map((t) => t.name),
-      ),
-    [marks, traces],
-  );
+  const names = useMemo(() => traces.map((t) => t.name), [traces]);
+  const printed = useMemo(() => marksOver(marks, names), [marks, names]);
   const drawn = useRef<typeof printed>([]);
   drawn.current = isPrinted ? printed : [];
   const host = useRef<HTMLDivElement>(null);
@@ -72,9 +65,9 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
   const [trigger, setTrigger] = useState<TriggerState>("none");
 
   const subscription = useMemo(() => {
-    if (!dtMs || traces.length === 0 || pixels < 20) return undefined;
-    return scopeSubscription({ ...config, signals: traces.map((t) => t.name) }, view, pixels, dtMs, behind);
-  }, [config, traces, view, pixels, dtMs, behind]);
+    if (!dtMs || names.length === 0 || pixels < 20) return undefined;
+    return scopeSubscription({ ...config, signals: names }, view, pixels, dtMs, behind);
+  }, [config, names, view, pixels, dtMs, behind]);
 
   const capture = view.kind === "past" ? view.capture : undefined;
   const { captures, hear, browse } = useCaptures(config, capture, stand, goLive);
@@ -123,10 +116,9 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
     };
   }, [traces, tracesBehind, ghosts, ghost, config.log, scheme, fontSize, look, goLive, feed]);
 
-  // biome-ignore lint/correctness/useExhaustiveDependencies: what is printed is drawn anew
+  // biome-ignore lint/correctness/useExhaustiveDependencies: other printed marks need another picture
   useEffect(() => feed.current?.redraw(), [printed, isPrinted, feed]);
 
-  const rearm = useCallback(() => feed.current && stream.client.feeds.rearm(feed.current), [feed]);
   const sayTime = (share: number) => {
     const shown = plot.current;
     return shown?.frame
@@ -137,31 +129,30 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
   if (dtMs === undefined)
     return <EmptyState title="No bench yet">The scope fills as soon as a bench is connected.</EmptyState>;
   return (
-    <section className="view" aria-label={`Scope: ${traces.map((t) => t.name).join(", ") || "empty"}`}>
-      <RearmContext value={rearm}>
-        <ScopeToolbar
-          config={config}
-          onChange={onChange}
-          past={view.kind === "past"}
-          onLive={goLive}
-          trigger={trigger}
-          exporter={traces.length > 0 && <ExportMenu plot={plot} capture={capture} />}
-        >
-          {!config.measure && ( // the table names them too, and its rows want the room
-            <ScopeLegend
-              traces={traces}
-              plot={plot}
-              onRemove={(name) => onChange({ ...config, signals: config.signals.filter((s) => s !== name) })}
-            />
-          )}
-          <SignalPicker
-            chosen={config.signals}
-            onChange={(signals) => onChange({ ...config, signals })}
-            isLog={config.log ?? false}
-            onLog={(log) => onChange({ ...config, log })}
+    <section className="view" aria-label={`Scope: ${names.join(", ") || "empty"}`}>
+      <ScopeToolbar
+        config={config}
+        onChange={onChange}
+        past={view.kind === "past"}
+        onLive={goLive}
+        trigger={trigger}
+        onRearm={() => feed.current && stream.client.feeds.rearm(feed.current)}
+        exporter={traces.length > 0 && <ExportMenu plot={plot} capture={capture} />}
+      >
+        {!config.measure && ( // the table names them too, and its rows want the room
+          <ScopeLegend
+            traces={traces}
+            plot={plot}
+            onRemove={(name) => onChange({ ...config, signals: config.signals.filter((s) => s !== name) })}
           />
-        </ScopeToolbar>
-      </RearmContext>
+        )}
+        <SignalPicker
+          chosen={config.signals}
+          onChange={(signals) => onChange({ ...config, signals })}
+          isLog={config.log ?? false}
+          onLog={(log) => onChange({ ...config, log })}
+        />
+      </ScopeToolbar>
       {traces.length === 0 ? (
         <EmptyState
           title="Nothing on this scope"
@@ -200,7 +191,11 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
           {captures && (
             <CaptureStrip captures={captures} standing={capture} dtMs={dtMs} onStand={stand} onBrowse={browse} />
           )}
-          {behind.length > 0 && <p className={styles.behind}>{behindText(behind, difference)}</p>}
+          {behind.length > 0 && (
+            <Text inherit truncate c="dimmed" fz="sm" p="0 12px 4px">
+              {behindText(behind, difference)}
+            </Text>
+          )}
           {printed.length > 0 && <PrintedLine marks={printed} />}
           {config.measure && <MeasureStrip traces={traces} plot={plot} at={cursors} />}
         </>

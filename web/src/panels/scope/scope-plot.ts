@@ -1,4 +1,3 @@
-import uPlot from "uplot";
 import type { PrintedMark } from "../../api/types";
 import { flagWords } from "../../bench/flag-words";
 import type { Marks } from "../../bench/marks";
@@ -10,6 +9,7 @@ import { columnAt, columnTimes, type PanelFrame } from "../../stream/panel-frame
 import { hover } from "../../ui/hover";
 import { CANVAS, DASHES, faded, fontFor } from "../../ui/palette";
 import { type UnitScale, unitScale } from "../../ui/unit-scale";
+import { extent } from "../phase/phase-range";
 import { type AxisRange, nextRange, SHRINK_AFTER_MS } from "./axis-range";
 import { BarRaster } from "./bar-raster";
 import {
@@ -22,34 +22,34 @@ import {
 } from "./envelope-path";
 import { type Banded, bandsOf, samplesOf } from "./envelope-rule";
 import { type Ghost, ghostOn } from "./ghost";
-import { BEFORE, DIFFERENCE, inkOrder, type PlotTrace, paintScope, type ScopeShown } from "./paint-scope";
+import { AXIS, BEFORE, DIFFERENCE, inkOrder, type PlotTrace, paintScope, type ScopeShown } from "./paint-scope";
+import styles from "./scope.module.css";
 import { listenForGestures, type ScopeGestures } from "./scope-gestures";
-import { type ScopeModel, scopeOptions } from "./scope-options";
 import { drove, whileDriving } from "./while-driving";
 
 const MOST_AXES = 3;
-/** Of a logarithmic axis: what is smaller lies at its foot, as every zero does. */
+/** Most decades of a logarithmic axis; smaller values, and every zero, are drawn at its foot. */
 const MOST_DECADES = 8;
-/** Samples of a column up to which a trace is a line; bars draw more of them faster, and look the same then. */
+/** A trace is drawn as a line up to this number of samples per column; above it, bars look the same and are faster. */
 const FEW = 2;
 
-export interface ScopePlotOptions extends Look {
+interface ScopePlotOptions extends Look {
   host: HTMLElement;
   traces: PlotTrace[];
   lineWidth: number;
   marks: () => Marks;
-  /** What is printed of the figure, if it is to be drawn. */
+  /** The printed marks that are drawn now. */
   printed: () => readonly PrintedMark[];
   /** Magnitudes on a logarithmic scale. */
   isLog: boolean;
-  /** Whether the difference from what lies behind is shaded. */
+  /** Whether the difference from the first bench behind is shaded. */
   isShaded: () => boolean;
   /** The samples before the last change, for the traces named `BEFORE`. */
   ghost: () => Ghost | undefined;
   gestures: ScopeGestures;
 }
 
-/** The scale of an axis; that of differences is marked. */
+/** The scale of an axis; a scale of differences is marked. */
 function scaleOn(unit: string, size: number): UnitScale {
   if (!unit.startsWith(DIFFERENCE)) return unitScale(unit, size);
   const scale = unitScale(unit.slice(DIFFERENCE.length), size);
@@ -60,25 +60,32 @@ function scaleOn(unit: string, size: number): UnitScale {
 const hasDriven = (ghost: Ghost | undefined, { drives }: PlotTrace): Ghost | undefined =>
   ghost && (!drives || drove(drives, ghost.frame.endTick - 1)) ? ghost : undefined;
 
-/** One uPlot with min/max traces on up to three unit axes; fed by frames, never by React. */
+/** A canvas with min/max traces on up to three unit axes; fed by frames, never by React. */
 export class ScopePlot {
   frame: PanelFrame | undefined;
   /** Ticks shown, kept apart from the frame so that a drag moves the picture before new data come. */
   span = { start: 0, end: 1 };
   private readonly options: ScopePlotOptions;
   private readonly units: string[];
-  private readonly plot: uPlot;
+  private readonly canvas = document.createElement("canvas");
+  /** Over the field of the traces: it takes the pointer. */
+  private readonly over = document.createElement("div");
+  private readonly cursor = document.createElement("i");
+  /** The field of the traces, in pixels of the canvas. */
+  private field = { left: 0, top: 0, width: 1, height: 1 };
+  private ratio = 1;
   private scales: UnitScale[];
   private ranges: (AxisRange | undefined)[] = [];
   private envelopes: Envelope[] = [];
   private times: Float64Array = new Float64Array(0);
   /** Tick of the trigger, which the time axis calls zero. */
   private trigger: number | undefined;
-  private hovered = false;
+  /** Where the pointer is in the field, px. */
+  private pointer: number | undefined;
   /** Draws the last frame of a paused board once more, when its axes may shrink. */
   private shrink: ReturnType<typeof setTimeout> | undefined;
   private readonly raster = new BarRaster();
-  /** What the raster is laid over the grid with. */
+  /** Lays the raster over the grid. */
   private readonly bars = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
   private readonly dispose: (() => void)[] = [];
 
@@ -86,36 +93,51 @@ export class ScopePlot {
     this.options = options;
     this.units = [...new Set(options.traces.map((t) => t.unit))].slice(0, MOST_AXES);
     this.scales = this.units.map((unit) => scaleOn(unit, 1));
-    const empty = [[0, 1], ...options.traces.map(() => [null, null])] as uPlot.AlignedData;
-    this.plot = new uPlot(scopeOptions(this.model()), empty, options.host);
+    this.canvas.className = styles.canvas;
+    this.over.className = styles.field;
+    this.over.dataset.testid = "field";
+    this.cursor.className = styles.hovered;
+    this.over.append(this.cursor);
+    options.host.append(this.canvas, this.over);
+    this.resize(Math.max(50, options.host.clientWidth), Math.max(50, options.host.clientHeight));
     this.dispose.push(
-      listenForGestures(this.plot.over, options.gestures, () => this.span),
-      hover.listen((tick, source) => source !== this && this.showHover(tick)),
+      listenForGestures(this.over, options.gestures, () => this.span),
+      hover.listen((tick) => this.showHover(tick)),
     );
-    this.plot.over.addEventListener("pointermove", this.pointerMoved);
-    this.plot.over.addEventListener("pointerleave", this.pointerLeft);
+    this.over.addEventListener("pointermove", ({ offsetX }) => this.point(offsetX));
+    this.over.addEventListener("pointerleave", () => this.point(undefined));
   }
 
   destroy(): void {
     clearTimeout(this.shrink);
-    if (this.hovered) hover.set(undefined, this);
+    if (this.pointer !== undefined) this.point(undefined);
     for (const stop of this.dispose) stop();
-    this.plot.destroy();
+    this.canvas.remove();
+    this.over.remove();
   }
 
   resize(width: number, height: number): void {
     if (width <= 20 || height <= 20) return;
-    this.plot.setSize({ width, height });
+    const { fontSize } = this.options;
+    const right = this.units.length > 1 ? (this.units.length - 1) * AXIS * fontSize : 1.6 * fontSize;
+    this.ratio = window.devicePixelRatio;
+    const px = (length: number) => Math.round(length * this.ratio);
+    this.canvas.width = px(width);
+    this.canvas.height = px(height);
+    const [left, top] = [px(AXIS * fontSize), px(fontSize + 7)];
+    const [fieldWidth, fieldHeight] = [px(width - right) - left, px(height - fontSize - 9) - top];
+    this.field = { left, top, width: Math.max(1, fieldWidth), height: Math.max(1, fieldHeight) };
+    for (const [side, length] of Object.entries(this.area)) this.over.style.setProperty(side, `${length}px`);
     this.ranges = []; // there is room for other ticks
     if (this.frame) this.draw(this.frame, this.span, this.trigger);
   }
 
   /** Width of the data area in pixels of the screen. */
   get pixels(): number {
-    return (this.plot.bbox.width / uPlot.pxRatio) * Math.min(window.devicePixelRatio, 2);
+    return this.area.width * Math.min(window.devicePixelRatio, 2);
   }
 
-  /** Draw a frame: the span of it that is looked at, about the trigger of a capture or its own. */
+  /** Draw a span of a frame, about the trigger of a capture or its own. */
   draw(
     frame: PanelFrame,
     span?: { start: number; end: number },
@@ -146,14 +168,13 @@ export class ScopePlot {
     clearTimeout(this.shrink);
     if (this.ranges.some((range) => range?.looseSince !== undefined))
       this.shrink = setTimeout(() => this.draw(frame, span, trigger), SHRINK_AFTER_MS);
-    const times = columnTimes(frame, this.origin);
-    this.times = times;
-    this.plot.setData([times, ...this.envelopes.map((e) => e.high)] as uPlot.AlignedData);
-    if (this.hovered) hover.set(this.tickAt(this.plot.cursor.left ?? -1), this);
-    else this.showHover(hover.tick);
+    this.times = columnTimes(frame, this.origin);
+    if (this.pointer !== undefined) this.point(this.pointer);
+    this.showHover(hover.tick);
+    this.paint(frame);
   }
 
-  /** Show another span of what is there, at once; the data follow. */
+  /** Show another span of the data of now, at once; its own data follow. */
   move(start: number, end: number): void {
     this.span = { start, end };
     if (this.frame) this.draw(this.frame, this.span, this.trigger);
@@ -171,12 +192,12 @@ export class ScopePlot {
 
   /** The field of the traces within the host, in pixels of the page. */
   get area(): { left: number; top: number; width: number; height: number } {
-    const { left, top, width, height } = this.plot.bbox;
-    const ratio = uPlot.pxRatio;
+    const { ratio } = this;
+    const { left, top, width, height } = this.field;
     return { left: left / ratio, top: top / ratio, width: width / ratio, height: height / ratio };
   }
 
-  /** What is shown now; nothing before the first frame has come. */
+  /** The picture shown now; undefined before the first frame has come. */
   picture(): ScopeShown | undefined {
     return this.frame && { ...this.shown(this.frame), bands: this.bands()?.traces ?? [] };
   }
@@ -200,14 +221,14 @@ export class ScopePlot {
     };
   }
 
-  /** What of the picture is a filled band and no signal. */
+  /** The traces that the picture shows as filled bands. */
   bands(): Banded | undefined {
     if (!this.frame) return undefined;
     const ranges = this.options.traces.map(({ unit }) => this.ranges[this.units.indexOf(unit)]);
     return bandsOf(this.frame, this.envelopes, ranges);
   }
 
-  /** The scale of a unit's axis, or undefined if it has got none. */
+  /** The scale of the axis of a unit; undefined for a unit without an axis. */
   scaleOf(unit: string): UnitScale | undefined {
     return this.scales[this.units.indexOf(unit)];
   }
@@ -217,45 +238,18 @@ export class ScopePlot {
     return this.trigger ?? 0;
   }
 
-  private model(): ScopeModel {
-    return {
-      ...this.options,
-      units: this.units,
-      time: () => this.shownTime,
-      range: (axis) => [this.ranges[axis]?.min ?? -1, this.ranges[axis]?.max ?? 1],
-      drawn: (u) => this.drawn(u),
-    };
-  }
-
-  private get shownTime(): { start: number; span: number } {
-    return { start: (this.span.start - this.origin) * this.dtMs, span: (this.span.end - this.span.start) * this.dtMs };
-  }
-
-  private get dtMs(): number {
-    return this.frame?.dtMs ?? 1;
-  }
-
-  private tickAt(left: number): number | undefined {
-    const width = this.plot.over.clientWidth;
-    if (left < 0 || left > width || !width) return undefined;
-    return this.span.start + (left / width) * (this.span.end - this.span.start);
+  /** Tell every panel the tick under the pointer. */
+  private point(offset: number | undefined): void {
+    this.pointer = offset;
+    const { start, end } = this.span;
+    hover.set(offset === undefined ? undefined : start + (offset / this.area.width) * (end - start));
   }
 
   private showHover(tick: number | undefined): void {
     const share = tick === undefined ? -1 : (tick - this.span.start) / (this.span.end - this.span.start);
-    const left = share >= 0 && share <= 1 ? share * this.plot.over.clientWidth : -10;
-    this.plot.setCursor({ left, top: left < 0 ? -10 : 1 }, false);
+    this.cursor.hidden = share < 0 || share > 1;
+    this.cursor.style.left = `${100 * share}%`;
   }
-
-  private readonly pointerMoved = (event: PointerEvent): void => {
-    this.hovered = true;
-    hover.set(this.tickAt(event.offsetX), this);
-  };
-
-  private readonly pointerLeft = (): void => {
-    this.hovered = false;
-    hover.set(undefined, this);
-  };
 
   /** How many traces are of the bench on the page. */
   private get own(): number {
@@ -267,16 +261,9 @@ export class ScopePlot {
     const now = performance.now();
     const room = { ...tickRoom(this.area.height, this.options.fontSize), ...(this.options.isLog && { finest: 1 }) };
     this.units.forEach((unit, axis) => {
-      let low = Number.POSITIVE_INFINITY;
-      let high = Number.NEGATIVE_INFINITY;
-      this.options.traces.forEach((trace, i) => {
-        if (trace.unit !== unit || i >= this.envelopes.length) return;
-        const envelope = this.envelopes[i];
-        for (let c = 0; c < envelope.low.length; c += 1) {
-          if (envelope.low[c] < low) low = envelope.low[c];
-          if (envelope.high[c] > high) high = envelope.high[c];
-        }
-      });
+      const own = this.envelopes.filter((_, i) => this.options.traces[i]?.unit === unit);
+      const ends = own.flatMap((one) => [...(extent(one.low) ?? []), ...(extent(one.high) ?? [])]);
+      let [low, high] = [Math.min(...ends), Math.max(...ends)];
       if (this.options.isLog) low = Math.max(low, high - MOST_DECADES);
       else if (low <= high) [low, high] = reachMarks([low, high], this.options.printed(), unit, this.span);
       const range = nextRange(this.ranges[axis], low, high, now, room);
@@ -287,33 +274,31 @@ export class ScopePlot {
     });
   }
 
-  private drawn({ ctx }: uPlot): void {
-    if (!this.frame) return;
+  private paint(frame: PanelFrame): void {
+    const ctx = this.canvas.getContext("2d");
+    if (!ctx) return;
     const { left, top, width, height } = this.area;
     const field = { left, right: left + width, top, bottom: top + height };
-    const ratio = uPlot.pxRatio;
-    const shown = this.shown(this.frame);
-    ctx.save();
-    ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
-    paintScope(ctx, field, shown, this.options, { ink: (traces) => this.inkTraces(ctx, traces) });
+    const shown = this.shown(frame);
+    ctx.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    ctx.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    paintScope(ctx, field, shown, this.options, { ink: (traces) => this.inkTraces(ctx, frame, traces) });
     markEvents(ctx, shown, field, this.options, flagWords);
-    if (this.envelopes.every((e) => e.high.every(Number.isNaN))) this.drawNothing(ctx, field);
-    ctx.restore();
+    if (this.envelopes.every((e) => e.high.every(Number.isNaN))) this.drawNothing(ctx, frame, field);
   }
 
   /** In pixels of the screen, which columns are made for. */
-  private inkTraces(ctx: CanvasRenderingContext2D, inked: readonly number[]): void {
+  private inkTraces(ctx: CanvasRenderingContext2D, frame: PanelFrame, inked: readonly number[]): void {
     const { traces, lineWidth } = this.options;
-    const { left, top, width, height } = this.plot.bbox;
-    const { start, span } = this.shownTime;
-    const ratio = uPlot.pxRatio;
-    const isLine = this.frame !== undefined && samplesOf(this.frame) <= FEW;
-    // the raster lies on whole pixels, the field need not
-    const [x, y] = [Math.floor(left), Math.floor(top)];
-    this.raster.clear(Math.ceil(left + width) - x, Math.ceil(top + height) - y);
-    const field = { left: left - x, top: top - y, width, height, from: start, to: start + span };
+    const { ratio } = this;
+    const { left, top, width, height } = this.field;
+    const from = (this.span.start - this.origin) * frame.dtMs;
+    const to = (this.span.end - this.origin) * frame.dtMs;
+    const isLine = samplesOf(frame) <= FEW;
+    this.raster.clear(width, height);
+    const field = { left: 0, top: 0, width, height, from, to };
     ctx.save();
-    ctx.setTransform(1, 0, 0, 1, x, y);
+    ctx.setTransform(1, 0, 0, 1, left, top);
     this.shadeDifference(ctx, field, isLine);
     for (const trace of inkOrder(traces, inked)) {
       const { colour, dash, unit } = traces[trace];
@@ -332,7 +317,7 @@ export class ScopePlot {
     ctx.restore();
   }
 
-  /** The area between each trace and that of the first bench behind, where columns are samples. */
+  /** The area between each trace and the trace of the first bench behind, where columns are samples. */
   private shadeDifference(
     pen: CanvasRenderingContext2D,
     field: Omit<TraceField, "min" | "max">,
@@ -349,14 +334,14 @@ export class ScopePlot {
     }
   }
 
-  /** A span without data says so: it lies before the history, or ahead of the board. */
-  private drawNothing(ctx: CanvasRenderingContext2D, { left, right, top, bottom }: Field): void {
+  /** Say that a span has no data: it is before the history, or ahead of the board. */
+  private drawNothing(ctx: CanvasRenderingContext2D, frame: PanelFrame, { left, right, top, bottom }: Field): void {
     const { scheme, fontSize } = this.options;
     ctx.font = fontFor(fontSize, 1, 500);
     ctx.fillStyle = CANVAS[scheme].muted;
     ctx.textAlign = "center";
     ctx.textBaseline = "middle";
-    const words = this.frame?.waiting
+    const words = frame.waiting
       ? "Waiting for the trigger"
       : "No data here: the bench has dropped it, or has not come to it yet";
     ctx.fillText(words, (left + right) / 2, (top + bottom) / 2);

@@ -17,13 +17,8 @@ const PRESETS: { title: string; pick: RegExp }[] = [
   { title: "Fault severity", pick: /^faults\./ },
 ];
 
-export interface Preset {
-  title: string;
-  signals: string[];
-}
-
-/** The presets of a bench, without those of which it has no signal. */
-export const presetsOn = (signals: readonly { name: string }[]): Preset[] =>
+/** The presets with signals on a bench. */
+export const presetsOn = (signals: readonly { name: string }[]) =>
   PRESETS.map(({ title, pick }) => ({
     title,
     signals: signals.map((s) => s.name).filter((name) => pick.test(name)),

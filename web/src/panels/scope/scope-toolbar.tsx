@@ -13,12 +13,14 @@ interface ScopeToolbarProps {
   past: boolean;
   onLive(): void;
   trigger: TriggerState;
+  onRearm(): void;
   exporter: ReactNode;
   children: ReactNode;
 }
 
-/** What a scope shows and how: signals, roll or trigger, window, live. */
-export function ScopeToolbar({ config, onChange, past, onLive, trigger, exporter, children }: ScopeToolbarProps) {
+/** The tools of a scope: signals, roll or trigger, window, live. */
+export function ScopeToolbar(props: ScopeToolbarProps) {
+  const { config, onChange, past, onLive, trigger, onRearm, exporter, children } = props;
   return (
     <div className={`line ${styles.toolbar}`}>
       <div className={`line ${styles.signals}`}>{children}</div>
@@ -28,6 +30,7 @@ export function ScopeToolbar({ config, onChange, past, onLive, trigger, exporter
             trigger={config.trigger}
             state={trigger}
             onChange={(next) => onChange({ ...config, trigger: next })}
+            onRearm={onRearm}
           />
         )}
         <button
@@ -53,7 +56,7 @@ export function ScopeToolbar({ config, onChange, past, onLive, trigger, exporter
           variant={config.measure ? "light" : "default"}
           aria-label="Measure"
           aria-pressed={config.measure ?? false}
-          title="Cursors A and B, and figures over what is visible"
+          title="Cursors A and B, and figures over the visible span"
           onClick={() => onChange({ ...config, measure: !config.measure })}
         >
           <IconRuler2 size={15} />

@@ -2,6 +2,7 @@ import { ActionIcon, Checkbox, Popover, ScrollArea, Stack, Text, TextInput, Tool
 import { IconPlus } from "@tabler/icons-react";
 import { useMemo, useState } from "react";
 import { useBench } from "../../stream/bench-store";
+import { groupBy } from "../../ui/group-by";
 import { unitText } from "../../ui/unit-scale";
 
 interface SignalPickerProps {
@@ -11,19 +12,14 @@ interface SignalPickerProps {
   onLog(isLog: boolean): void;
 }
 
-/** Every signal of the bench by block, searchable, with what it means beside it; and the scale. */
+/** Every signal of the bench by block with its meaning, a search, and the scale. */
 export function SignalPicker({ chosen, onChange, isLog, onLog }: SignalPickerProps) {
   const signals = useBench((s) => s.bench?.signals);
   const [query, setQuery] = useState("");
   const groups = useMemo(() => {
-    const found = new Map<string, NonNullable<typeof signals>>();
     const wanted = query.toLowerCase();
-    for (const signal of signals ?? []) {
-      if (!`${signal.name} ${signal.meaning}`.toLowerCase().includes(wanted)) continue;
-      const block = signal.name.split(".")[0];
-      found.set(block, [...(found.get(block) ?? []), signal]);
-    }
-    return [...found];
+    const found = signals?.filter(({ name, meaning }) => `${name} ${meaning}`.toLowerCase().includes(wanted));
+    return groupBy(found ?? [], ({ name }) => name.split(".")[0]);
   }, [signals, query]);
 
   return (

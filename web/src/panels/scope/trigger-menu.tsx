@@ -1,5 +1,4 @@
 import { Button, Group, NativeSelect, NumberInput, Popover, SegmentedControl, Stack, Text } from "@mantine/core";
-import { createContext, useContext } from "react";
 import { useBench } from "../../stream/bench-store";
 import type { Trigger } from "../../stream/wire";
 import { formatShort } from "../../ui/format";
@@ -9,32 +8,27 @@ import { signalGroups } from "../condition/condition";
 export type TriggerState = "none" | "waiting" | "triggered";
 
 const SIGNS: Record<Trigger["edge"], string> = { rising: "↗", falling: "↘", either: "↕", enters: "⇥", leaves: "⇤" };
-const IS_WINDOW: Record<Trigger["edge"], boolean> = {
-  rising: false,
-  falling: false,
-  either: false,
-  enters: true,
-  leaves: true,
-};
+const isOfWindow = (edge: Trigger["edge"]) => edge === "enters" || edge === "leaves";
 
 interface TriggerMenuProps {
   trigger: Trigger;
   state: TriggerState;
   onChange(trigger: Trigger): void;
+  /** Arm a single sweep once more. */
+  onRearm(): void;
 }
 
-/** Where the picture starts: a level or a window of any signal and how it is crossed, found at full rate on the server. */
-export function TriggerMenu({ trigger, state, onChange }: TriggerMenuProps) {
+/** The trigger of a scope: a signal, a level or a window, and a direction; the server finds it at full rate. */
+export function TriggerMenu({ trigger, state, onChange, onRearm }: TriggerMenuProps) {
   const signals = useBench((s) => s.bench?.signals) ?? [];
-  const rearm = useContext(RearmContext);
   const signalUnit = signals.find((s) => s.name === trigger.signal)?.unit ?? "";
   const unit = unitText(signalUnit);
   const set = (part: Partial<Trigger>) => onChange({ ...trigger, ...part });
-  const isWindow = IS_WINDOW[trigger.edge];
+  const isWindow = isOfWindow(trigger.edge);
   const width = (trigger.upper ?? trigger.level) - trigger.level;
   const setLevel = (level: number) => set({ level, upper: trigger.upper === null ? null : level + width });
   const setEdge = (edge: Trigger["edge"]) =>
-    set({ edge, upper: IS_WINDOW[edge] ? (trigger.upper ?? trigger.level + 1) : null });
+    set({ edge, upper: isOfWindow(edge) ? (trigger.upper ?? trigger.level + 1) : null });
   return (
     <Popover position="bottom-end" width={280}>
       <Popover.Target>
@@ -112,7 +106,7 @@ export function TriggerMenu({ trigger, state, onChange }: TriggerMenuProps) {
             {SWEEPS[trigger.sweep]}
           </Text>
           {trigger.sweep === "single" && (
-            <Button size="xs" variant="light" onClick={rearm}>
+            <Button size="xs" variant="light" onClick={onRearm}>
               Arm again
             </Button>
           )}
@@ -127,6 +121,3 @@ const SWEEPS: Record<Trigger["sweep"], string> = {
   normal: "Normal: without an edge the last picture stays.",
   single: "Single: the first edge is kept until armed again.",
 };
-
-/** Arms a single sweep of the scope around once more. */
-export const RearmContext = createContext<() => void>(() => undefined);

@@ -2,7 +2,7 @@ import { useCallback, useEffect, useRef, useState } from "react";
 import type { ScopeConfig } from "../../stream/scope-config";
 import type { CaptureList, CaptureMark } from "../../stream/wire";
 
-/** The capture so many further on; before the first and behind the last there is none, and from live one goes to the newest. */
+/** The capture `by` captures further on, within the list; from live it is the newest. */
 export function captureAt(
   captures: readonly CaptureMark[],
   standing: CaptureMark | undefined,
@@ -11,7 +11,7 @@ export function captureAt(
   if (captures.length === 0) return undefined;
   const last = captures.length - 1;
   if (!standing || by === Number.POSITIVE_INFINITY) return captures[last];
-  // one that is kept no more lies before the first that was captured behind it
+  // a capture that is no longer kept was before the next later one
   const behind = captures.findIndex(({ tick }) => tick >= standing.tick);
   const at = behind < 0 ? last + 1 : behind;
   const isKept = captures[at]?.tick === standing.tick;

@@ -47,7 +47,7 @@ export function useFigures(signals: string[], change: Change | undefined): Figur
   return found;
 }
 
-/** The figures of the newest window, and whether those of the window before agree. */
+/** The figures of the newest window, and whether the window before agrees. */
 function newest(frame: PanelFrame, before: number[], period: number | null | undefined): Figures {
   const ticks = windowTicks(period, frame.columns);
   const all = Array.from({ length: frame.signals }, (_, i) => i);

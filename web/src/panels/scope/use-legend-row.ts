@@ -2,7 +2,7 @@ import { type RefObject, useLayoutEffect, useRef } from "react";
 import { useChanged } from "../../ui/use-changed";
 import type { PlotTrace } from "./paint-scope";
 
-/** Kept free for the button of those that do not fit, px. */
+/** Kept free for the button of the entries without room, px. */
 const MORE_PX = 34;
 const GAP_PX = 4;
 
@@ -52,7 +52,7 @@ export function useLegendRow(traces: PlotTrace[]): LegendRow {
 
 const sum = (widths: number[]) => widths.reduce((total, width) => total + width, 0);
 
-/** How many of some widths fit into a room, where those left out need a button. */
+/** How many of some widths fit into a room that also holds a button for the rest. */
 export function countFitting(widths: number[], room: number, more: number): number {
   if (sum(widths) <= room) return widths.length;
   let taken = more;

@@ -2,7 +2,7 @@ import { type KeyboardEvent, type RefObject, useCallback } from "react";
 import type { ScopePlot } from "./scope-plot";
 import { zoomSpan } from "./use-time-view";
 
-/** Arrow keys pan, plus and minus zoom, L goes live, page keys go through captures: all without a mouse. */
+/** Arrow keys pan, plus and minus zoom, L goes live, page keys go through captures. */
 export function useScopeKeys(
   plot: RefObject<ScopePlot | undefined>,
   look: (start: number, end: number) => void,

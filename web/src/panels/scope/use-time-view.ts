@@ -8,11 +8,11 @@ const LIVE: TimeWindow = { kind: "live" };
 const REFETCH_MS = 60;
 
 /**
- * Where a time panel looks. `span` moves at once with the hand and holds ticks while the panel is detached;
- * `view` follows a moment later and asks the server for the detail. On a capture it stands until it goes live.
+ * The window of a time panel. `span` moves at once with the hand and holds ticks while the panel is detached;
+ * `view` follows a moment later and asks the server for the detail. A capture stays until the panel goes live.
  */
 export function useTimeView(windowMs: number, dtMs: number | undefined, onMove: (start: number, end: number) => void) {
-  const span = useRef<{ start: number; end: number } | undefined>(undefined);
+  const span = useRef<Span | undefined>(undefined);
   const refetch = useRef<ReturnType<typeof setTimeout> | undefined>(undefined);
   const move = useRef(onMove);
   move.current = onMove;
@@ -54,25 +54,31 @@ export function useTimeView(windowMs: number, dtMs: number | undefined, onMove: 
   return { view, span, look, stand, goLive };
 }
 
-/** What a scope looks at: the newest data, or a span of the past that stays, of a capture or not. */
+/** The window of a scope: the newest data, or a fixed span of the past, of a capture or not. */
 export type TimeWindow = { kind: "live" } | { kind: "past"; start: number; end: number; capture?: CaptureMark };
+
+/** A stretch of ticks. */
+export interface Span {
+  start: number;
+  end: number;
+}
 
 const LEAST_TICKS = 8;
 
 /** Zoom a span about one of its ticks. */
-export function zoomSpan(start: number, end: number, about: number, factor: number): { start: number; end: number } {
+export function zoomSpan(start: number, end: number, about: number, factor: number): Span {
   const width = Math.max(LEAST_TICKS, (end - start) * factor);
   const share = (about - start) / (end - start);
   return { start: about - width * share, end: about + width * (1 - share) };
 }
 
-/** Of a scope with all that lies behind it; the server allows four times as many for all panels together. */
+/** Of a scope with all benches behind it; the server allows four times as many for all panels together. */
 const MOST_POINTS = 65_536;
 
 /** Columns that a picture of so many traces may have. */
 export const mostColumns = (traces: number): number => Math.min(4096, Math.floor(MOST_POINTS / traces));
 
-/** The subscription that fills `pixels` columns with what the scope looks at. */
+/** The subscription that fills `pixels` columns with the window of a scope. */
 export function scopeSubscription(
   config: ScopeConfig,
   window: TimeWindow,

@@ -1,6 +1,6 @@
 import { middles, type PanelFrame } from "../../stream/panel-frame";
 
-/** Periods that a figure is taken over, and ticks where the drive has no period. */
+/** Periods in the window of a figure, and ticks in it where the drive has no period. */
 const PERIODS = 10;
 const TICKS = 500;
 /** The server sends no more samples of a signal at once; a figure takes two windows. */
@@ -11,7 +11,7 @@ const STEP = 1.15;
 const SHARE = 0.05;
 const SHARE_BEFORE = 0.02;
 
-/** How many ticks a figure is taken over when so many are there: whole periods of the drive. */
+/** The length of the window of a figure when `there` ticks exist: whole periods of the drive. */
 export function windowTicks(period: number | null | undefined, there: number): number {
   const unit = unitOf(period);
   const most = Math.max(1, Math.min(period ? PERIODS : 1, Math.floor(MOST / unit)));

@@ -5,14 +5,8 @@ import { parameterTitle } from "../card/parameter-title";
 
 type BlockOf = (family: string, name: string) => BlockCard | undefined;
 
-export interface NamedPath {
-  block: string;
-  parameter: string;
-  unit: string;
-}
-
-/** What a path of a parameter is called: its block, its own name, its unit. */
-export function namedPath(path: string, list: readonly Instance[], block: BlockOf): NamedPath {
+/** The names of a path of a parameter: its block, its own name, its unit. */
+export function namedPath(path: string, list: readonly Instance[], block: BlockOf) {
   const at = path.lastIndexOf(".");
   const [head, leaf] = [path.slice(0, at), path.slice(at + 1)];
   const instance = list.find((one) => one.path === head || one.also.includes(head));
@@ -26,7 +20,7 @@ export function namedPath(path: string, list: readonly Instance[], block: BlockO
   };
 }
 
-/** A value as people read it; null is left to the block, which works it out from the bench. */
+/** A value in words; the block computes a null value from the bench. */
 export function valueText(value: unknown, unit: string): string {
   if (value === null || value === undefined) return "from the bench";
   if (typeof value === "number") return formatShort(value, unit === "1" ? "" : unit);

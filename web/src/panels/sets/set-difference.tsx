@@ -1,4 +1,4 @@
-import { CloseButton, NativeSelect } from "@mantine/core";
+import { Box, CloseButton, Group, NativeSelect } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../../api/api";
 import { useAsked } from "../../api/queries";
@@ -33,8 +33,8 @@ export function SetDifference({ first, others, onClose }: SetDifferenceProps) {
   const options = others.filter(({ id }) => id !== first.id).map(({ id, name }) => ({ value: id, label: name }));
   const second = options.find(({ value }) => value === other)?.label ?? "now";
   return (
-    <div className={styles.difference}>
-      <div className={styles.head}>
+    <div className={styles.difference} style={{ borderBottom: "1px solid var(--line)" }}>
+      <Group gap="6px 10px" align="end" justify="space-between" p="8px 12px 12px">
         <NativeSelect
           label={`Compare ${first.name} with`}
           value={other}
@@ -42,10 +42,12 @@ export function SetDifference({ first, others, onClose }: SetDifferenceProps) {
           onChange={(e) => setOther(e.currentTarget.value)}
         />
         <CloseButton aria-label="End the comparison" onClick={onClose} />
-      </div>
+      </Group>
       {answer &&
         (answer.rows.length === 0 ? (
-          <p>No difference in {formatCount(answer.same, "value")}.</p>
+          <Box component="p" p="0 12px 12px">
+            No difference in {formatCount(answer.same, "value")}.
+          </Box>
         ) : (
           <table>
             <caption>

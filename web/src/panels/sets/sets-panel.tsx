@@ -68,7 +68,7 @@ function Sets() {
             : "The teacher keeps some here; you can put them on your bench in one tick."}
         </EmptyState>
       ) : (
-        <ul className={rows.list}>
+        <ul>
           {sets?.map((one) => (
             <SetRow key={one.id} set={one} bench={bench} onCompare={() => setChosen(one.id)} onChanged={again} />
           ))}

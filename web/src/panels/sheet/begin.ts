@@ -4,10 +4,10 @@ import { showAtEdge } from "../../bench/dock";
 import { openOwn } from "../../bench/open-bench";
 import { setPage, useView } from "../../bench/view-store";
 
-/** A sheet is read at this width. */
+/** The width of a sheet. */
 const SHEET_PX = 400;
 
-/** Begin a sheet, or go on with it: its bench is made, and the sheet stands beside it. */
+/** Begin or continue a sheet: its bench is made, and the sheet is shown at the edge. */
 export async function beginSheet(id: string): Promise<void> {
   const view = await sheets.begin(id);
   queryClient.setQueryData(["sheet", id], view);

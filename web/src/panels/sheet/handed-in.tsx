@@ -6,7 +6,7 @@ import { useBench } from "../../stream/bench-store";
 import { formatMoment, formatSi } from "../../ui/format";
 import styles from "./sheet.module.css";
 
-/** A long list hides the newest, which is the one that is wanted. */
+/** The menu lists this many recordings, the newest. */
 const MOST = 12;
 
 const isWhole = ({ state, ticks }: Recording) => state !== "armed" && state !== "recording" && ticks > 0;

@@ -1,4 +1,4 @@
-import { Button, FileButton } from "@mantine/core";
+import { Box, Button, FileButton } from "@mantine/core";
 import { useState } from "react";
 import { ApiError } from "../../api/client";
 import { useMay } from "../../api/me";
@@ -11,7 +11,7 @@ import { formatCount, formatShort } from "../../ui/format";
 import { beginSheet } from "./begin";
 import styles from "./sheet.module.css";
 
-/** The sheets there are; one is begun here, and a teacher opens one of one's own. */
+/** All sheets; a sheet begins here, and a teacher opens sheets of the class here. */
 export function SheetList({ cards, onChanged }: { cards: SheetCard[]; onChanged(): void }) {
   const teaches = useMay("teach");
   const drives = useMay("drive");
@@ -27,18 +27,20 @@ export function SheetList({ cards, onChanged }: { cards: SheetCard[]; onChanged(
   };
   return (
     <section className={`view ${styles.sheet}`} aria-label="Lab sheets">
-      {!teaches && <p className={styles.quiet}>A sheet begins with a bench of its own, in place of yours.</p>}
-      <ul className={`column ${styles.cards}`}>
+      {!teaches && <p className="note">A sheet begins with a bench of its own, in place of yours.</p>}
+      <Box component="ul" className="column" style={{ gap: 14 }}>
         {cards.map((card) => (
-          <li key={card.id}>
-            <div>
+          <Box component="li" key={card.id} display="flex" style={{ gap: 10, alignItems: "flex-start" }}>
+            <Box flex={1} miw={0}>
               <h3>{card.title}</h3>
-              <p>{card.summary}</p>
+              <Box component="p" fz="sm">
+                {card.summary}
+              </Box>
               <small>
                 {card.minutes} minutes · {formatCount(card.steps, "step")} · {formatShort(card.points, "")} points
                 {card.work && ` · ${sheetWords(card.work)}`}
               </small>
-            </div>
+            </Box>
             {drives && (
               <Button
                 size="xs"
@@ -55,15 +57,15 @@ export function SheetList({ cards, onChanged }: { cards: SheetCard[]; onChanged(
                 Delete
               </Button>
             )}
-          </li>
+          </Box>
         ))}
-      </ul>
+      </Box>
       {teaches && <OpenOwn onOpened={onChanged} />}
     </section>
   );
 }
 
-/** A sheet from disk; what is wrong with it is said with its line and field. */
+/** A sheet from disk; a mistake in it is shown with its line and field. */
 function OpenOwn({ onOpened }: { onOpened(): void }) {
   const [error, setError] = useState("");
   const open = async (file: File | null) => {
@@ -78,7 +80,7 @@ function OpenOwn({ onOpened }: { onOpened(): void }) {
     }
   };
   return (
-    <div className={styles.own}>
+    <div>
       <FileButton accept=".md,text/markdown" onChange={open} inputProps={{ "aria-label": "Sheet file" }}>
         {(props) => (
           <Button {...props} size="xs">
@@ -86,7 +88,11 @@ function OpenOwn({ onOpened }: { onOpened(): void }) {
           </Button>
         )}
       </FileButton>
-      {error && <p role="alert">{error}</p>}
+      {error && (
+        <Box component="p" role="alert" className="wrong" mt={6} style={{ overflowWrap: "anywhere" }}>
+          {error}
+        </Box>
+      )}
     </div>
   );
 }

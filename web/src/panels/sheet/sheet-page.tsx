@@ -1,4 +1,4 @@
-import { Box, Button } from "@mantine/core";
+import { Box, Button, Group } from "@mantine/core";
 import { useEffect, useRef } from "react";
 import { useMay } from "../../api/me";
 import { queryClient, useAnswer } from "../../api/queries";
@@ -45,15 +45,17 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
   };
   return (
     <section className={`view ${styles.sheet}`} aria-label="Lab sheet">
-      <header className={styles.head}>
-        <h2>{value.title}</h2>
-        <p>
-          <b data-testid="sheet-points">
+      <header>
+        <Box component="h2" fz="lg" lh={1.3}>
+          {value.title}
+        </Box>
+        <Box component="p" m="2px 0 8px" c="dimmed">
+          <Box component="b" c="var(--text)" fw={600} data-testid="sheet-points">
             {formatShort(value.earned, "")} of {formatShort(value.points, "")} points
-          </b>{" "}
+          </Box>{" "}
           · {value.minutes} minutes
-        </p>
-        <div className={styles.buttons}>
+        </Box>
+        <Group gap={8}>
           <Button onClick={onLeave}>All sheets</Button>
           <Button component="a" href={sheets.report(id)} target="_blank">
             Hand in
@@ -69,24 +71,24 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
               Start over…
             </Button>
           )}
-        </div>
+        </Group>
         <Stale error={error} since={since} onRetry={again} />
       </header>
       {!value.bench && !value.done && (
-        <div className={styles.gone} role="status">
+        <Box p="8px 12px" style={{ borderLeft: "3px solid var(--paused)" }} role="status">
           The bench of this sheet was closed. Your answers are kept.{" "}
           <Button variant="filled" onClick={() => void beginSheet(id).then(again, showError)}>
             Make it again
           </Button>
-        </div>
+        </Box>
       )}
       <SheetText text={value.intro} />
-      <ol className={`column ${styles.sections}`}>
+      <Box component="ol" className="column" style={{ gap: 16 }}>
         {value.sections.map((section, i) => (
           // biome-ignore lint/suspicious/noArrayIndexKey: the sections of a sheet stay in their order
           <Section key={i} section={section} actions={actions} />
         ))}
-      </ol>
+      </Box>
       {value.done && (
         <Box component="p" fw={560}>
           All steps are done. Hand in gives you the sheet to print.
@@ -101,18 +103,23 @@ function Section({ section, actions }: { section: SheetSection; actions: StepAct
   const place = useRef<HTMLLIElement>(null);
   const was = useRef(state);
   useEffect(() => {
-    // what opens comes into sight; what was open from the start stays where it is
+    // a section that opens comes into sight; a section that was open from the start stays in its place
     if (was.current === "closed" && state === "open") place.current?.scrollIntoView({ block: "nearest" });
     was.current = state;
   }, [state]);
   return (
-    <li ref={place} data-state={state} aria-current={state === "open" ? "step" : undefined}>
-      <h3>
+    <li
+      ref={place}
+      data-state={state}
+      style={{ scrollMargin: 12 }}
+      aria-current={state === "open" ? "step" : undefined}
+    >
+      <Box component="h3" mb={4} {...(state === "closed" && { c: "dimmed", fw: 500 })}>
         {heading}
         <span className="visually-hidden">
           {state === "done" ? ", done" : state === "closed" ? ". Complete the previous steps first" : ""}
         </span>
-      </h3>
+      </Box>
       <SheetText text={text} />
       {step && <StepView step={step} isOpen={state === "open"} actions={actions} />}
       <SheetText text={after} />
@@ -122,10 +129,10 @@ function Section({ section, actions }: { section: SheetSection; actions: StepAct
 
 const openSection = (view: SheetView | undefined) => view?.sections.find(({ state }) => state === "open");
 
-/** Whether the bench is looked at: then the page asks often. */
+/** Whether the server watches the bench: then the page asks often. */
 const isMeasuring = (view: SheetView | undefined) => ["hold", "blind"].includes(openSection(view)?.step?.kind ?? "");
 
-/** Tell screen readers of a step that the bench has closed. */
+/** Tell screen readers about a step that the bench has closed. */
 function useSaid(view: SheetView | undefined): void {
   const done = view?.sections.filter(({ step, state }) => step && state === "done").length;
   const before = useRef(done);

@@ -5,7 +5,7 @@ import remarkMath from "remark-math";
 import { Formula } from "../../ui/formula";
 import styles from "./sheet.module.css";
 
-/** Only what a text needs; a sheet's HTML stays text, and nothing is loaded from elsewhere. */
+/** The elements of a text; the HTML of a sheet stays text, and nothing is loaded from other places. */
 const ELEMENTS = ["p", "em", "strong", "code", "pre", "ul", "ol", "li", "a", "blockquote", "h3", "h4", "br", "hr"];
 /** Mathematics that has lines of its own; the reader wants its marks on lines of their own as well. */
 const OWN_LINES = /^\$\$([^$]+)\$\$$/gm;

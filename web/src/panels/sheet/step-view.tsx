@@ -1,5 +1,5 @@
-import { Box, Button, Radio, TextInput } from "@mantine/core";
-import { type FormEvent, useState } from "react";
+import { Box, Button, Group, Radio, Stack, TextInput } from "@mantine/core";
+import { type FormEvent, type ReactNode, useState } from "react";
 import { ApiError } from "../../api/client";
 import type { SheetStep } from "../../api/types";
 import { hypothesisWords } from "../../bench/hypothesis-words";
@@ -21,7 +21,7 @@ interface StepProps {
   actions: StepActions;
 }
 
-/** A step of a sheet: what is checked, what is still missing, what was answered, how points come and go. */
+/** A step of a sheet: its conditions, its answers, hints, and the rule for points. */
 export function StepView({ step, isOpen, actions }: StepProps) {
   const isHiding = useBench((s) => Boolean(s.bench?.blind));
   const { id, rule, earned, points, hints = [], next_hint_costs: hintCosts, answers = [] } = step;
@@ -34,10 +34,10 @@ export function StepView({ step, isOpen, actions }: StepProps) {
       )}
       {(step.conditions ?? []).length > 0 && <Conditions step={step} isOpen={isOpen} />}
       {answers.length > 0 && (
-        <ul className={styles.answers} aria-label="Answers">
+        <Box component="ul" mb={6} aria-label="Answers">
           {answers.map((given, i) => (
             // biome-ignore lint/suspicious/noArrayIndexKey: answers are only ever added
-            <li key={i} data-right={given.points === null ? undefined : (given.points ?? 0) > 0}>
+            <li key={i}>
               <b>{given.text}</b>
               {given.reason === null ? " – committed; judged after the run" : ` – ${given.reason}`}
               {given.points !== null && (
@@ -47,20 +47,22 @@ export function StepView({ step, isOpen, actions }: StepProps) {
               )}
             </li>
           ))}
-        </ul>
+        </Box>
       )}
       {isOpen && step.kind !== "hold" && step.kind !== "blind" && (
         <AnswerForm key={answers.length} step={step} actions={actions} />
       )}
       {hints.map((hint) => (
-        <p key={hint} className={styles.hint}>
-          Hint: {hint}
-        </p>
+        <Aside key={hint}>Hint: {hint}</Aside>
       ))}
-      {step.solution && !isOpen && <p className={styles.solution}>Right answer: {step.solution}</p>}
-      {step.given_up && <p className={styles.quiet}>Closed as it was.</p>}
-      <p className={styles.rule}>
-        {!isOpen && earned !== null && <b>{pointsOf(earned, points)} </b>}
+      {step.solution && !isOpen && <Aside>Right answer: {step.solution}</Aside>}
+      {step.given_up && <p className="note">Closed as it was.</p>}
+      <p className="note">
+        {!isOpen && earned !== null && (
+          <Box component="b" c="var(--text)">
+            {pointsOf(earned, points)}{" "}
+          </Box>
+        )}
         {rule}
         {isOpen &&
           step.tries_left != null &&
@@ -68,7 +70,7 @@ export function StepView({ step, isOpen, actions }: StepProps) {
           ` ${formatCount(step.tries_left, "attempt")} left.`}
       </p>
       {isOpen && (
-        <div className={styles.buttons}>
+        <Group gap={8}>
           {step.kind === "blind" && !isHiding && (
             <Button variant="filled" onClick={() => actions.hide(id)}>
               Hide a fault
@@ -84,20 +86,32 @@ export function StepView({ step, isOpen, actions }: StepProps) {
               Skip this question
             </Button>
           )}
-        </div>
+        </Group>
       )}
     </div>
   );
 }
 
-/** The quantities, the range of each, a tick where it holds; how long they hold of how long they have to. */
+function Aside({ children }: { children: ReactNode }) {
+  return (
+    <Box component="p" pl={8} style={{ borderLeft: "2px solid var(--paused)" }}>
+      {children}
+    </Box>
+  );
+}
+
+const HELD = { flex: 1, maxWidth: 180, accentColor: "var(--accent)" };
+
+/** The quantities with their ranges, ticks where they hold, and the time for which they have held. */
 function Conditions({ step, isOpen }: { step: SheetStep; isOpen: boolean }) {
   return (
     <>
-      <ul className={`column ${styles.conditions}`} aria-label="What is checked">
+      <Box component="ul" className="column" mb={6} style={{ gap: 4 }} aria-label="Conditions">
         {(step.conditions ?? []).map(({ label, now, wanted, holds }) => (
-          <li key={label} data-holds={holds}>
-            <span aria-hidden="true">{holds ? "✓" : "○"}</span>
+          <Box component="li" key={label} display="flex" style={{ gap: 8 }}>
+            <Box component="span" c={holds ? "var(--running)" : undefined} aria-hidden="true">
+              {holds ? "✓" : "○"}
+            </Box>
             <span>
               {label}
               {now && (
@@ -108,14 +122,14 @@ function Conditions({ step, isOpen }: { step: SheetStep; isOpen: boolean }) {
               {wanted && ` (wanted: ${hypothesisWords(wanted)})`}
               <span className="visually-hidden">{holds ? ", holds" : ", does not hold yet"}</span>
             </span>
-          </li>
+          </Box>
         ))}
-      </ul>
+      </Box>
       {isOpen && (
-        <div className={`line ${styles.held}`}>
-          <progress aria-label="Held" max={1} value={step.held_share} />
+        <Group gap={8} wrap="nowrap" mb={6} className="note">
+          <progress style={HELD} aria-label="Held" max={1} value={step.held_share} />
           <span>{step.held}</span>
-        </div>
+        </Group>
       )}
     </>
   );
@@ -141,7 +155,13 @@ function AnswerForm({ step, actions }: { step: SheetStep; actions: StepActions }
   const says = step.kind === "prediction" ? "Commit the prediction" : "Answer";
   const unit = unitText(step.unit ?? "");
   return (
-    <form className={`column ${styles.form}`} onSubmit={(event) => void take(event)}>
+    <Box
+      component="form"
+      className="column"
+      mb={8}
+      style={{ gap: 8 }}
+      onSubmit={(event: FormEvent) => void take(event)}
+    >
       {options.length > 0 ? (
         <Radio.Group
           label={step.question}
@@ -149,12 +169,13 @@ function AnswerForm({ step, actions }: { step: SheetStep; actions: StepActions }
           value={text}
           onChange={setText}
           error={wrong || undefined}
+          errorProps={{ fz: "sm" }}
         >
-          <div className={`column ${styles.options}`}>
+          <Stack gap={8}>
             {options.map(([id, words]) => (
               <Radio key={id} value={id} label={words} />
             ))}
-          </div>
+          </Stack>
         </Radio.Group>
       ) : (
         <TextInput
@@ -164,22 +185,30 @@ function AnswerForm({ step, actions }: { step: SheetStep; actions: StepActions }
           value={text}
           autoComplete="off"
           error={wrong || undefined}
+          errorProps={{ fz: "sm" }}
           onChange={(e) => setText(e.currentTarget.value)}
         />
       )}
-      <Button variant="filled" size="sm" type="submit" loading={busy} disabled={text.trim() === ""}>
+      <Button
+        variant="filled"
+        size="sm"
+        type="submit"
+        loading={busy}
+        disabled={text.trim() === ""}
+        style={{ alignSelf: "flex-start" }}
+      >
         {says}
       </Button>
-    </form>
+    </Box>
   );
 }
 
-/** Why an answer cannot be read, and how it can. */
+/** Why an answer cannot be read, with a hint. */
 const unread = ({ body }: ApiError): string =>
   [body.message.replace(/^answer: /, "The answer "), body.hint].filter(Boolean).join("; ");
 
 /** "1.5 of 2 points." */
-export const pointsOf = (earned: number, points: number): string =>
+const pointsOf = (earned: number, points: number): string =>
   `${formatShort(earned, "")} of ${formatShort(points, "")} points.`;
 
 const signed = (points: number | null | undefined): string =>

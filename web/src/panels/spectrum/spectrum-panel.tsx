@@ -1,10 +1,11 @@
-import { NativeSelect } from "@mantine/core";
+import { Group, NativeSelect } from "@mantine/core";
 import { useRef, useState } from "react";
-import { PictureMenu, type TakePicture } from "../../picture/picture-menu";
+import { PictureMenu } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatSi } from "../../ui/format";
 import styles from "../phase/phase.module.css";
+import { type SpectrumShown, spectrumPicture } from "./paint-spectrum";
 import { bandItems, tickItems } from "./spectrum-menus";
 import { SpectrumPlot } from "./spectrum-plot";
 
@@ -15,14 +16,14 @@ export function SpectrumPanel() {
   const [wanted, setSignal] = useState<string | undefined>(undefined);
   const [ticks, setTicks] = useState(4096);
   const [share, setShare] = useState(5);
-  const picture = useRef<TakePicture>(null);
+  const shown = useRef<SpectrumShown | undefined>(undefined);
   if (!signals || !dtMs)
     return <EmptyState title="No bench yet">The tones of a signal appear as soon as a bench is connected.</EmptyState>;
   const usual = signals.find((s) => s.name === "sensor.displacement" || s.name === "sensor.x.displacement");
   const signal = wanted ?? usual?.name ?? signals[0].name;
   return (
     <section className={`view ${styles.panel}`} aria-label="Spectrum">
-      <div className={`row ${styles.bar}`}>
+      <Group gap="6px 8px" p="6px 12px">
         <NativeSelect
           aria-label="Signal"
           value={signal}
@@ -41,10 +42,10 @@ export function SpectrumPanel() {
           data={bandItems(dtMs)}
           onChange={(e) => setShare(Number(e.currentTarget.value))}
         />
-        <span className={styles.held}>bins of {formatSi(1 / (ticks * dtMs), "kHz", 3)}, Hann window</span>
-        <PictureMenu take={() => picture.current?.()} />
-      </div>
-      <SpectrumPlot signal={signal} ticks={ticks} dtMs={dtMs} highest={0.5 / dtMs / share} picture={picture} />
+        <span className="note">bins of {formatSi(1 / (ticks * dtMs), "kHz", 3)}, Hann window</span>
+        <PictureMenu take={() => shown.current && spectrumPicture(shown.current, signal.replaceAll(/[._]/g, " "))} />
+      </Group>
+      <SpectrumPlot signal={signal} ticks={ticks} dtMs={dtMs} highest={0.5 / dtMs / share} shown={shown} />
     </section>
   );
 }

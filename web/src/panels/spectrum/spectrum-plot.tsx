@@ -1,14 +1,13 @@
-import { type Ref, useEffect, useImperativeHandle, useMemo, useRef } from "react";
+import { type RefObject, useEffect, useMemo, useRef } from "react";
 import { LiveCanvas } from "../../picture/live-canvas";
 import type { Box, Look, Pen } from "../../picture/pen";
-import type { TakePicture } from "../../picture/picture-menu";
 import { middles } from "../../stream/panel-frame";
 import type { Subscription } from "../../stream/wire";
 import { formatSi } from "../../ui/format";
 import styles from "../phase/phase.module.css";
 import { useTraces } from "../scope/use-traces";
 import { spectrum, strongest } from "./fourier";
-import { paintSpectrum, type SpectrumShown, spectrumPicture } from "./paint-spectrum";
+import { paintSpectrum, type SpectrumShown } from "./paint-spectrum";
 
 /** A spectrum is read, not watched: ten a second are enough. */
 const EVERY_MS = 100;
@@ -23,18 +22,17 @@ interface SpectrumPlotProps {
   dtMs: number;
   /** Highest frequency shown, kHz. */
   highest: number;
-  picture: Ref<TakePicture>;
+  /** Keeps the newest picture. */
+  shown: RefObject<SpectrumShown | undefined>;
 }
 
 /** The canvas of a spectrum, and the strongest tone in words. */
-export function SpectrumPlot({ signal, ticks, dtMs, highest, picture }: SpectrumPlotProps) {
+export function SpectrumPlot({ signal, ticks, dtMs, highest, shown }: SpectrumPlotProps) {
   const names = useMemo(() => [signal], [signal]);
   const [trace] = useTraces(names);
   const reading = useRef<HTMLParagraphElement>(null);
   const samples = useRef(new Float32Array(0));
   const top = useRef(LOWEST);
-  const shown = useRef<SpectrumShown | undefined>(undefined);
-  useImperativeHandle(picture, () => () => shown.current && spectrumPicture(shown.current, words(signal)), [signal]);
 
   const subscription = useMemo<Subscription>(
     () => ({ mode: "roll", signals: names, window_ms: ticks * dtMs, width: ticks }),
@@ -64,7 +62,7 @@ export function SpectrumPlot({ signal, ticks, dtMs, highest, picture }: Spectrum
   return (
     <>
       <LiveCanvas
-        label={`Amplitude spectrum of ${words(signal)}`}
+        label={`Amplitude spectrum of ${signal.replaceAll(/[._]/g, " ")}`}
         subscription={subscription}
         hear={(frame) => {
           samples.current = middles(frame, 0).filter(Number.isFinite);
@@ -76,5 +74,3 @@ export function SpectrumPlot({ signal, ticks, dtMs, highest, picture }: Spectrum
     </>
   );
 }
-
-const words = (name: string) => name.replaceAll(/[._]/g, " ");

@@ -8,34 +8,34 @@ export interface Board {
   name: string;
   /** The controller that drives in the last slot. */
   controller: string;
-  /** The controller the board is there for. */
+  /** The controller that was chosen for the board. */
   chosen: string;
   /** Slot in `TRACE_COLOURS`. */
   slot: number;
 }
 
-/** What boards are compared by. */
+/** Quantities by which boards are compared. */
 export interface Compared {
   title: string;
-  /** What should be, and in words. */
+  /** The ideal value, as a signal and in words. */
   ideal: string;
   against: string;
-  /** What a board makes of it. */
+  /** The value on a board. */
   value(board: Board): string;
-  /** What moves besides, and what it costs. */
+  /** Other motions, and efforts. */
   motions: { title: string; signal: string }[];
   efforts: { title: string; signal: string }[];
 }
 
-/** Colours of the boards; slot 0 is what should be. */
+/** Colours of the boards; slot 0 is the ideal value. */
 const SLOTS = [1, 2, 4, 3];
-/** What a panel may subscribe to. */
+/** Most signals in a subscription. */
 const MOST_SIGNALS = 32;
 
 type Twin = { controller?: { kind?: string }; slots?: Record<string, string> };
 type Twins = Record<string, Twin>;
 
-/** The board and its twins, with what drives each. */
+/** The board and its twins, with the controller of each. */
 export function boardsOf({ parameters, controller }: Pick<Bench, "parameters" | "controller">): Board[] {
   const twins = Object.entries((parameters.twins ?? {}) as Twins);
   return [
@@ -68,7 +68,7 @@ export function twinsOf(
   return found;
 }
 
-/** What boards with these axes are compared by: one displacement by it, gyroscopes by the rate they read. */
+/** Boards with one displacement are compared by it, gyroscopes by the measured rate. */
 export function comparedOn(axes: readonly string[]): Compared {
   if (axes.length === 0)
     return {
@@ -89,7 +89,7 @@ export function comparedOn(axes: readonly string[]): Compared {
   };
 }
 
-/** Strips that overlay the boards: what is compared, motion, effort, then whatever each adapts, board by board. */
+/** Strips that overlay the boards: the compared value, motion and effort; then the adapted values of each board. */
 export function comparison(boards: readonly Board[], compared: Compared, signals: readonly Signal[]): Strip[] {
   const known = new Map(signals.map((s) => [s.name, s]));
   const overlay = (title: string, nameOn: (board: Board) => string, ideal?: string): Strip[] => {
@@ -101,7 +101,7 @@ export function comparison(boards: readonly Board[], compared: Compared, signals
         unit: known.get(nameOn(first))?.unit ?? "",
         signal: nameOn(first),
         slot: first.slot,
-        ...(ideal ? { ideal } : {}),
+        ideal,
         rivals: others.map((board) => ({ signal: nameOn(board), slot: board.slot })),
       },
     ];
@@ -118,11 +118,7 @@ export function comparison(boards: readonly Board[], compared: Compared, signals
     for (const signal of signals) {
       if (!signal.name.startsWith(`${head}gain.`) && !signal.name.startsWith(`${head}parameter.`)) continue;
       const rest = signal.name.slice(head.length);
-      const ideal =
-        head +
-        (rest.startsWith("gain.")
-          ? rest.replace("gain.", "gain_ideal.")
-          : rest.replace("parameter.", "parameter_true."));
+      const ideal = head + rest.replace(/^gain\./, "gain_ideal.").replace(/^parameter\./, "parameter_true.");
       const needs = known.has(ideal) ? 2 : 1;
       if (room < needs) return strips;
       room -= needs;
@@ -131,7 +127,7 @@ export function comparison(boards: readonly Board[], compared: Compared, signals
         unit: signal.unit,
         signal: signal.name,
         slot,
-        ...(known.has(ideal) ? { ideal } : {}),
+        ideal: known.has(ideal) ? ideal : undefined,
       });
     }
   }

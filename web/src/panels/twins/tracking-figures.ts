@@ -7,7 +7,7 @@ export interface TrackingFigures {
   efforts: number[];
 }
 
-/** Error against what should be, and efforts, over a frame with one column for each tick; signals by their columns. */
+/** Error from the ideal value, and efforts, over a frame with one column for each tick; signals by their columns. */
 export function trackingFigures(frame: PanelFrame, value: number, ideal: number, efforts: number[]): TrackingFigures {
   const { data, columns } = frame;
   const at = (signal: number, c: number) => data[2 * signal * columns + c];

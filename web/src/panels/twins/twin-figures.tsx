@@ -15,7 +15,7 @@ const MOST_TICKS = 2000;
 const USUAL_TICKS = 400;
 const EVERY_MS = 500;
 
-/** How well each board does what it should, and at what cost, over the last periods of the drive. */
+/** Errors and efforts of each board over the last periods of the drive. */
 export function TwinFigures({ boards, compared }: { boards: Board[]; compared: Compared }) {
   const scheme = useScheme();
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
@@ -27,13 +27,7 @@ export function TwinFigures({ boards, compared }: { boards: Board[]; compared: C
   const subscription = useMemo(
     () => ({
       mode: "roll" as const,
-      signals: [
-        compared.ideal,
-        ...boards.flatMap((board) => [
-          compared.value(board),
-          ...compared.efforts.map(({ signal }) => board.prefix + signal),
-        ]),
-      ],
+      signals: [compared.ideal, ...boards.flatMap((board) => valuesOf(board, compared))],
       window_ms: ticks * dtMs,
       width: ticks,
     }),
@@ -46,12 +40,8 @@ export function TwinFigures({ boards, compared }: { boards: Board[]; compared: C
       setFigures(
         boards.map((_, i) => {
           const at = 1 + each * i;
-          return trackingFigures(
-            frame,
-            at,
-            0,
-            compared.efforts.map((_, j) => at + 1 + j),
-          );
+          const efforts = compared.efforts.map((_, j) => at + 1 + j);
+          return trackingFigures(frame, at, 0, efforts);
         }),
       );
     },
@@ -88,6 +78,11 @@ export function TwinFigures({ boards, compared }: { boards: Board[]; compared: C
     </div>
   );
 }
+
+const valuesOf = (board: Board, { value, efforts }: Compared): string[] => [
+  value(board),
+  ...efforts.map(({ signal }) => board.prefix + signal),
+];
 
 const show = (value: number | undefined, unit: string) =>
   value === undefined ? "–" : Number.isFinite(value) ? formatSi(value, unit, 3) : "at rest";

@@ -1,15 +1,13 @@
-import { Button, NativeSelect } from "@mantine/core";
+import { Button, Group, NativeSelect } from "@mantine/core";
 import { IconPlus, IconX } from "@tabler/icons-react";
 import { useState } from "react";
 import { useShallow } from "zustand/react/shallow";
 import { controllersOf } from "../../api/fits";
 import { useCatalog } from "../../api/use-catalog";
-import { openVariant } from "../../bench/open-bench";
-import { useBusy } from "../../bench/use-busy";
 import { useBench } from "../../stream/bench-store";
 import { slotTitle } from "../controllers/slots";
+import { RestartButton } from "../restart/restart-button";
 import { twinsOf } from "./boards";
-import styles from "./twins.module.css";
 
 const MOST = 3;
 const WORTH_SEEING = [
@@ -17,7 +15,7 @@ const WORTH_SEEING = [
   ...["force_to_rebalance", "open_loop_rate", "drive_tracking"],
 ];
 
-/** Choose what else should meet the same reference, noise and faults. */
+/** Choose the controllers of the twins, which meet the same reference, noise and faults. */
 export function TwinsForm({ chosen }: { chosen: string[] }) {
   const controllers = useBench((s) => s.bench?.controllers) ?? [];
   const slots = useBench(useShallow((s) => s.bench?.slots)) ?? {};
@@ -28,25 +26,16 @@ export function TwinsForm({ chosen }: { chosen: string[] }) {
   const [kinds, setKinds] = useState(
     chosen.length ? chosen : WORTH_SEEING.filter((name) => controllers.includes(name) && !drives(name)).slice(0, 2),
   );
-  const [busy, during] = useBusy();
-  const begin = (twins: string[]) => {
-    void during(() =>
-      openVariant(
-        { twins: twinsOf(twins, (name) => (slotOf(name) === last ? undefined : slotOf(name))) },
-        twins.length ? "The bench restarts with its twins." : "The twins were removed.",
-      ),
-    );
-  };
   const itemsOf = (slot: string) =>
     controllersOf(slot, controllers, blocks).map(({ name, title }) => ({ value: name, label: title }));
   const names = Object.keys(slots);
   const options =
     names.length > 1 ? names.map((slot) => ({ group: slotTitle(slot), items: itemsOf(slot) })) : names.flatMap(itemsOf);
   return (
-    <div className={`row ${styles.form}`}>
+    <Group gap="4px 8px" flex={chosen.length ? 1 : undefined} justify={chosen.length ? undefined : "center"}>
       {kinds.map((kind, i) => (
         // biome-ignore lint/suspicious/noArrayIndexKey: a twin is known by its place until it has its name
-        <span key={i} className={styles.choice}>
+        <Group key={i} gap={0} wrap="nowrap">
           <NativeSelect
             aria-label={`Controller of twin ${i + 1}`}
             value={kind}
@@ -63,7 +52,7 @@ export function TwinsForm({ chosen }: { chosen: string[] }) {
           >
             <IconX size={14} />
           </Button>
-        </span>
+        </Group>
       ))}
       {kinds.length < MOST && (
         <Button
@@ -77,14 +66,14 @@ export function TwinsForm({ chosen }: { chosen: string[] }) {
           Twin
         </Button>
       )}
-      <Button
+      <RestartButton
         variant="filled"
-        loading={busy}
         disabled={kinds.length === 0 && chosen.length === 0}
-        onClick={() => begin(kinds)}
+        set={{ twins: twinsOf(kinds, (name) => (slotOf(name) === last ? undefined : slotOf(name))) }}
+        said={kinds.length ? "The bench restarts with its twins." : "The twins were removed."}
       >
         {kinds.length === 0 ? "Restart without twins" : "Restart with these"}
-      </Button>
-    </div>
+      </RestartButton>
+    </Group>
   );
 }

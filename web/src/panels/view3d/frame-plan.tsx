@@ -1,5 +1,4 @@
 import { type Ref, useImperativeHandle, useRef } from "react";
-import styles from "./view3d.module.css";
 
 const PLATE = 44;
 const NEAR = 62;
@@ -30,8 +29,7 @@ export function FramePlan({ faulted, moving }: FramePlanProps) {
       <path ref={sense} fill="#009e73" d={SENSE} />
       <rect
         ref={plate}
-        className={styles.plate}
-        data-fault={faulted || undefined}
+        fill={faulted ? "var(--alarm)" : "#56b4e9"}
         x={-PLATE}
         y={-PLATE}
         width={2 * PLATE}

@@ -1,3 +1,4 @@
+import { Box } from "@mantine/core";
 import { useMemo, useRef } from "react";
 import { api } from "../../api/api";
 import { hasAxes } from "../../api/fits";
@@ -11,10 +12,9 @@ import { formatNumber } from "../../ui/format";
 import { useActingFaults } from "../schematic/use-live-values";
 import { FRAME_BOX, FramePlan } from "./frame-plan";
 import { Magnifier } from "./magnifier";
-import styles from "./view3d.module.css";
 
 const MARGIN = 14;
-/** Its drawing stands for a device that has none. */
+/** Shown in place of a device without a drawing. */
 const STAND_IN = "lcr-350";
 const FLAT = ["plant.displacement"];
 const AXES = ["plant.x", "plant.y"];
@@ -42,32 +42,42 @@ export function PlanView({ because }: { because: string }) {
     moving.current?.move(factor * x);
     frames.current?.move(factor * x, -factor * y);
   });
-  const box = drawing
-    ? [
-        -drawing.width / 2 - MARGIN,
-        -drawing.height / 2 - MARGIN,
-        drawing.width + 2 * MARGIN,
-        drawing.height + 2 * MARGIN,
-      ]
-    : FRAME_BOX;
+  const box = drawing ? boxAround(drawing) : FRAME_BOX;
   const said = acting.map(({ title }) => title).join(", ");
   return (
-    <figure className={`view ${styles.plan}`}>
-      <svg viewBox={box.join(" ")} role="img" aria-label={`The device from above${said && `, with ${said}`}`}>
+    <figure className="view">
+      <svg
+        viewBox={box.join(" ")}
+        style={{ flex: 1, width: "100%", minHeight: 0 }}
+        role="img"
+        aria-label={`The device from above${said && `, with ${said}`}`}
+      >
         {isFlat ? (
           drawing && <DevicePlan drawing={drawing} faulted={faulted} moving={moving} />
         ) : (
           <FramePlan faulted={acting.length > 0} moving={frames} />
         )}
       </svg>
-      <figcaption>
-        {said && <b>{said}. </b>}
+      <Box component="figcaption" className="note" p="4px 10px 8px">
+        {said && (
+          <Box component="b" c="var(--alarm)">
+            {said}.{" "}
+          </Box>
+        )}
         {because}
-        <span ref={times} />.{isStandIn && " This device has no drawing; LCR-350 is shown."}
-      </figcaption>
+        <span ref={times} style={{ whiteSpace: "nowrap" }} />.
+        {isStandIn && " This device has no drawing; LCR-350 is shown."}
+      </Box>
     </figure>
   );
 }
+
+const boxAround = ({ width, height }: { width: number; height: number }) => [
+  -width / 2 - MARGIN,
+  -height / 2 - MARGIN,
+  width + 2 * MARGIN,
+  height + 2 * MARGIN,
+];
 
 /** The drawing of the device of the bench; another one where it has none. */
 function useGeometry(wanted: boolean, device: Design["device"], environment: Design["environment"]) {

@@ -14,10 +14,10 @@ const POLL_MS = 1000;
 const HEAD_START_MS = 1200;
 /** Between two moments that the device is shown at under a moving pointer. */
 const HOVER_MS = 50;
-/** Out of sight for so long, it lets go of its scene, which costs the server; the camera is kept. */
+/** Out of sight for this long, it drops its scene, which costs the server; the camera is kept. */
 const IDLE_MS = 120_000;
 
-/** Where somebody has put the camera. */
+/** A camera that a user has moved. */
 interface Look {
   position: number[];
   target: number[];
@@ -26,9 +26,9 @@ interface Look {
 /**
  * The server's 3D page in a frame, loaded when it is first seen; out of sight it draws nothing.
  *
- * When its connection closes, the frame waits for the server and is loaded afresh, unless the bench is gone. Scheme,
- * letters and camera are told to it, so that none of them loads it again, and it says where the camera is put, so that loading does not
- * lose it.
+ * When its connection closes, the frame waits for the server and is loaded afresh, unless the bench is gone. It receives
+ * scheme, letters and camera as messages, so that none of them loads it again, and it reports a moved camera, so that loading
+ * does not lose it.
  */
 export function View3dFrame({ path, visible: inSight }: { path: string; visible: boolean }) {
   const stale = useStaleSince();
@@ -53,7 +53,7 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
 
   useEffect(() => {
     if (visible) return setIdle(false);
-    // one that has not got its scene yet has nothing to keep
+    // a frame without a scene has nothing to keep
     const timer = setTimeout(() => setIdle(true), connected === 0 ? 0 : IDLE_MS);
     return () => clearTimeout(timer);
   }, [visible, connected]);
@@ -89,7 +89,7 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
     frame.current?.contentWindow?.postMessage(message, window.location.origin);
   useHovered(connected > 0 && visible, (tick) => tell({ tick }));
 
-  // biome-ignore lint/correctness/useExhaustiveDependencies: a page that has just connected has to be told
+  // biome-ignore lint/correctness/useExhaustiveDependencies: a page needs them when it connects
   useEffect(() => tell({ scheme, fontPx }), [scheme, fontPx, connected]);
   // biome-ignore lint/correctness/useExhaustiveDependencies: the same
   useEffect(() => tell(look.current ? { look: look.current } : { camera }), [connected]);
@@ -134,7 +134,7 @@ export function View3dFrame({ path, visible: inSight }: { path: string; visible:
   );
 }
 
-/** Tell the tick under the pointer, at most so often, and null at once when there is none any more. */
+/** Tell the tick under the pointer, at most every HOVER_MS, and null at once when the pointer leaves. */
 function useHovered(wanted: boolean, tell: (tick: number | null) => void): void {
   const say = useRef(tell);
   say.current = tell;
@@ -166,7 +166,7 @@ function useHovered(wanted: boolean, tell: (tick: number | null) => void): void 
 function useAddress(path: string, scheme: string, shown: boolean, loads: number): string | undefined {
   const [plain] = useState(() => `${path}?${query(scheme)}`);
   const [withTickets, setWithTickets] = useState<string | undefined>(undefined);
-  // biome-ignore lint/correctness/useExhaustiveDependencies: one that is loaded again needs new tickets
+  // biome-ignore lint/correctness/useExhaustiveDependencies: a frame needs new tickets at each load
   useEffect(() => {
     if (!isInFrame()) return;
     setWithTickets(undefined);
@@ -191,7 +191,7 @@ function query(scheme: string): URLSearchParams {
 }
 
 /** Where to look at the device from; the 3D page knows each by its name. */
-export const CAMERAS = [
+const CAMERAS = [
   { name: "whole", label: "Whole", title: "The whole device" },
   { name: "top", label: "Top", title: "From above, as drawn" },
   { name: "side", label: "Side", title: "Along the wafer" },

@@ -31,7 +31,7 @@ export function View3dHost() {
       setVisible(rect !== undefined);
       if (!rect || !host.current) return;
       const wanted = `${rect.left}px ${rect.top}px ${rect.width}px ${rect.height}px`;
-      if (laid === host.current && place === wanted) return; // one that comes with another bench has no place yet
+      if (laid === host.current && place === wanted) return; // the host of another bench has no place yet
       laid = host.current;
       place = wanted;
       const [left, top, width, height] = wanted.split(" ");
@@ -51,7 +51,7 @@ export function View3dHost() {
 }
 
 interface Places {
-  /** Whether the page keeps the 3D view itself and lays it over a panel; a phone draws it where it stands. */
+  /** Whether the page keeps the 3D view itself and lays it over a panel; a phone draws it in the panel. */
   hosted: boolean;
   /** Panels that offer their place, the latest last. */
   places: HTMLElement[];
@@ -62,7 +62,7 @@ interface Places {
 /** Where the 3D view may be shown. */
 export const usePlaces = create<Places>(() => ({ hosted: false, places: [], shown: undefined }));
 
-/** Offer the place of a panel; returns what takes the offer back. */
+/** Offer the place of a panel; the returned function withdraws it. */
 export function offerPlace(place: HTMLElement): () => void {
   usePlaces.setState(({ places }) => ({ places: [...places, place] }));
   return () => usePlaces.setState(({ places }) => ({ places: places.filter((other) => other !== place) }));

@@ -9,18 +9,15 @@ import { View3dFrame } from "./view3d-frame";
 import { offerPlace, usePlaces } from "./view3d-host";
 import { useWebgl } from "./webgl";
 
-/** The shuttle in 3D, if this server draws it: the page's own view in this place, or one that stands here. */
+/** The device in 3D, if this server draws it: the view of the page in this place, or a view of its own. */
 export function View3dPanel() {
   const path = useBench((s) => s.bench?.view3d);
-  const blind = useBench((s) => s.blind);
   const drawn = useWebgl();
   const hosted = usePlaces((s) => s.hosted);
   if (path === undefined) return <EmptyState title="No bench yet">The device appears here in 3D.</EmptyState>;
-  if (blind)
-    return <EmptyState title="Not shown while a fault is hidden">The picture would give the answer away.</EmptyState>;
   if (path === null) return <PlanView because="This server draws no 3D, so the device is drawn from above" />;
   if (!drawn) return <PlanView because="This browser has no WebGL, so the device is drawn from above" />;
-  return hosted ? <Place /> : <Standing key={path} path={`.${path}`} />;
+  return hosted ? <Place /> : <OwnView key={path} path={`.${path}`} />;
 }
 
 /** Room for the view the page keeps; there is one, and the latest panel has it. */
@@ -39,7 +36,7 @@ function Place() {
   );
 }
 
-function Standing({ path }: { path: string }) {
+function OwnView({ path }: { path: string }) {
   const place = useRef<HTMLDivElement>(null);
   const onScreen = useOnScreen(place);
   const visible = usePanelVisible() && onScreen;

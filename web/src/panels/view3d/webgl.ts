@@ -15,7 +15,7 @@ const webgl = () => {
   return known;
 };
 
-/** Whether WebGL is drawn by the processor here, which makes every pixel dear. */
+/** Whether the processor draws WebGL here, so that every pixel costs time. */
 export const softwareGl = (): boolean => webgl().isSoftware;
 
 /** Whether the 3D page has failed to get a context, although the browser gave one before. */

@@ -71,7 +71,7 @@ it("tells nothing of the answers of a class before it reveals, and closes the vo
 it("shows what was said, which is right, and asks another question", async () => {
   server.on("GET", "/votes", { votes: [revealed] });
   const { user } = mount(<VotePanel />);
-  const list = within(await screen.findByRole("list", { name: "What was said" }));
+  const list = within(await screen.findByRole("list", { name: "Results" }));
   expect(list.getAllByRole("listitem").map((row) => row.textContent?.replace(/\s/g, " "))).toEqual([
     "heavier right3 votes, 75 %",
     "stiffer1 vote, 25 %",

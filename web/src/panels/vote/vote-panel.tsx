@@ -1,4 +1,4 @@
-import { Button, NativeSelect, NumberInput, Textarea, TextInput } from "@mantine/core";
+import { Box, Button, Group, NativeSelect, NumberInput, Textarea, TextInput } from "@mantine/core";
 import { type ReactNode, useEffect, useState } from "react";
 import { classes } from "../../api/classes";
 import { useMay } from "../../api/me";
@@ -17,7 +17,7 @@ import styles from "./vote.module.css";
 const EVERY_MS = 2000;
 const ROOM = "";
 
-/** Ask the class before it is shown: the question, how many have voted, then what was said. */
+/** Ask the class before the event: the question, the number of votes, then the results. */
 export function VotePanel() {
   const teaches = useMay("teach");
   return teaches ? <Teachers /> : <EmptyState title="Votes">The teacher asks; the question appears here.</EmptyState>;
@@ -57,7 +57,7 @@ function Teachers() {
   );
 }
 
-/** A question to ask: that of the cue of a lecture, or one's own. */
+/** A question to ask: from the cue of a lecture, or a new one. */
 function Ask({ group, who, run }: { group: string; who: ReactNode; run(what: Promise<unknown>): void }) {
   const cue = useLecture(({ lecture, at }) => lecture?.script[at]?.vote ?? undefined);
   const diagnosers = useBench((s) => s.bench?.diagnosers) ?? {};
@@ -146,13 +146,15 @@ function Running({ vote, students, run }: RunningProps) {
   };
   return (
     <>
-      <h3 className={styles.question}>{question.text}</h3>
-      <p className={styles.voted} role="status">
+      <Box component="h3" fz="lg" lh={1.3}>
+        {question.text}
+      </Box>
+      <Box component="p" fz="xl" role="status">
         {vote.class_id === null
           ? `${formatCount(voted, "hand")} counted`
           : `${voted} of ${students ?? "?"} have voted${state === "open" ? "" : "; closed"}`}
-      </p>
-      <div className={styles.actions}>
+      </Box>
+      <Group gap={6}>
         {!results && (
           <Button variant="filled" size="sm" onClick={() => run(votes.reveal(id))}>
             Reveal
@@ -166,10 +168,10 @@ function Running({ vote, students, run }: RunningProps) {
         <Button size="sm" variant="subtle" onClick={() => run(votes.remove(id))}>
           {results ? "Another question" : "Take it back"}
         </Button>
-      </div>
-      <ul className={styles.answers} aria-label={results ? "What was said" : "Answers"}>
+      </Group>
+      <ul className={styles.answers} aria-label={results ? "Results" : "Answers"}>
         {names.map((name, i) => (
-          <li key={name} data-right={results !== null && right === question.answers[i]}>
+          <Box component="li" key={name} fw={results !== null && right === question.answers[i] ? 650 : undefined}>
             {inRoom ? (
               <NumberInput
                 label={name}
@@ -187,16 +189,16 @@ function Running({ vote, students, run }: RunningProps) {
             {results && (
               <>
                 <meter min={0} max={Math.max(1, voted)} value={results[i].count} aria-label={`Votes for ${name}`} />
-                <span className={styles.count}>
+                <span>
                   {formatCount(results[i].count, "vote")}, {formatPercent(results[i].count / Math.max(1, voted), 0)}
                 </span>
               </>
             )}
-          </li>
+          </Box>
         ))}
       </ul>
       {results && question.diagnoser && (
-        <p className="note">The bars lie over the lanes, with a mark at each moment that was guessed.</p>
+        <p className="note">The bars are drawn over the lanes, with a mark at each guessed moment.</p>
       )}
     </>
   );

@@ -1,3 +1,4 @@
+import { Box, ColorSwatch } from "@mantine/core";
 import type { Account } from "../../api/types";
 import { formatNumber, formatPercent, formatSi } from "../../ui/format";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
@@ -19,7 +20,7 @@ export function ModelTable({ account, chosen, onChoose }: ModelTableProps) {
     account.residuals.length > 1 &&
     ` along ${account.residuals.map((name) => name.replace("residual_", "")).join(", ")}`;
   return (
-    <div className={styles.scroll}>
+    <div style={{ overflowX: "auto" }}>
       <table className={styles.table}>
         <thead>
           <tr>
@@ -43,14 +44,19 @@ export function ModelTable({ account, chosen, onChoose }: ModelTableProps) {
         </thead>
         <tbody>
           {account.models.map((model, i) => (
-            <tr key={model.name} data-chosen={i === chosen} data-best={i === best}>
+            <tr key={model.name} data-chosen={i === chosen}>
               <th scope="row">
                 <button type="button" aria-pressed={i === chosen} onClick={() => onChoose(i)}>
-                  <i style={{ background: traceColour(hypothesisStyle(i), scheme) }} />
+                  <ColorSwatch
+                    size={10}
+                    radius={2}
+                    withShadow={false}
+                    color={traceColour(hypothesisStyle(i), scheme)}
+                  />
                   {model.name}
                 </button>
               </th>
-              <td>
+              <Box component="td" fw={i === best ? 700 : undefined}>
                 <span
                   className={styles.share}
                   style={
@@ -62,7 +68,7 @@ export function ModelTable({ account, chosen, onChoose }: ModelTableProps) {
                 >
                   {formatPercent(model.posterior, 2)}
                 </span>
-              </td>
+              </Box>
               <td>{formatNumber(model.missed_sigma, 1)} σ</td>
               {filtered && <td data-detail>{lines(gains(account, i))}</td>}
               <td>{lines(model.residual_um.map((value) => formatSi(value, "um", 3)))}</td>
@@ -86,7 +92,7 @@ const lines = (values: string[]) =>
   // biome-ignore lint/suspicious/noArrayIndexKey: a value is known by its displacement, which is its place
   values.map((value, i) => <div key={i}>{value}</div>);
 
-/** The gain of a model: all of it for one displacement; of several, what each residual moves the displacement by. */
+/** The gain of a model: all of it for one displacement; for several, the gain of each residual for its displacement. */
 const gains = ({ models, residuals, gain_units }: Account, index: number): string[] => {
   const { gain } = models[index];
   return residuals.length === 1

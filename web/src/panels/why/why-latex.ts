@@ -34,7 +34,7 @@ function jointLatex(residuals: number[], covariance: number[][], log: number): s
   );
 }
 
-/** What the Kalman gain makes of the residuals, with the numbers put in; nothing without a filter. */
+/** The correction by the Kalman gain, with its numbers; undefined without a filter. */
 export function correctionLatex({ gain, residual_um: residuals }: ModelAccount): string | undefined {
   if (gain.length === 0) return undefined;
   const moved = gain.map((row) => [row.reduce((sum, k, j) => sum + k * residuals[j], 0)]);
@@ -47,7 +47,7 @@ const matrixLatex = (rows: number[][]) =>
 /**
  * Bayes' rule for one model with its numbers put in.
  *
- * Densities are divided by that of the likeliest model, which changes no probability and keeps the numbers readable.
+ * Densities are divided by the density of the likeliest model, which changes no probability and keeps the numbers readable.
  */
 export function posteriorLatex(account: Account, index: number): string | undefined {
   const logs = account.models.map((m) => m.log_likelihood);
@@ -63,7 +63,7 @@ export function posteriorLatex(account: Account, index: number): string | undefi
   );
 }
 
-/** What the floor makes of it, if it changes anything that can be seen. */
+/** The effect of the floor, if there is a floor. */
 export function floorLatex(account: Account, index: number): string | undefined {
   const { floor, models } = account;
   if (floor === 0) return undefined;

@@ -110,14 +110,13 @@ it("follows a pointer that rests, and goes back to the sample that was chosen", 
   vi.useFakeTimers();
   mountWhy();
   await row("m+5");
-  const source = {};
-  act(() => hover.set(500.7, source));
-  act(() => hover.set(640.2, source));
+  act(() => hover.set(500.7));
+  act(() => hover.set(640.2));
   expect(sample()).toHaveValue("1999");
   await act(() => vi.advanceTimersByTimeAsync(150));
   expect(sample()).toHaveValue("640");
   expect(asked()).toEqual(["1999", "640"]);
-  act(() => hover.set(undefined, source));
+  act(() => hover.set(undefined));
   expect(sample()).toHaveValue("1999");
 });
 

@@ -8,20 +8,20 @@ import type { Account, ApiErrorBody } from "../../api/types";
 import { useView } from "../../bench/view-store";
 import { askLatest, pickSample } from "../../bench/why";
 import { useBench } from "../../stream/bench-store";
+import { sentence } from "../../ui/capital";
 import { EmptyState } from "../../ui/empty-state";
 import { formatClock } from "../../ui/format";
 import { Formula } from "../../ui/formula";
 import { useRestingTick } from "../../ui/hover";
 import { NumberField } from "../../ui/number-field";
 import { ModelTable } from "./model-table";
-import styles from "./why.module.css";
 import { correctionLatex, densityLatex, floorLatex, posteriorLatex } from "./why-latex";
 import { likeliest } from "./why-sentence";
 import { WhyVerdict } from "./why-verdict";
 
 const LAST_TICK = 2 ** 53;
 
-/** Why a diagnoser believed what it did at one sample: residual, density, prior and posterior of every hypothesis. */
+/** The reasons of a verdict at one sample: residual, density, prior and posterior of every hypothesis. */
 export function WhyPanel() {
   const bench = useBench((s) => s.bench?.id);
   const diagnosers = useBench((s) => s.bench?.diagnosers);
@@ -93,7 +93,11 @@ export function WhyPanel() {
             <IconChevronRight size={16} />
           </ActionIcon>
         </Box>
-        {account && !refusal && <span className={styles.time}>{formatClock(account.time_ms)} s</span>}
+        {account && !refusal && (
+          <Box component="span" flex={1} c="dimmed" style={{ whiteSpace: "nowrap" }}>
+            {formatClock(account.time_ms)} s
+          </Box>
+        )}
         <Button onClick={askLatest}>Latest</Button>
       </Box>
       {refusal && (
@@ -106,10 +110,10 @@ export function WhyPanel() {
   );
 }
 
-/** A refusal as a sentence: what is said of the tick is said of this sample. */
+/** A refusal as a sentence about this sample. */
 function inWords({ field, message }: ApiErrorBody, tick: number): string {
   const said = message.replace(`${field}: `, "");
-  return field === "tick" ? `Sample ${tick} ${said}.` : `${said.charAt(0).toUpperCase()}${said.slice(1)}.`;
+  return field === "tick" ? `Sample ${tick} ${said}.` : sentence(said);
 }
 
 function Explained({ account, waiting }: { account: Account; waiting: boolean }) {
@@ -122,32 +126,18 @@ function Explained({ account, waiting }: { account: Account; waiting: boolean })
   const floor = floorLatex(account, chosen);
   const correction = correctionLatex(model);
   return (
-    <div className={styles.explained} data-waiting={waiting}>
+    <Box opacity={waiting ? 0.6 : undefined}>
       <ModelTable account={account} chosen={chosen} onChoose={(i) => setName(account.models[i].name)} />
       <Box component="h2" m="12px 0 4px">
         {model.name} at this sample, in µm and ms{account.gain_units.length > 2 && ", the rate in deg/s"}
       </Box>
       {density && posterior ? (
-        <ol className={styles.steps}>
-          <li>
-            <span>How well it predicted the measurement</span>
-            <Formula latex={density} />
-          </li>
-          <li>
-            <span>Weighed by {account.weighed}</span>
-            <Formula latex={posterior} />
-          </li>
-          {floor && (
-            <li>
-              <span>The bank never drops a hypothesis</span>
-              <Formula latex={floor} />
-            </li>
-          )}
+        <ol>
+          <Step title="How well it predicted the measurement" latex={density} />
+          <Step title={`Weighed by ${account.weighed}`} latex={posterior} />
+          {floor && <Step title="The bank never drops a hypothesis" latex={floor} />}
           {correction && (
-            <li>
-              <span>How far its Kalman gain moves its state after the measurement</span>
-              <Formula latex={correction} />
-            </li>
+            <Step title="How far its Kalman gain moves its state after the measurement" latex={correction} />
           )}
         </ol>
       ) : (
@@ -156,6 +146,17 @@ function Explained({ account, waiting }: { account: Account; waiting: boolean })
           covariance.
         </Box>
       )}
-    </div>
+    </Box>
+  );
+}
+
+function Step({ title, latex }: { title: string; latex: string }) {
+  return (
+    <li>
+      <Box component="span" className="remark" display="block" mt={4}>
+        {title}
+      </Box>
+      <Formula latex={latex} />
+    </li>
   );
 }

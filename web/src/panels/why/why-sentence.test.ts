@@ -67,7 +67,7 @@ describe("the verdict in one sentence", () => {
     expect(whySentence(account([], [], { models: untold }), undefined, 120)).toBe(
       "healthy stays ahead: this sample tells nothing.",
     );
-    expect(sentence([1 / 3, 1 / 3, 1 / 3], [0, 0, 0])).toBe("No hypothesis is ahead: they are all alike so far.");
+    expect(sentence([1 / 3, 1 / 3, 1 / 3], [0, 0, 0])).toBe("The hypotheses are all alike so far.");
   });
 });
 

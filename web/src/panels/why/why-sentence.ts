@@ -1,17 +1,18 @@
 import type { Account, ModelAccount, Turn } from "../../api/types";
 import { hypothesisWords } from "../../bench/hypothesis-words";
+import { capital } from "../../ui/capital";
 import { formatNumber } from "../../ui/format";
 
-/** Recorded and worked out, they part by more than rounding: the bank did not take the sample for evidence. */
+/** More than rounding between the recorded and the computed value: the bank did not take the sample for evidence. */
 const PARTED = 0.01;
 
-/** The verdict at a sample in one sentence, from what the bank itself computed there. */
+/** The verdict at a sample in one sentence, from the numbers of the bank. */
 export function whySentence({ models, evidence, residuals }: Account, turn: Turn | undefined, tick: number): string {
   const winner = likeliest(models);
   const first = atStart(winner.name);
   if (models.some((m) => Math.abs(m.recorded - m.posterior) > PARTED))
     return `${first} stays ahead: this sample did not count, because the drive was too small or nothing was measured.`;
-  if (models.every((m) => m.recorded === winner.recorded)) return "No hypothesis is ahead: they are all alike so far.";
+  if (models.every((m) => m.recorded === winner.recorded)) return "The hypotheses are all alike so far.";
   if (models.some((m) => m.log_likelihood === null)) return `${first} stays ahead: this sample tells nothing.`;
   const others = models.filter((m) => m !== winner);
   const beaten = turn?.tick === tick ? others.find((m) => m.name === turn.before) : undefined;
@@ -28,7 +29,7 @@ export function whySentence({ models, evidence, residuals }: Account, turn: Turn
 /** A hypothesis at the beginning of a sentence: its words with a capital, a mere name as it is. */
 function atStart(name: string): string {
   const words = hypothesisWords(name);
-  return words === name ? name : words.charAt(0).toUpperCase() + words.slice(1);
+  return words === name ? name : capital(words);
 }
 
 const sigmas = ({ missed_sigma }: ModelAccount) => `${formatNumber(missed_sigma, 1)} σ`;

@@ -1,8 +1,7 @@
-import { Box, Button } from "@mantine/core";
+import { Box, Button, Text } from "@mantine/core";
 import type { Account, Turn } from "../../api/types";
 import { pickSample } from "../../bench/why";
 import { jump } from "../../ui/hover";
-import styles from "./why.module.css";
 import { turnWords, whySentence } from "./why-sentence";
 
 interface WhyVerdictProps {
@@ -11,7 +10,7 @@ interface WhyVerdictProps {
   turn: Turn | undefined;
 }
 
-/** What the bank says in one sentence, since when, and the way to where it turned, which the lanes show too. */
+/** The verdict of the bank in one sentence, the sample of its last turn, and the way there. */
 export function WhyVerdict({ diagnoser, account, turn }: WhyVerdictProps) {
   const at = turn?.tick ?? null;
   const goThere = (tick: number) => {
@@ -20,11 +19,15 @@ export function WhyVerdict({ diagnoser, account, turn }: WhyVerdictProps) {
   };
   return (
     <>
-      <p className={styles.sentence}>{whySentence(account, turn, account.tick)}</p>
+      <Text inherit fz="md" fw={600} lh={1.35} textWrap="pretty">
+        {whySentence(account, turn, account.tick)}
+      </Text>
       <Box component="p" className="row" m="4px 0 8px" c="dimmed">
         <span>σ is the miss that its own filter expects. {turn && turnWords(turn, account.tick)}</span>
         <Button
-          className={styles.wrapping}
+          h="auto"
+          mih={26}
+          styles={{ label: { whiteSpace: "normal" } }}
           variant="light"
           disabled={at === null || at === account.tick}
           onClick={() => at !== null && goThere(at)}
