@@ -4,7 +4,6 @@ import { classes } from "../api/classes";
 import { useAnswer } from "../api/queries";
 import { EmptyState } from "../ui/empty-state";
 import { Stale } from "../ui/stale";
-import styles from "./class.module.css";
 import { ClassView } from "./class-view";
 import { OpenClass } from "./open-class";
 
@@ -22,7 +21,7 @@ export function ClassPage() {
     again();
   };
   return (
-    <main className={`column ${styles.page}`}>
+    <main className="paper">
       <Stale error={error} since={since} onRetry={again} />
       {!all ? (
         !error && <EmptyState title="Asking the server">A class and its students appear here.</EmptyState>

@@ -3,7 +3,7 @@ import { useState } from "react";
 import { useAnswer } from "../api/queries";
 import { sheets } from "../api/sheets";
 import type { Outcomes } from "../api/types";
-import styles from "./class.module.css";
+import { CHOICE, GroupForAll } from "./group-for-all";
 
 interface SheetForAllProps {
   group: string;
@@ -29,10 +29,9 @@ export function SheetForAll({ group, count, chosen, busy, onBegin }: SheetForAll
     onBegin(card.title, () => sheets.forAll(group, card.id, chosen.length > 0 ? [...chosen] : null));
   };
   return (
-    <fieldset className={`row ${styles.group}`} aria-label="A lab sheet for all">
-      <span className={styles.what}>Lab sheet</span>
+    <GroupForAll name="Lab sheet" label="A lab sheet for all">
       <NativeSelect
-        className={styles.choice}
+        {...CHOICE}
         aria-label="Lab sheet"
         value={card.id}
         data={cards.map(({ id, title }) => ({ value: id, label: title }))}
@@ -47,6 +46,6 @@ export function SheetForAll({ group, count, chosen, busy, onBegin }: SheetForAll
       <Button component="a" size="xs" variant="subtle" href={sheets.grades(group, "json")} download="points.json">
         JSON
       </Button>
-    </fieldset>
+    </GroupForAll>
   );
 }

@@ -1,16 +1,5 @@
 import type { GalleryCard } from "../api/types";
 
-/** Verdicts from best to worst, and the word for what the dissertation does not claim. */
-export const VERDICTS = [
-  "reproduced",
-  "reproduced by tuning",
-  "reproduced, by a PID too",
-  "reproduced by tuning, by a PID too",
-  "partly",
-  "not reproduced",
-  "ours",
-] as const;
-
 export interface GalleryFilter {
   /** A chapter, an appendix, or "all". */
   chapter: string;

@@ -1,7 +1,9 @@
+import { Box } from "@mantine/core";
 import { useState } from "react";
 import type { GalleryCard } from "../api/types";
 import { formatShort } from "../ui/format";
 import { metricScale } from "../ui/metric-name";
+import { TableHead } from "../ui/table-head";
 import { Verdict } from "../ui/verdict";
 import styles from "./gallery.module.css";
 
@@ -41,30 +43,27 @@ const numberIn = (text: string) => Number(text.replace("−", "-"));
 /** Figure by figure what is expected, what was measured, and what the open loop gives; the first few until all are asked for. */
 export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
   const [all, setAll] = useState(false);
-  if (entries.length === 0) return <p className={styles.nothing}>This experiment makes no claim.</p>;
+  if (entries.length === 0)
+    return (
+      <Box component="p" className="note" flex={1}>
+        This experiment makes no claim.
+      </Box>
+    );
   const rows = all ? entries : entries.slice(0, SHOWN);
   const hasOpenLoop = entries.some((entry) => typeof entry.open_loop === "number");
   const hasPid = entries.some((entry) => typeof entry.pid === "number");
   return (
     <div className={styles.figures}>
       <table>
-        <thead>
-          <tr>
-            <th scope="col">figure</th>
-            <th scope="col">expected</th>
-            <th scope="col">measured</th>
-            {hasOpenLoop && (
-              <th scope="col" title="The same scenario with the open loop in place of its controller">
-                open loop
-              </th>
-            )}
-            {hasPid && (
-              <th scope="col" title="The same scenario with a tuned PID in place of its controller">
-                PID
-              </th>
-            )}
-          </tr>
-        </thead>
+        <TableHead
+          names={[
+            "figure",
+            "expected",
+            "measured",
+            hasOpenLoop && ["open loop", "The same scenario with the open loop in place of its controller"],
+            hasPid && ["PID", "The same scenario with a tuned PID in place of its controller"],
+          ]}
+        />
         <tbody>
           {rows.map((entry) => {
             const { name, say } = metricScale(entry.metric, []);
@@ -73,11 +72,9 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
               <tr key={entry.metric} title={[entry.metric, ...remarks(entry)].join(": ")}>
                 <th scope="row">
                   {name}
-                  {entry.published && (
-                    <small className={styles.published}>published: {entry.published.replaceAll(" %", "\u00a0%")}</small>
-                  )}
+                  {entry.published && <small>published: {entry.published.replaceAll(" %", "\u00a0%")}</small>}
                   {entry.comparator && (
-                    <small className={styles.published}>
+                    <small>
                       {entry.comparator}
                       {entry.pid_too && ", meets the claim too"}
                     </small>

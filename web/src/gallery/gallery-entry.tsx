@@ -1,4 +1,4 @@
-import { Button, Progress } from "@mantine/core";
+import { Box, Button, Group, Progress } from "@mantine/core";
 import { IconFileText, IconPlayerPlay, IconPlayerTrackNext } from "@tabler/icons-react";
 import { useEffect, useRef } from "react";
 import { api } from "../api/api";
@@ -46,7 +46,7 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
   const headless = () => api.startRun({ scenario: card.id }).then(onChanged, showError);
 
   return (
-    <li ref={element} className={`column ${styles.card}`}>
+    <li ref={element} className={`column card ${styles.entry}`}>
       <div className={styles.thumbnail}>
         {card.figure ? (
           <img src={`./api/v1/gallery/${card.id}/figure?v=${card.figure}`} alt={`Figure of ${title}`} loading="lazy" />
@@ -82,16 +82,16 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
         <p>{card.claim || card.summary}</p>
       </div>
       <ExpectationTable entries={card.expectations} verdict={card.verdict} />
-      <footer>
+      <Group component="footer" gap="4px 10px">
         <Verdict verdict={card.verdict} borneOut={card.ok === true} />
-        <span className={styles.ok} data-ok={card.ok}>
+        <Box component="span" fz="xs" c={card.ok === false ? "var(--alarm)" : "dimmed"}>
           {card.ok === null || card.expectations.length === 0
             ? ""
             : card.ok
               ? "measured as expected"
               : "other than expected"}
-        </span>
-        <div className={styles.buttons}>
+        </Box>
+        <Group gap={6} ml="auto" wrap="nowrap">
           {teaches && card.state === "done" && card.run && (
             <Button
               component="a"
@@ -127,8 +127,8 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
               Live
             </Button>
           )}
-        </div>
-      </footer>
+        </Group>
+      </Group>
     </li>
   );
 }

@@ -1,4 +1,4 @@
-import { Button, Progress } from "@mantine/core";
+import { Button, Group, Progress } from "@mantine/core";
 import { IconFolderOpen } from "@tabler/icons-react";
 import { useCallback, useMemo, useRef, useState } from "react";
 import { api } from "../api/api";
@@ -47,8 +47,8 @@ export function GalleryPage() {
   };
 
   return (
-    <main className={`column ${styles.page}`}>
-      <header className={`row ${styles.top}`}>
+    <main className="paper">
+      <header className="card page-top">
         <PageHead name="Gallery" item={one?.title} />
         {item ? (
           <Button size="xs" onClick={() => setPage("gallery")}>
@@ -75,7 +75,7 @@ export function GalleryPage() {
           </Button>
         )}
         {figures?.is_making && (
-          <div className={`line ${styles.making}`}>
+          <Group className="note" gap={8}>
             Figures: {formatNumber(figures.made, 0)} of {formatNumber(figures.total, 0)}
             <Progress
               value={(100 * figures.made) / figures.total}
@@ -83,7 +83,7 @@ export function GalleryPage() {
               w={120}
               aria-label="Figures that have been made"
             />
-          </div>
+          </Group>
         )}
         {figures?.problem && (
           <p className="wrong" role="status">

@@ -1,4 +1,4 @@
-import { ActionIcon, Button } from "@mantine/core";
+import { ActionIcon, Box, Button } from "@mantine/core";
 import { IconPlus, IconX } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../api/api";
@@ -33,7 +33,7 @@ export function Excitation() {
     setTones(tones.map((tone, i) => (i === index ? { ...tone, ...part } : tone)));
   const largest = Math.max(...(answer?.eigenvalues ?? [1]));
   return (
-    <section className={styles.card} aria-label="Persistent excitation">
+    <section className="card essay" aria-label="Persistent excitation">
       <h2>Does the input excite enough?</h2>
       <Formula latex="\alpha_2 I\ge\int_t^{t+\delta}\varphi\varphi^T\,d\tau\ge\alpha_1 I>0,\quad\varphi=\tfrac1{(s+\lambda)^2}[u,-\dot y,-y]^T" />
       <div className={`row ${styles.examples}`}>
@@ -98,15 +98,15 @@ export function Excitation() {
         >
           Add a tone
         </Button>
-        <span className={styles.field}>
+        <span className="line note">
           damping a₁
           <NumberField label="Damping a1" unit="" value={a1} minimum={1e-6} maximum={100} onCommit={setA1} />
         </span>
       </div>
       {refusal && (
-        <p role="alert" className={styles.wrong}>
+        <Box component="p" role="alert" className="wrong" my={4}>
           {refusal.body.message}
-        </p>
+        </Box>
       )}
       {answer && (
         <div className={styles.answer} data-waiting={waiting || refusal !== undefined}>
@@ -129,7 +129,7 @@ export function Excitation() {
               ))}
             </tbody>
           </table>
-          <p className={styles.advice}>
+          <p className="note">
             Condition {answer.condition === null ? "infinite" : formatSi(answer.condition, "", 3)}; smallest, with every
             component at a unit mean square, {formatSi(answer.relative, "", 3)}.
           </p>

@@ -1,4 +1,4 @@
-import { Button, TextInput } from "@mantine/core";
+import { Button, Group, TextInput } from "@mantine/core";
 import { useMemo, useState } from "react";
 import { api } from "../api/api";
 import { useAsked } from "../api/queries";
@@ -33,9 +33,9 @@ export function PositiveReal() {
     api.positiveReal(numerator, denominator),
   );
   return (
-    <section className={styles.card} aria-label="Positive real">
+    <section className="card essay" aria-label="Positive real">
       <h2>Is it positive real?</h2>
-      <p className={styles.advice}>
+      <p className="note">
         A transfer function in s. Lyapunov's rule is proved stable only where it is strictly positive real.
       </p>
       <TextInput
@@ -71,35 +71,32 @@ export function PositiveReal() {
             </ul>
           )}
           <dl className={styles.facts}>
-            <div>
-              <dt>poles to the left</dt>
-              <dd>{answer.hurwitz ? "yes" : "no"}</dd>
-            </div>
-            <div>
-              <dt>zeros to the left</dt>
-              <dd>{answer.minimum_phase ? "yes" : "no"}</dd>
-            </div>
-            <div>
-              <dt>relative degree</dt>
-              <dd>{answer.relative_degree}</dd>
-            </div>
-            <div>
-              <dt>least Re G(jω)</dt>
-              <dd>
-                {answer.least_real === null ? "unbounded" : formatShort(answer.least_real, "")}
-                {answer.at === null ? " at infinity" : ` at ω = ${formatSi(answer.at, "")}`}
-              </dd>
-            </div>
+            {factsOf(answer).map(([name, fact]) => (
+              <div key={name}>
+                <dt>{name}</dt>
+                <dd>{fact}</dd>
+              </div>
+            ))}
           </dl>
-          <div className={styles.aside}>
+          <Group justify="flex-end">
             <PictureMenu name="real part" take={() => realPartPicture(answer, text)} />
-          </div>
+          </Group>
           <RealPart found={answer} />
         </div>
       )}
     </section>
   );
 }
+
+const yes = (is: boolean) => (is ? "yes" : "no");
+const leastWords = ({ least_real }: Found) => (least_real === null ? "unbounded" : formatShort(least_real, ""));
+
+const factsOf = (answer: Found): [string, string][] => [
+  ["poles to the left", yes(answer.hurwitz)],
+  ["zeros to the left", yes(answer.minimum_phase)],
+  ["relative degree", String(answer.relative_degree)],
+  ["least Re G(jω)", leastWords(answer) + (answer.at === null ? " at infinity" : ` at ω = ${formatSi(answer.at, "")}`)],
+];
 
 /** Re G(jw) over frequency, and the curve of Nyquist beside it or below. */
 function RealPart({ found }: { found: Found }) {
@@ -110,10 +107,9 @@ function RealPart({ found }: { found: Found }) {
       ),
     [found],
   );
-  const least = found.least_real === null ? "unbounded" : formatShort(found.least_real, "");
   return (
     <div className={styles.plots}>
-      <Painted label={`Real part over frequency; least ${least}`} paint={overFrequency} />
+      <Painted label={`Real part over frequency; least ${leastWords(found)}`} paint={overFrequency} />
       <Painted label="Nyquist curve: imaginary over real part" paint={nyquist} />
     </div>
   );

@@ -1,6 +1,7 @@
 import { IconAdjustments, IconCheck, IconChecks, IconCircleHalf2, IconFlask, IconX } from "@tabler/icons-react";
 import styles from "./verdict.module.css";
 
+/** The verdicts from best to worst, and the word for a figure that the dissertation does not claim. */
 const MARKS = {
   reproduced: { tone: "good", icon: <IconCheck size={13} stroke={2.6} /> },
   "reproduced by tuning": { tone: "good", icon: <IconAdjustments size={13} stroke={2.2} /> },
@@ -10,6 +11,8 @@ const MARKS = {
   "not reproduced": { tone: "poor", icon: <IconX size={13} stroke={2.6} /> },
   ours: { tone: "own", icon: <IconFlask size={13} stroke={2.2} /> },
 };
+
+export const VERDICTS = Object.keys(MARKS);
 
 interface VerdictProps {
   verdict: string | null;

@@ -1,27 +1,16 @@
 import { useBench } from "../../stream/bench-store";
 import { useBoardState, useStaleSince } from "../../stream/freshness";
-import styles from "./header.module.css";
-
-const WORDS = { running: "running", paused: "paused", tripped: "tripped" } as const;
+import { StateDot } from "../../ui/state-dot";
 
 /** What the board does right now, or that we do not know. */
 export function StateBadge() {
   const shown = useBoardState();
   const phase = useBench((s) => s.connection.phase);
   const stale = useStaleSince() !== undefined;
-  const word = shown
-    ? WORDS[shown]
-    : phase === "waiting"
-      ? "reconnecting"
-      : phase === "closed"
-        ? "not connected"
-        : stale
-          ? "silent"
-          : "connecting";
+  const unknown = { waiting: "reconnecting", closed: "not connected" }[phase as string];
   return (
-    <span className={styles.state} data-state={shown ?? "unknown"} data-testid="bench-state">
-      <i aria-hidden="true" />
-      {word}
-    </span>
+    <StateDot state={shown ?? "unknown"} miw="9.5ch" data-testid="bench-state">
+      {shown ?? unknown ?? (stale ? "silent" : "connecting")}
+    </StateDot>
   );
 }
