@@ -1,4 +1,4 @@
-import { NativeSelect } from "@mantine/core";
+import { Box, NativeSelect } from "@mantine/core";
 import type { Device, DeviceCatalogue } from "../api/types";
 import { Knob } from "../ui/knob";
 import { AIR, AROUND_A_PACKAGE, ENVIRONMENT, type Knob as KnobOf } from "../ui/surroundings";
@@ -39,14 +39,16 @@ export function DesignerControls({ catalogue, device, state, onChange }: Designe
     );
   };
   return (
-    <section className={styles.controls} aria-label="What can be turned">
+    <section className={`card ${styles.controls}`} aria-label="What can be turned">
       <NativeSelect
         label="Device"
         value={state.id}
         data={catalogue.devices.map((d) => ({ value: d.id, label: d.title || d.id }))}
         onChange={(event) => onChange({ ...newDesign(event.currentTarget.value), environment: state.environment })}
       />
-      <p className={styles.source}>{device.source}</p>
+      <Box component="p" className="note" mt={8}>
+        {device.source}
+      </Box>
       {groups().map((group) => (
         <fieldset key={group.title} className={styles.group}>
           <legend>{group.title}</legend>

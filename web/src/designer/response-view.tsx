@@ -37,7 +37,7 @@ export function ResponseView({ bode, drawing }: ResponseViewProps) {
   }, [bode, drawing]);
   return (
     <>
-      <h2 className={styles.heading}>Frequency response</h2>
+      <h2>Frequency response</h2>
       <div className={styles.bode}>
         <BodePlot label="Bode diagram with its tolerance band" shown={shown} />
       </div>

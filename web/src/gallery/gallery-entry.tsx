@@ -9,6 +9,7 @@ import { PlaceLink } from "../bench/page-head";
 import { showError } from "../bench/send";
 import { useBusy } from "../bench/use-busy";
 import { setPage } from "../bench/view-store";
+import { isActive } from "../runs/jobs";
 import { useOnScreen } from "../ui/on-screen";
 import { Verdict } from "../ui/verdict";
 import { ExpectationTable } from "./expectation-table";
@@ -36,7 +37,7 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
   const drives = useMay("drive");
   const teaches = useMay("teach");
   const { title } = card;
-  const underWay = card.state === "queued" || card.state === "running";
+  const underWay = isActive(card.state);
 
   const live = () =>
     during(async () => {

@@ -6,6 +6,7 @@ import { useMay } from "../api/me";
 import { useAnswer } from "../api/queries";
 import { PageHead } from "../bench/page-head";
 import { setPage, useView } from "../bench/view-store";
+import { isActive } from "../runs/jobs";
 import { EmptyState } from "../ui/empty-state";
 import { formatCount, formatNumber } from "../ui/format";
 import { Stale } from "../ui/stale";
@@ -19,7 +20,6 @@ const BUSY_MS = 700;
 const CALM_MS = 15_000;
 /** Most cards that are named as in sight, in the order in which they came. */
 const MOST_FIRST = 64;
-const isUnderWay = (state: string) => state === "queued" || state === "running";
 
 /** Every experiment of the library: what is claimed, what was measured, and whether that agrees. */
 export function GalleryPage() {
@@ -27,7 +27,7 @@ export function GalleryPage() {
   const { value, error, since, again } = useAnswer(
     ["gallery"],
     () => api.gallery([...inSight.current].slice(0, MOST_FIRST)),
-    (now) => (now?.figures.is_making || now?.cards.some((card) => isUnderWay(card.state)) ? BUSY_MS : CALM_MS),
+    (now) => (now?.figures.is_making || now?.cards.some((card) => isActive(card.state)) ? BUSY_MS : CALM_MS),
   );
   const onSight = useCallback((id: string, isShown: boolean) => {
     inSight.current[isShown ? "add" : "delete"](id);
@@ -40,7 +40,7 @@ export function GalleryPage() {
   const figures = value?.figures;
   const one = all?.find(({ id }) => id === item);
   const cards = useMemo(() => (one ? [one] : item ? [] : chosen(all ?? [], filter)), [all, filter, item, one]);
-  const busy = all?.filter((card) => isUnderWay(card.state)).length ?? 0;
+  const busy = all?.filter((card) => isActive(card.state)).length ?? 0;
   const showAll = () => {
     setFilter(EVERYTHING);
     setPage("gallery");

@@ -1,4 +1,4 @@
-import { MultiSelect } from "@mantine/core";
+import { Box, MultiSelect, Stack } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../api/api";
 import { useAnswer, useLast } from "../api/queries";
@@ -12,7 +12,7 @@ import { CampaignFigures } from "./campaign-figures";
 import { DiagnosisCharts } from "./diagnosis-charts";
 import { DistributionChart } from "./distribution-chart";
 import { ReportButton, ScriptButton } from "./file-buttons";
-import { sweepName } from "./jobs";
+import { isActive, sweepName } from "./jobs";
 import { NameField } from "./name-field";
 import { PointsTable } from "./points-table";
 import styles from "./runs.module.css";
@@ -26,7 +26,6 @@ const FIRST_COLUMNS = 4;
 
 /** A campaign: its picture, what each diagnoser said, and its points as a table. */
 export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChanged(): void }) {
-  const active = sweep.state === "queued" || sweep.state === "running";
   const { value, error, since, again, isPage, every, ...paging } = usePoints(sweep);
   const [columns, setColumns] = useState<string[] | undefined>(undefined);
   const [chosen, setChosen] = useState<{ figure?: string; across?: string }>({});
@@ -41,7 +40,7 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
   const shown = columns ?? picture?.figures.slice(0, FIRST_COLUMNS) ?? [];
 
   return (
-    <article className={`column ${styles.result}`}>
+    <Stack component="article" className={styles.result} gap={12}>
       <header>
         <h2>{sweepName(sweep)}</h2>
         <small>
@@ -57,7 +56,7 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
       <Stale error={error} since={since} onRetry={again} />
       {points.length === 0 ? (
         !error && (
-          <EmptyState title={active ? "No run is done yet" : "No result"}>
+          <EmptyState title={isActive(sweep.state) ? "No run is done yet" : "No result"}>
             The first results of a campaign appear here while it runs.
           </EmptyState>
         )
@@ -82,8 +81,10 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
             />
           )}
           <DiagnosisCharts points={points} words={value?.words ?? {}} />
-          <details className={styles.points} open={picture?.parts.length === 0}>
-            <summary>All points as a table</summary>
+          <details open={picture?.parts.length === 0}>
+            <Box component="summary" py={4} fz="sm" fw={600}>
+              All points as a table
+            </Box>
             <MultiSelect
               size="xs"
               label="Columns"
@@ -97,7 +98,7 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
           </details>
         </>
       )}
-    </article>
+    </Stack>
   );
 }
 
