@@ -52,7 +52,7 @@ export const classes = {
     ),
 };
 
-/** Where students join, in full; nothing while nobody can. */
+/** The full address at which students join; undefined while joining is closed. */
 export function joinAddress({ path, addresses }: Pick<Class, "path"> & { addresses?: string[] }): string | undefined {
   if (addresses?.[0]) return addresses[0];
   return path ? new URL(`.${path}`, document.baseURI).href : undefined;

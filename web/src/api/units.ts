@@ -2,7 +2,7 @@ import { client, data } from "./client";
 
 const unit = (name: string) => ({ params: { path: { name } } });
 
-/** The REST calls around units of one's own. */
+/** The REST calls around the user's own units. */
 export const units = {
   all: () => data(client.GET("/api/v1/units")),
   text: (name: string) => data(client.GET("/api/v1/units/{name}", unit(name))),

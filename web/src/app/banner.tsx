@@ -1,5 +1,5 @@
-import { Button } from "@mantine/core";
-import { type ReactNode, useEffect, useState } from "react";
+import { Box, Button } from "@mantine/core";
+import { type ComponentProps, useEffect, useState } from "react";
 import { useMay } from "../api/me";
 import { actions } from "../bench/actions";
 import { showPanel } from "../bench/dock";
@@ -8,8 +8,8 @@ import { useBench } from "../stream/bench-store";
 import { staleWords, useStaleSince } from "../stream/freshness";
 import { stream } from "../stream/stream";
 import { formatClock, formatTick } from "../ui/format";
-import styles from "./banner.module.css";
 import { openOwnBench, startAgain } from "./first-bench";
+import { NoticeLine } from "./notice-line";
 
 /** One line under the header when something needs to be known: a trip, a lost connection, silence, a hidden fault. */
 export function Banner() {
@@ -93,25 +93,9 @@ export function Banner() {
 
 const capital = (words: string): string => words.charAt(0).toUpperCase() + words.slice(1);
 
-function Line({
-  tone,
-  title,
-  text,
-  children,
-}: {
-  tone: "alarm" | "warn";
-  title: string;
-  text: string;
-  children?: ReactNode;
-}) {
-  return (
-    // Announced by the page's live regions, not here a second time.
-    <section className={`row ${styles.banner}`} data-tone={tone} data-brief={tone === "warn"} aria-label="Notice">
-      <strong>{title}</strong>
-      <span>{text}</span>
-      <div className={`line ${styles.actions}`}>{children}</div>
-    </section>
-  );
+function Line(line: Omit<ComponentProps<typeof NoticeLine>, "label">) {
+  // Announced by the page's live regions, not here a second time.
+  return <NoticeLine label="Notice" isBrief={line.tone === "warn"} {...line} />;
 }
 
 function Countdown({ until }: { until: number | undefined }) {
@@ -122,7 +106,11 @@ function Countdown({ until }: { until: number | undefined }) {
   }, []);
   if (until === undefined) return null;
   const left = Math.ceil((until - now) / 1000);
-  return <span className={styles.countdown}>{left > 0 ? `again in ${left} s` : "trying"}</span>;
+  return (
+    <Box component="span" miw="9ch" c="dimmed">
+      {left > 0 ? `again in ${left} s` : "trying"}
+    </Box>
+  );
 }
 
 /** What to do when the bench on the page is no more. */

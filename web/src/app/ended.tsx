@@ -4,7 +4,7 @@ import { isInFrame } from "../api/session";
 import type { Me } from "../api/types";
 import { EmptyState } from "../ui/empty-state";
 
-/** What stands in place of the page of somebody whose session has ended. */
+/** Replaces the page after the end of a session. */
 export function Ended({ role }: { role: Me["role"] }) {
   return (
     <main className="page">
@@ -31,7 +31,7 @@ export function Ended({ role }: { role: Me["role"] }) {
   );
 }
 
-/** What stands in place of the page when a learning platform's launch was refused. */
+/** Replaces the page after a refused launch from a learning platform. */
 export function NotLaunched({ error }: { error: unknown }) {
   const { message, hint } = error instanceof ApiError ? error.body : { message: String(error), hint: "" };
   return (

@@ -24,7 +24,7 @@ export interface KeyBinding {
   withControl?: boolean;
   does: string;
   group: "Run" | "Look" | "Bench" | "Pages";
-  /** What one must be allowed for the key to do anything. */
+  /** The right that the key needs. */
   needs?: Right;
   run(): void;
 }

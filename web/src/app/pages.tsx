@@ -23,7 +23,7 @@ export interface PageKind {
   title: string;
   icon: ReactNode;
   key: string;
-  /** What one must be allowed for the page to be there. */
+  /** The right that the page needs. */
   needs?: Right;
   /** The page whose tab it is. */
   tabOf?: PageName;
@@ -87,7 +87,7 @@ export const PAGES: Record<PageName, PageKind> = {
   },
 };
 
-/** Whether a page is there for somebody. */
+/** Whether a page is offered to a role. */
 export const isOffered = (page: PageName, role: Me["role"] | undefined): boolean => {
   const { needs } = PAGES[page];
   return !needs || may(needs, role);

@@ -7,7 +7,6 @@ import { addPanel, addScope, closePanel, showPanel } from "../bench/dock";
 import { hasSeveral, type PanelName, VIEWS } from "../bench/panel-views";
 import { presetsOn } from "../panels/scope/scope-presets";
 import { useBench } from "../stream/bench-store";
-import styles from "./panel-menu.module.css";
 import { PANELS, panelsOn, VIEW, viewsOn } from "./panels";
 
 interface Entry {
@@ -39,7 +38,7 @@ export function PanelMenu({
           <IconPlus size={14} />
         </button>
       </Menu.Target>
-      <Menu.Dropdown className={styles.menu}>
+      <Menu.Dropdown mah="min(640px, calc(100vh - 80px))">
         <Menu.Search
           size="xs"
           m="4px 4px 8px"
@@ -52,9 +51,7 @@ export function PanelMenu({
         {entries.map(({ key, title, about, run }) => (
           <Menu.Item key={key} onClick={run}>
             {title}
-            <Box component="small" display="block">
-              {about}
-            </Box>
+            <small>{about}</small>
           </Menu.Item>
         ))}
         {entries.length === 0 && (

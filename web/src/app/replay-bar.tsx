@@ -52,7 +52,9 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
   return (
     <section className={`row ${styles.bar}`} aria-label="Replay">
       <strong>Replay</strong>
-      <span className={styles.name}>{about.name}</span>
+      <Box component="span" className="cut" maw={220}>
+        {about.name}
+      </Box>
       <Box pos="relative" flex="1 1 200px" p="0 8px">
         <Slider
           size="sm"
@@ -77,9 +79,9 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
           />
         )}
       </Box>
-      <span className={styles.time}>
+      <Box component="span" c="dimmed" style={{ whiteSpace: "nowrap" }}>
         {ms(Math.min(bench.tick, end))} of {ms(first)} … {ms(end)}
-      </span>
+      </Box>
       <NativeSelect
         aria-label="Speed of the replay"
         value={String(nearest ?? 1)}

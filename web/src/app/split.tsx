@@ -4,7 +4,7 @@ import styles from "./split.module.css";
 const KEPT = "combbench.split";
 const USUAL = 45;
 const [LEAST, MOST] = [15, 85];
-/** What an arrow key moves, percent. */
+/** The step of an arrow key, percent. */
 const STEP = 5;
 
 const within = (percent: number): number => Math.min(MOST, Math.max(LEAST, Math.round(percent)));

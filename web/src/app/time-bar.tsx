@@ -33,7 +33,7 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
   const stale = useStaleSince();
   const [newest, setNewest] = useState({ of: bench.id, tick: bench.tick });
   const [held, setHeld] = useState<number | undefined>(undefined);
-  // the bench that is looked back at goes on; where it was when it was left is the end of the bar
+  // the bench continues while the page shows its past; the bar ends at the tick at which the page left it
   useEffect(() => {
     const of = isPast ? (bench.origin?.bench ?? "") : bench.id;
     setNewest((n) => ({ of, tick: isPast ? Math.max(n.of === of ? n.tick : 0, bench.tick) : bench.tick }));
@@ -108,7 +108,7 @@ function Other() {
   );
 }
 
-/** What lies behind the traces is chosen in the panel Compare. */
+/** Opens the panel Compare, which chooses the benches behind the traces. */
 function Compare() {
   const count = useBehind((s) => s.behind.length);
   return (

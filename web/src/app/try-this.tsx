@@ -1,4 +1,4 @@
-import { Button, CloseButton } from "@mantine/core";
+import { Button, CloseButton, Group } from "@mantine/core";
 import { IconPlayerPlayFilled, IconSquare, IconSquareCheckFilled } from "@tabler/icons-react";
 import { useMay } from "../api/me";
 import { showPanel } from "../bench/dock";
@@ -46,10 +46,10 @@ export function HintList({ tips }: { tips: TickedHints }) {
           </li>
         ))}
       </ul>
-      <div className={rest.actions}>
+      <Group gap={6} mt={8}>
         {teaches && !tourSeen() && <OfferTour />}
         {tips.canHide && <Button onClick={() => showPanel("blind", "faults")}>Find a hidden fault</Button>}
-      </div>
+      </Group>
     </section>
   );
 }

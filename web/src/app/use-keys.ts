@@ -21,7 +21,7 @@ const noteKey = () => {
   pointed = false;
 };
 
-/** What was chosen with the pointer gives the keys back; who chooses with keys stays where they are. */
+/** A choice by pointer returns the keys to the page; a choice by keys keeps the focus. */
 function giveBack({ target }: Event): void {
   if (pointed && target instanceof HTMLElement && target.matches(CHOSEN)) target.blur();
 }

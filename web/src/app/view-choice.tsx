@@ -8,7 +8,7 @@ import type { PanelName } from "../bench/panel-views";
 import { useBench } from "../stream/bench-store";
 import { PANELS, VIEW, viewShown, viewsOn } from "./panels";
 
-/** Width of a letter and of what is around a name, px: the names stand in a row where the header has room for them. */
+/** Width of a letter and of the space around a name, px: the names form a row if the header has room for it. */
 const LETTER_PX = 7;
 const AROUND_PX = 18;
 

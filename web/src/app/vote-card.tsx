@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Button, Group, Stack } from "@mantine/core";
 import { useEffect, useState } from "react";
 import { ApiError } from "../api/client";
 import { castVote, useMe } from "../api/me";
@@ -11,7 +11,7 @@ import { Slider } from "../ui/slider";
 import { follow } from "./follow";
 import styles from "./vote-card.module.css";
 
-/** How soon a student's page hears of a vote. */
+/** The interval at which a student's page asks for a vote. */
 const EVERY_MS = 4000;
 
 /** The open vote of a student's class: one answer at a tap, and a moment, until the vote is closed. */
@@ -47,7 +47,7 @@ function Card({ vote }: { vote: OpenVote }) {
   return (
     <section className={`column ${styles.card}`} aria-label="Vote">
       <h2>{question.text}</h2>
-      <div className={styles.answers}>
+      <Group gap={6}>
         {answers.map((answer, i) => (
           <Button
             key={answer}
@@ -61,9 +61,9 @@ function Card({ vote }: { vote: OpenVote }) {
             {results && `, ${formatCount(results[i].count, "vote")}`}
           </Button>
         ))}
-      </div>
+      </Group>
       {when && open && at !== null && (
-        <div className={styles.when}>
+        <Stack gap={2} maw={480} pb={6} fz="sm">
           <span>When? {formatIn(at, "ms", 1)}</span>
           <Slider
             thumbLabel="When"
@@ -75,9 +75,9 @@ function Card({ vote }: { vote: OpenVote }) {
             onChange={setAt}
             onChangeEnd={(value) => mine && cast(mine.answer, value)}
           />
-        </div>
+        </Stack>
       )}
-      <p role="status">
+      <p className="note" role="status">
         {results
           ? right
             ? `The right answer: ${nameOf(right)}.`

@@ -23,7 +23,7 @@ import { ViewChoice } from "./view-choice";
 
 const THEME = { name: "combbench", className: "dockview-theme-combbench", gap: DOCK_GAP };
 
-/** What a tab takes beside the letters of its title, a letter, and the two buttons of a group, px. */
+/** The widths of an empty tab, of a letter of its title, and of the two buttons of a group, px. */
 const TAB_PX = 36;
 const LETTER_PX = 7.5;
 const BUTTONS_PX = 64;

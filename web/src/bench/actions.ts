@@ -16,7 +16,7 @@ import { setPage, useView } from "./view-store";
 
 const bench = () => useBench.getState().bench;
 
-/** What can be done to the bench from buttons and keys alike. */
+/** The actions on the bench that buttons and keys share. */
 export const actions = {
   toggle: () =>
     void (bench()?.state === "running" ? send({ kind: "pause" }, "Paused") : send({ kind: "start" }, "Running")),
@@ -77,7 +77,7 @@ const fork = showing(async () => {
   notifications.show({ title: "Forked", message: `This is a copy of ${from.title}; the original is untouched.` });
 });
 
-/** Begin to record with the last moments, or end what is recorded. */
+/** Start a recording that includes the last moments, or stop it. */
 const record = showing(async () => {
   const from = bench();
   if (!from) return;
@@ -92,7 +92,7 @@ const record = showing(async () => {
   }
 });
 
-/** Keep this moment: it stands on the timeline. */
+/** Keep this moment as a mark on the timeline. */
 const keep = showing(async () => {
   const from = bench();
   if (!from) return;

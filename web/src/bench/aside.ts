@@ -4,7 +4,7 @@ import { openBench } from "./open-bench";
 import type { Place } from "./places";
 import { openPlace, useView } from "./view-store";
 
-/** What a page goes back to after a lecture or a tour. */
+/** The state to which a page returns after a lecture or a tour. */
 export interface Before {
   bench: string | undefined;
   layout: string;
@@ -12,7 +12,7 @@ export interface Before {
   ran: boolean;
 }
 
-/** Leave the bench for a while; it is paused if nobody else watches it. */
+/** Leave the bench for a while; it pauses if no other page watches it. */
 export async function stepAside(): Promise<Before> {
   const { bench } = useBench.getState();
   const ran = bench?.state === "running" && (bench.watchers ?? 0) <= 1;

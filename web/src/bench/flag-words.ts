@@ -6,7 +6,7 @@ import { severityScale, severityText } from "./severity";
 
 const RATE = "rate.deg_per_s";
 
-/** What an event says on its flag: a few words. */
+/** The few words on the flag of an event. */
 export function flagWords({ kind, command, new: value }: LogEntry): string {
   if (kind === "recognised") return `found ${hypothesisWords(String(value))}`;
   if (kind === "truth_changed") return `truth: ${hypothesisWords(String(value))}`;
@@ -40,7 +40,7 @@ export const titleOf = (family: string, name: string) => cardOf(family, name)?.t
 
 const leaf = (path: string) => path.slice(path.lastIndexOf(".") + 1).replaceAll("_", " ");
 
-/** How loudly an event speaks: faults and trips are alarms, what a diagnoser found is news, run control is quiet. */
+/** How loudly an event speaks: faults and trips are alarms, findings of diagnosers are news, run control is quiet. */
 export type EventTone = "alarm" | "found" | "change" | "quiet";
 
 const TONES: Record<string, EventTone> = {

@@ -82,19 +82,19 @@ export const backToNow = showing(async () => {
   const bench = useBench.getState().bench;
   if (!bench?.origin) return;
   const { id, origin } = bench;
-  await api.reopenBench(origin.bench); // it may have been let go
+  await api.reopenBench(origin.bench); // the server may have closed it
   openBench(origin.bench, true, true);
   if (origin.is_past) await api.removeBench(id);
 });
 
-/** Show a bench that stands at the moment that is shown, for a branch to begin there. */
+/** Show a bench at the moment shown, as the start of a branch. */
 async function standHere(): Promise<string | undefined> {
   const bench = useBench.getState().bench;
   if (!bench || bench.origin?.is_past) return bench?.id;
   return standAt(bench.id, bench.tick);
 }
 
-/** Show a bench made of another that stands at a tick of it. */
+/** Fork a bench at a tick and show the fork. */
 async function standAt(of: string, tick: number): Promise<string> {
   const made = await api.fork(of, { tick, paused: true, window_ticks: WINDOW_TICKS });
   openBench(made.id, false, true);
@@ -110,7 +110,7 @@ export const goOn = showing(async (name: string, change?: () => Promise<boolean>
   if (await send({ kind: "start" }, "A branch starts here")) openOwn(id, true);
 });
 
-/** Go on from the moment that is shown as if other values had been there from tick 0; what was done is done again. */
+/** Start a branch at the moment shown with other values from tick 0 on; all commands are repeated. */
 export const goOnHaving = showing(async (name: string, set: Record<string, unknown>) => {
   const bench = useBench.getState().bench;
   if (!bench) return;
@@ -124,7 +124,7 @@ export const goOnHaving = showing(async (name: string, set: Record<string, unkno
   await send({ kind: "start" }, "A branch starts here; all commands were replayed");
 });
 
-/** Fork the bench before what was done at a tick, and let it go on without that. */
+/** Fork the bench before the commands of a tick, and run it without them. */
 export const goOnWithout = showing(async (tick: number, words: string) => {
   const bench = useBench.getState().bench;
   if (!bench) return;

@@ -39,7 +39,7 @@ export async function runUnit(card: BlockCard, source: string): Promise<void> {
     if (next.state !== "running") await api.start(next.id);
     made = next.id;
     openOwn(next.id, isOurs);
-    if (isOurs) await api.removeBench(id).catch(() => undefined); // somebody else has closed it
+    if (isOurs) await api.removeBench(id).catch(() => undefined); // it was closed elsewhere
     await shown(card.name, source);
   }
   announce(`${card.title} runs from tick 0.`);

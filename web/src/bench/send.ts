@@ -11,7 +11,7 @@ export const WATCHING = "You watch this bench and cannot change it.";
 /**
  * Send a command to the bench; a refusal is shown where it happened, with what to do.
  *
- * Resolves to whether it took effect. The status comes before the answer, so `useBench` has what the command changed.
+ * Resolves to whether it took effect. The status comes before the answer, so `useBench` has the changes of the command.
  */
 export async function send(command: Command, said?: string): Promise<boolean> {
   if (!may("drive")) {

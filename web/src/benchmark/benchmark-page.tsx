@@ -17,7 +17,7 @@ const SHARE: [number, number] = [0, 1];
 const DRAWN = 4;
 const ID = "mems-diag-1";
 
-/** How soon diagnosers notice a fault, what they take for its cause, and whether their probabilities can be believed. */
+/** The speed of the diagnosers, the causes they name, and the calibration of their probabilities. */
 export function BenchmarkPage() {
   const { value, error, since, again } = useAnswer(["benchmark"], () => api.benchmark(ID));
   const [track, setTrack] = useState("known");

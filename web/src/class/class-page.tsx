@@ -9,7 +9,7 @@ import { OpenClass } from "./open-class";
 
 const EVERY_MS = 5000;
 
-/** The classes of this server, one at a time; without any, what it takes to open one. */
+/** The classes of this server, one at a time; without a class, the form that opens one. */
 export function ClassPage() {
   const { value: all, error, since, again } = useAnswer(["classes"], classes.all, () => EVERY_MS);
   const [wanted, setWanted] = useState<string | undefined>(undefined);

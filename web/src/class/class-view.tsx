@@ -29,7 +29,7 @@ interface ClassViewProps {
   children: ReactNode;
 }
 
-/** A class: how to join, what is done for all, and a tile for each student. */
+/** A class: its join code, the commands for all, and a tile for each student. */
 export function ClassView({ group, onChanged, children }: ClassViewProps) {
   const { id, name, until, shown } = group;
   const here = useBench((s) => s.bench);

@@ -10,7 +10,7 @@ const USUAL = 0.05;
 
 interface FaultForAllProps {
   count: number;
-  /** What is being carried out. */
+  /** The command under way. */
   busy: string | undefined;
   command(what: string, order: Command): void;
 }

@@ -17,15 +17,15 @@ interface ForAllProps {
   group: string;
   /** How many students there are. */
   count: number;
-  /** Ids of those chosen; nobody chosen means all. */
+  /** Ids of the chosen students; an empty list means all. */
   chosen: readonly string[];
-  /** Ids of those whose bench has tripped. */
+  /** Ids of the students whose bench has tripped. */
   tripped: readonly string[];
   onChooseNone(): void;
   onDone(): void;
 }
 
-/** What is done on all benches at once, or on those of the students chosen; what came of it stands below in a line. */
+/** The commands for all benches at once, or for the benches of the chosen students; the outcome is in a line below. */
 export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: ForAllProps) {
   const library = useLibrary();
   const [scenario, setScenario] = useState("first-look");

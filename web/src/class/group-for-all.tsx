@@ -1,7 +1,7 @@
 import { Box, Group } from "@mantine/core";
 import type { ReactNode } from "react";
 
-/** A list in a group: it leaves room for the buttons beside it. */
+/** The width of a list in a group: it leaves room for the buttons. */
 export const CHOICE = { flex: "1 1 150px", miw: 0, maw: 280 };
 
 /** A kind of change that the teacher makes on many benches: its name, and its fields and buttons. */

@@ -10,12 +10,12 @@ const USUAL = "ch5-seven-step";
 interface HideForAllProps {
   group: string;
   count: number;
-  /** Ids of those chosen; nobody chosen means all. */
+  /** Ids of the chosen students; an empty list means all. */
   chosen: readonly string[];
   carryOut(what: string, asked: () => Promise<Outcomes>): void;
 }
 
-/** A fault hidden from each student, on a device of one's own; and what was hidden shown to all. */
+/** A hidden fault for each student, on a device of their own; and the answers for all. */
 export function HideForAll({ group, count, chosen, carryOut }: HideForAllProps) {
   const library = useLibrary().filter(({ can_hide }) => can_hide);
   const [scenario, setScenario] = useState(USUAL);

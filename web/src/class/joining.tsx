@@ -18,12 +18,12 @@ const PERIODS = [
 
 interface JoiningProps {
   group: Class;
-  /** Students are there: one line is enough, and the wall has the rest. */
+  /** Students have joined: one line is enough, and the wall has the rest. */
   isBrief: boolean;
   onChanged(): void;
 }
 
-/** How students get in: the code for the last row, the address, and until when; or that nobody can. */
+/** The code in large letters, the address and the end of joining; or that joining is closed. */
 export function Joining({ group, isBrief, onChanged }: JoiningProps) {
   const [onWall, setOnWall] = useState(false);
   const leaveWall = useCallback(() => setOnWall(false), []);

@@ -7,7 +7,7 @@ import { useBusy } from "../bench/use-busy";
 import { ScenarioSelect } from "./scenario-select";
 
 const LONGEST_H = 24 * 14;
-/** What is said of a field stands below it. */
+/** The description of a field is below it. */
 const BELOW: ("label" | "input" | "description" | "error")[] = ["label", "input", "description", "error"];
 
 interface OpenClassProps {
@@ -15,7 +15,7 @@ interface OpenClassProps {
   onCancel?(): void;
 }
 
-/** What a class is, and what it takes to open one. */
+/** The form that opens a class. */
 export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
   const [name, setName] = useState("");
   const [scenario, setScenario] = useState("first-look");

@@ -8,13 +8,13 @@ import { CHOICE, GroupForAll } from "./group-for-all";
 interface SheetForAllProps {
   group: string;
   count: number;
-  /** Ids of the students chosen; nobody chosen means all. */
+  /** Ids of the chosen students; an empty list means all. */
   chosen: readonly string[];
   busy: boolean;
   onBegin(title: string, asked: () => Promise<Outcomes>): void;
 }
 
-/** A lab sheet for all students or for those chosen, and what they have earned, to take away. */
+/** A lab sheet for all students or for the chosen ones, and their points as files. */
 export function SheetForAll({ group, count, chosen, busy, onBegin }: SheetForAllProps) {
   const { value } = useAnswer(["sheets"], sheets.all);
   const [wanted, setWanted] = useState<string | undefined>(undefined);

@@ -152,7 +152,7 @@ function Trace({ trace, name }: { trace: [number, number][]; name: string }) {
   );
 }
 
-/** The truth: what acts on the device. */
+/** The faults that act on the device. */
 function Faults({ faults }: { faults: NonNullable<Tile["faults"]> }) {
   const acting = faults.filter(({ severity }) => severity !== 0);
   if (acting.length === 0) return <span>no fault</span>;

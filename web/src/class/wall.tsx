@@ -16,7 +16,7 @@ export function Wall({ opened, name, code, address, onClose }: WallProps) {
   useEffect(() => {
     if (!opened) return;
     document.documentElement.requestFullscreen?.().catch(() => undefined);
-    // Escape leaves the whole screen before the page hears of the key
+    // Escape leaves the full screen before the page receives the key
     const changed = () => !document.fullscreenElement && onClose();
     document.addEventListener("fullscreenchange", changed);
     return () => {
@@ -45,5 +45,5 @@ export function Wall({ opened, name, code, address, onClose }: WallProps) {
   );
 }
 
-/** What somebody types: the address without the code, which the page asks for. */
+/** The address to type, without the code, which the page asks for. */
 export const brief = (address: string): string => address.replace(/^https?:\/\//, "").replace(/\?.*$/, "");

@@ -13,7 +13,7 @@ const BOX = 44;
 const PLATE = `color-mix(in srgb, ${COLOURS.shuttle} 40%, var(--panel))`;
 const FRAME = { near: 62, far: 76, half: 62 };
 
-/** The axes of a gyroscope: those of the layout, that of its stiffness, and the line along which the mass swings. */
+/** The axes of a gyroscope: of its layout, of its stiffness, and the line along which the mass swings. */
 export function AxesView({ metrics, title }: AxesViewProps) {
   const axis = metrics["gyro.axis_deg"];
   const tilt = metrics["gyro.tilt_deg"];

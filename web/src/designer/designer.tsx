@@ -34,7 +34,7 @@ const FIRST = "lcr-350";
 /** The others are worked out from the drawing of a resonator. */
 const isOfGyroscope = ({ name }: { name: string }) => name.startsWith("gyro.");
 
-/** The drawing board: turn a number of a device and see at once what it would be. */
+/** The drawing board: turn a number of a device and see its effect at once. */
 export function Designer() {
   const drives = useMay("drive");
   const teaches = useMay("teach");

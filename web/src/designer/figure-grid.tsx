@@ -9,13 +9,13 @@ type Figure = Evaluation["figures"][number];
 
 interface FigureGridProps {
   figures: Figure[];
-  /** Those of the device as the catalogue has it. */
+  /** The figures of the device of the catalogue. */
   original: Figure[] | undefined;
-  /** Whether the device has a drawing; without one, what needs the beams takes those of LCR-350. */
+  /** Whether the device has a drawing; without one, the beams of LCR-350 are used. */
   drawn: boolean;
 }
 
-/** What people quote of a device: value, unit, equation, and what changed since the catalogue. */
+/** The figures of a device: value, unit, equation, and the change since the catalogue. */
 export function FigureGrid({ figures, original, drawn }: FigureGridProps) {
   return (
     <dl className={styles.grid}>

@@ -2,11 +2,11 @@ import type { Knob, KnobGroup } from "../ui/surroundings";
 import { roundTo } from "../ui/unit-scale";
 import { DRAWING } from "./knobs";
 
-/** A cross term reaches so much of the least of what it couples; what it must stay below is 1. */
+/** The range of a cross term, as a share of the smaller term that it couples; it must stay below 1. */
 const CROSS_SHARE = 0.2;
 const MOST_DEG = 10;
 
-/** What can be turned about a gyroscope: its masses and swing, its stiffness and damping with what couples the axes. */
+/** The knobs of a gyroscope: its masses and swing, its stiffness and damping with their cross terms. */
 export function gyroscopeKnobs(value: (path: string) => number | undefined): KnobGroup[] {
   const at = (name: string) => value(`gyroscope.${name}`);
   const around = (name: string, label: string, unit: string): Knob[] => {
@@ -60,7 +60,7 @@ const drawn = (name: string, label: string, unit: string, low: number, high: num
   step,
 });
 
-/** What can be turned about a gyroscope from a drawing: the drawing, what y has of its own, and what no drawing tells. */
+/** The knobs of a gyroscope from a drawing: the drawing, the sense frame, and the numbers outside a drawing. */
 export const DRAWN_GYROSCOPE: KnobGroup[] = [
   {
     title: "Sense frame, along y",

@@ -9,7 +9,7 @@ const um = (name: string, label: string, low: number, high: number, step: number
   step,
 });
 
-/** What can be turned about a drawing; the usual reach, exact entry goes further. */
+/** The knobs of a drawing with their usual ranges; exact entry goes further. */
 export const DRAWING: KnobGroup[] = [
   {
     title: "Beams and trusses",
@@ -48,7 +48,7 @@ export const DRAWING: KnobGroup[] = [
   },
 ];
 
-/** What can be turned about a device that is given by its figures. */
+/** The knobs of a device that is given by its figures. */
 export function given(value: (path: string) => number | undefined): KnobGroup[] {
   const around = (path: string, label: string, unit: string): Knob[] => {
     const middle = value(path);

@@ -20,7 +20,7 @@ const COLUMNS: [string, string][] = [
   ["quality_factor", "Q"],
 ];
 
-/** What a step of the process does to the device; the beams first, for the stiffness goes with the cube of their width. */
+/** The effect of a step of the process on the device; the beams first, since the stiffness goes with the cube of their width. */
 export function SensitivityTable({ evaluation }: { evaluation: Evaluation }) {
   const { geometry, sensitivities } = evaluation;
   if (!geometry)

@@ -10,7 +10,7 @@ import styles from "./gallery.module.css";
 const SHOWN = 3;
 
 type Expected = GalleryCard["expectations"][number];
-/** A row; runs kept from earlier lack what has been added since. */
+/** A row; runs of earlier versions lack the newer fields. */
 type Entry = Omit<Expected, "fitted" | "reason" | "comparator" | "pid_too" | "expected_words"> & Partial<Expected>;
 
 interface ExpectationTableProps {
@@ -19,7 +19,7 @@ interface ExpectationTableProps {
   verdict: string | null;
 }
 
-/** What is said of a figure beside its numbers: why it stands alone, what was chosen for it, where it comes from. */
+/** The remarks on a figure: its note, the values chosen for it, and why it has no open loop. */
 function remarks(entry: Entry): string[] {
   const fitted = entry.fitted ?? [];
   return [
@@ -40,7 +40,7 @@ function readable({ metric, expected }: Entry): string {
 const NUMBER = /[-−]?\d[\d.]*(?:e[+-]?\d+)?/g;
 const numberIn = (text: string) => Number(text.replace("−", "-"));
 
-/** Figure by figure what is expected, what was measured, and what the open loop gives; the first few until all are asked for. */
+/** For each figure the expected and the measured value, and the value of the open loop; the first few, or all on request. */
 export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
   const [all, setAll] = useState(false);
   if (entries.length === 0)

@@ -25,7 +25,7 @@ interface GalleryEntryProps {
   onSight(id: string, isShown: boolean): void;
 }
 
-/** A scenario of the library: its figure, its claim beside what was measured, and the two ways to run it. */
+/** A scenario of the library: its figure, its claim with the measured values, and the two ways to run it. */
 export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntryProps) {
   const element = useRef<HTMLLIElement>(null);
   const isShown = useOnScreen(element);

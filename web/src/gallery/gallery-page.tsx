@@ -21,7 +21,7 @@ const CALM_MS = 15_000;
 /** Most cards that are named as in sight, in the order in which they came. */
 const MOST_FIRST = 64;
 
-/** Every experiment of the library: what is claimed, what was measured, and whether that agrees. */
+/** Every experiment of the library: its claim, the measured values, and whether they agree. */
 export function GalleryPage() {
   const inSight = useRef(new Set<string>());
   const { value, error, since, again } = useAnswer(

@@ -11,12 +11,12 @@ import { PictureMenu } from "./picture-menu";
 
 interface FigureProps<Shown> {
   title: string;
-  /** What is seen, for who does not see it. */
+  /** The picture in words, for screen readers. */
   label: string;
   /** Of the plot, px. */
   height: number;
   paint(pen: Pen, box: Box, look: Look): Shown;
-  /** What the pointer reads at a place, px. */
+  /** The reading at a place, px. */
   read(at: { x: number; y: number }, shown: Shown): string | undefined;
   legend?(scheme: Scheme): LegendEntry[];
   children?: ReactNode;

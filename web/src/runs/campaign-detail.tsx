@@ -21,10 +21,10 @@ import { usePoints } from "./use-points";
 /** Runs from which their distribution is worth a plot. */
 const SOME_RUNS = 50;
 const MOST_SAID = 4;
-/** Columns of the table before anybody chooses. */
+/** The number of columns of the table at first. */
 const FIRST_COLUMNS = 4;
 
-/** A campaign: its picture, what each diagnoser said, and its points as a table. */
+/** A campaign: its picture, the verdicts of each diagnoser, and its points as a table. */
 export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChanged(): void }) {
   const { value, error, since, again, isPage, every, ...paging } = usePoints(sweep);
   const [columns, setColumns] = useState<string[] | undefined>(undefined);
@@ -102,7 +102,7 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
   );
 }
 
-/** What runs could not do, and what they warn of, each text once. */
+/** The errors and the warnings of the runs, each text once. */
 function Said({ points }: { points: PointTally[] }) {
   const errors = [...new Set(points.flatMap((point) => point.errors ?? []))].slice(0, MOST_SAID);
   const warnings = [...new Set(points.flatMap((point) => point.warnings ?? []))].slice(0, MOST_SAID);

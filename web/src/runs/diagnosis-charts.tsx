@@ -10,7 +10,7 @@ import styles from "./runs.module.css";
 const MOST_LINES = 8;
 const UNIT: [number, number] = [0, 1];
 
-/** What a diagnoser said in all runs: operating characteristic and delays of the points, confusion of one. */
+/** The verdicts of a diagnoser in all runs: operating characteristic and delays of the points, confusion of one point. */
 export function DiagnosisCharts({ points, words }: { points: PointTally[]; words: Record<string, string> }) {
   const diagnosers = [...new Set(points.flatMap((point) => Object.keys(point.diagnosis ?? {})))];
   const [diagnoser, setDiagnoser] = useState<string | undefined>(undefined);

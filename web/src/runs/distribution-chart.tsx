@@ -16,7 +16,7 @@ import styles from "./runs.module.css";
 
 interface DistributionChartProps {
   sweep: SweepRun;
-  /** What runs can be counted over. */
+  /** The quantities over which runs can be counted. */
   quantities: readonly string[];
   figures: readonly string[];
   /** The figure to begin with. */
@@ -86,7 +86,7 @@ function Chart({ shown }: { shown: Shown }) {
   );
 }
 
-/** What each colour means. */
+/** The meaning of each colour. */
 function Scale({ most }: { most: number }) {
   const scheme = useScheme();
   const colours = [0, 0.25, 0.5, 0.75, 1].map((share) => rampColour(share, scheme));

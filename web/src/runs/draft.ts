@@ -16,14 +16,14 @@ export interface RangeRow {
   log: boolean;
 }
 
-/** What is about to be started, as the form has it. */
+/** The run or campaign in the form, before its start. */
 export interface Draft {
   kind: "run" | "campaign";
   scenario: string;
   /** Name of the run or campaign; empty: its title. */
   label: string;
   set: Row[];
-  /** Keep the signals of blocks that only look on too. */
+  /** Keep the signals of unused blocks too. */
   all: boolean;
   firstSeed: number;
   /** 0 while the field is empty: one. */
@@ -101,7 +101,7 @@ const setOf = (rows: readonly Row[]) =>
 /** Seeds as they are counted everywhere: both ends included. */
 const spanOf = (first: number, count: number) => `${first}:${first + Math.max(1, count) - 1}`;
 
-/** What a run is asked for with. */
+/** The request for a run. */
 export function runOf(draft: Draft) {
   const { scenario, label, all, firstSeed, seeds } = draft;
   return { scenario, label, all, set: setOf(draft.set), seeds: spanOf(firstSeed, seeds) };

@@ -3,9 +3,9 @@ import { formatCount, formatNumber } from "../ui/format";
 
 interface Common {
   id: string;
-  /** Its name if somebody gave it one, else its title. */
+  /** Its given name, else its title. */
   title: string;
-  /** What it consists of, in a few words. */
+  /** Its contents, in a few words. */
   about: string;
   state: string;
   created: string;
@@ -18,10 +18,10 @@ export type Job = Common & ({ kind: "run"; run: Run } | { kind: "campaign"; swee
 
 export const isActive = (state: string) => state === "queued" || state === "running";
 
-/** What a run is called. */
+/** The name of a run. */
 export const runName = (run: Run): string => run.label || run.title || run.scenario_id;
 
-/** What a campaign is called. */
+/** The name of a campaign. */
 export const sweepName = (sweep: SweepRun): string => sweep.label || sweep.title || `Campaign ${sweep.name}`;
 
 /** The seeds of a run in words. */
@@ -60,7 +60,7 @@ export function jobsOf(runs: readonly Run[], sweeps: readonly SweepRun[]): Job[]
   ].sort((a, b) => Date.parse(b.created) - Date.parse(a.created));
 }
 
-/** How a job stands, in words. */
+/** The state of a job, in words. */
 export function stateText(job: Job): string {
   if (job.state !== "done" || job.kind === "campaign") return job.state;
   const summary = job.run.summary as { ok?: boolean; trip?: unknown; expectations?: unknown[] } | null;

@@ -72,7 +72,7 @@ export function pointAt({ part, columns, rows }: MapShown, { field }: Plot, at: 
   return found < 0 ? undefined : found;
 }
 
-/** An axis with a place of one width for each value, whatever lies between them. */
+/** An axis with equal places for all values. */
 function valueAxis(values: readonly number[], scale: MetricScale): Axis {
   return {
     range: [0, values.length],

@@ -14,7 +14,7 @@ interface Column {
 }
 
 interface PointsTableProps {
-  /** All points, or those of a page in the order asked for. */
+  /** All points, or the points of a page in the chosen order. */
   points: PointTally[];
   metrics: string[];
   /** Points on all pages. */

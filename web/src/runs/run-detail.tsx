@@ -18,7 +18,7 @@ import styles from "./runs.module.css";
 
 const DIGITS = 6;
 
-/** What the summary of a run holds, as `combbench run --json` prints it. */
+/** The summary of a run, as `combbench run --json` prints it. */
 interface Summary {
   seed: number;
   seeds?: number[];
@@ -35,7 +35,7 @@ interface Summary {
   expectations: GalleryCard["expectations"];
 }
 
-/** One run: what was expected and measured, every figure, and the files it left. */
+/** One run: the expected and measured values, every figure, and its files. */
 export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
   const files = `./api/v1/runs/${run.id}`;
   const summary = run.summary as Summary | null;

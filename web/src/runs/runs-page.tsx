@@ -30,7 +30,7 @@ async function jobsLike(filter: RunFilter): Promise<Job[]> {
   return jobsOf(runs, sweeps);
 }
 
-/** Headless runs and campaigns: start them, watch them, read what they gave. */
+/** Headless runs and campaigns: start them, watch them, read their results. */
 export function RunsPage() {
   const [filter, setFilter] = useState(ALL);
   const [wanted] = useDebouncedValue(filter, PAUSE_MS);
@@ -47,7 +47,7 @@ export function RunsPage() {
   const isFiltered = Object.values(filter).some(Boolean);
   const job = value?.find((one) => one.id === chosen?.id);
   const detail = useRef<HTMLElement>(null);
-  // Where the result stands below the list it comes into view when it is chosen.
+  // A result below the list scrolls into view when it is chosen.
   useEffect(() => {
     if (chosen?.id) detail.current?.scrollIntoView({ block: "start" });
   }, [chosen?.id]);

@@ -10,10 +10,10 @@ const MOST = 200;
 export const PAGE = 50;
 
 const BUSY_MS = 2000;
-/** Until the first result is there. */
+/** Until the first result has arrived. */
 const FIRST_MS = 200;
 
-/** What a table of points is sorted by. */
+/** The sort order of a table of points. */
 export interface Order {
   id: string;
   down: boolean;

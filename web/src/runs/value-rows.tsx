@@ -6,7 +6,7 @@ import styles from "./runs.module.css";
 
 interface ValueRowsProps {
   label: string;
-  /** What a second row says: how to add one. */
+  /** The words of the button that adds a row. */
   more: string;
   placeholder: string;
   rows: Row[];

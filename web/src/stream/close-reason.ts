@@ -1,7 +1,7 @@
 export interface CloseReason {
   /** Whether trying again by itself can help. */
   retry: boolean;
-  /** What the page can offer when it cannot help itself. */
+  /** The offer of the page when it cannot reconnect by itself. */
   offer?: "bench" | "reload" | "login";
   /** Not worth a notice: the page reconnects, and its header says that it is slow. */
   quiet?: boolean;
@@ -24,7 +24,7 @@ const REASONS: Record<number, CloseReason> = {
   4205: {
     retry: true,
     quiet: true,
-    title: "What may be seen of this bench has changed",
+    title: "The visible part of this bench has changed",
     advice: "Reconnecting.",
   },
   4401: {
@@ -62,7 +62,7 @@ const LOST: CloseReason = {
   advice: "The page reconnects by itself; the simulation keeps running.",
 };
 
-/** What a WebSocket close code means to the person at the page. */
+/** The meaning of a WebSocket close code for the person at the page. */
 export function closeReason(code: number): CloseReason {
   return REASONS[code] ?? LOST;
 }

@@ -9,7 +9,7 @@ import { Formula } from "../ui/formula";
 import styles from "./equation-index.module.css";
 import { type Entry, entriesOf, found } from "./equations";
 
-/** Every equation that runs here, and what was printed where the two differ. */
+/** Every equation that runs here, and the printed one if the two differ. */
 export function EquationIndex() {
   const { blocks } = useCatalog();
   const asked = useView((s) => s.item);

@@ -98,7 +98,7 @@ const factsOf = (answer: Found): [string, string][] => [
   ["least Re G(jω)", leastWords(answer) + (answer.at === null ? " at infinity" : ` at ω = ${formatSi(answer.at, "")}`)],
 ];
 
-/** Re G(jw) over frequency, and the curve of Nyquist beside it or below. */
+/** Re G(jw) over frequency, and the Nyquist curve next to it or below. */
 function RealPart({ found }: { found: Found }) {
   const [overFrequency, nyquist] = useMemo(
     () =>

@@ -10,7 +10,7 @@ const MOST_POWER = 20;
 const ONE: Polynomial = [1];
 const TOKEN = /\s*(?:(\d+\.?\d*(?:[eE][-+]?\d+)?|\.\d+(?:[eE][-+]?\d+)?)|([sSpP])|([-+*/^()]))/y;
 
-/** What is wrong with what was typed. */
+/** The error in a typed transfer function. */
 export class NotRational extends Error {}
 
 /**

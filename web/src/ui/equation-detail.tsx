@@ -3,7 +3,7 @@ import styles from "./equation-detail.module.css";
 import { Formula } from "./formula";
 import { Prose } from "./prose";
 
-/** An erratum: what was printed, what works, and why. */
+/** An erratum: the printed equation, the working one, and the reason. */
 export function EquationDetail({ equation }: { equation: Equation }) {
   return (
     <div className={styles.printed}>
@@ -27,7 +27,7 @@ export function EquationDetail({ equation }: { equation: Equation }) {
   );
 }
 
-/** What was printed is an equation, or words about one. */
+/** The printed text is an equation, or words about an equation. */
 function Printed({ text }: { text: string }) {
   return /[\\^_=]/.test(text) ? (
     <Formula latex={text} />

@@ -22,7 +22,7 @@ export function metricName(metric: string): string {
 export interface MetricScale {
   /** The metric in words. */
   name: string;
-  /** Of what is shown. */
+  /** The unit of the figures shown. */
   unit: string;
   /** Both: "rms error, µm". */
   title: string;
@@ -59,7 +59,7 @@ function partsOf(metric: string): { name: string; unit: string } {
   const first = said.length;
   let unit = "";
   for (const piece of pieces) {
-    // the number of a step belongs to what is counted
+    // the number of a step belongs to the word before it
     if (/^\d+$/.test(piece) && said.length > first) said[said.length - 1] += ` ${piece}`;
     else {
       const found = withoutUnit(piece);

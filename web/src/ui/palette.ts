@@ -55,7 +55,7 @@ export const CANVAS: Record<
 
 const parts = (colour: string) => [1, 3, 5].map((at) => Number.parseInt(colour.slice(at, at + 2), 16));
 
-/** How much of a colour is left in what lies behind. */
+/** The share of a colour in a trace behind others. */
 const LEFT = 0.45;
 
 /** The colour of a share from 0 to 1 of a scale: lighter and lighter on dark, darker on light, in every kind of sight. */
@@ -67,7 +67,7 @@ export function rampColour(share: number, scheme: Scheme): string {
   return `rgb(${mixed.join(" ")})`;
 }
 
-/** A colour of what lies behind, on the panels of a scheme. */
+/** The colour of a trace behind others, on the panels of a scheme. */
 export function faded(colour: string, scheme: Scheme): string {
   const ground = parts(CANVAS[scheme].panel);
   const mixed = parts(colour).map((part, i) => Math.round(LEFT * part + (1 - LEFT) * ground[i]));

@@ -29,7 +29,7 @@ export const TIME_WINDOWS_MS = {
   phase: [1, 2, 4, 10, 20, 40],
 } as const satisfies Record<string, readonly number[]>;
 
-/** The items of a menu of lengths; one that is chosen but not usual stands among them. */
+/** The items of a menu of lengths, the chosen length included. */
 export function windowItems(usualMs: readonly number[], chosenMs: number): { value: string; label: string }[] {
   const all = usualMs.includes(chosenMs) ? usualMs : [...usualMs, chosenMs].sort((a, b) => a - b);
   return all.map((ms) => ({ value: String(ms), label: formatShort(ms, "ms") }));

@@ -19,7 +19,7 @@ export function TraceSwatch({ colour, dash }: { colour: string; dash: number }) 
   );
 }
 
-/** A signal's name: the block it comes from, then what it is. */
+/** A signal's name: its block, then its quantity. */
 export function SignalName({ name }: { name: string }) {
   const [block, ...rest] = name.split(".");
   return (

@@ -16,14 +16,14 @@ export const VERDICTS = Object.keys(MARKS);
 
 interface VerdictProps {
   verdict: string | null;
-  /** Whether a run bears it out; until then it is only what is claimed, without mark and colour. */
+  /** Whether a run confirms it; an unconfirmed claim has no mark and no colour. */
   borneOut: boolean;
 }
 
 /** The verdict on a claim: a word, a mark of its own shape, a colour. */
 export function Verdict({ verdict, borneOut }: VerdictProps) {
   const known = verdict !== null && verdict in MARKS ? MARKS[verdict as keyof typeof MARKS] : undefined;
-  // what is ours claims nothing
+  // our own experiments are no claims
   if (known && !borneOut)
     return (
       <span className={styles.verdict}>

@@ -2,7 +2,7 @@ import type { BlockCard } from "../api/types";
 import { Prose } from "./prose";
 import styles from "./ui.module.css";
 
-/** Where a block is known to be weak, beside what it does, so that it is read before the block is trusted. */
+/** The known weaknesses of a block, to be read before the block is trusted. */
 export function Weaknesses({ of }: { of: BlockCard | undefined }) {
   return of?.weaknesses.map((weakness) => (
     <p key={weakness} role="note" className={styles.weakness}>

@@ -57,7 +57,7 @@ function Words({ choice }: { choice: Choice | undefined }) {
     choice && (
       <span>
         {choice.title}
-        <small className={styles.menuNote}>
+        <small>
           <Prose text={choice.about} />
         </small>
       </span>

@@ -2,7 +2,7 @@ import { useBench } from "../../stream/bench-store";
 import { useBoardState, useStaleSince } from "../../stream/freshness";
 import { StateDot } from "../../ui/state-dot";
 
-/** What the board does right now, or that we do not know. */
+/** The present state of the board, or of the connection while it is unknown. */
 export function StateBadge() {
   const shown = useBoardState();
   const phase = useBench((s) => s.connection.phase);

@@ -1,4 +1,4 @@
-import { ActionIcon, Button, Menu, Popover } from "@mantine/core";
+import { ActionIcon, Button, Group, Menu, Popover } from "@mantine/core";
 import { IconChevronLeft, IconChevronRight, IconExternalLink, IconList, IconNotes, IconX } from "@tabler/icons-react";
 import { useEffect, useRef } from "react";
 import { useDock } from "../../bench/dock";
@@ -41,10 +41,10 @@ export function LectureStrip() {
   const count = `${at + 1} of ${lecture.script.length}`;
   if (present)
     return (
-      <section className={styles.audience} aria-label="Lecture">
+      <Group component="section" flex="none" gap={12} wrap="nowrap" align="baseline" fz="md" aria-label="Lecture">
         <strong>{cue.title}</strong>
-        <span>{count}</span>
-      </section>
+        <span style={{ color: "var(--muted)" }}>{count}</span>
+      </Group>
     );
   return (
     <section ref={place} className={styles.lecture} aria-label="Lecture" aria-busy={busy} tabIndex={-1}>
@@ -68,8 +68,8 @@ export function LectureStrip() {
         Next
       </Button>
       <p className={styles.where} title={cue.title}>
-        <span>{count}</span>
-        <strong>{cue.title}</strong>
+        <span className="note">{count}</span>
+        <strong className="cut">{cue.title}</strong>
       </p>
       {cue.vote && (
         <Button variant="light" title="Open the vote of this cue (A)" onClick={() => void askCue()}>

@@ -95,7 +95,7 @@ export function useEntries(): Entry[] {
   ];
 }
 
-/** Bring a view of a panel to the front; from another page once the panels are there. */
+/** Bring a view of a panel to the front; from another page after the dock has opened. */
 function openView(view: ViewName, another = false): void {
   const show = () => {
     if (another) addPanel(view);

@@ -9,13 +9,13 @@ import { isActive } from "../../runs/jobs";
 import { useBench } from "../../stream/bench-store";
 import { currentEvents } from "../../stream/event-log";
 
-/** One bubble of a tour: what it points at, and what is done on the page before it appears. */
+/** One bubble of a tour: its target, and an action on the page before it appears. */
 export interface TourStep {
   title: string;
   text: string;
   at(): Element | undefined;
   does?(): unknown;
-  /** What is waited for after that, on the bench of the tour. */
+  /** A condition of the bench to wait for after that. */
   until?(): boolean;
 }
 
@@ -45,7 +45,7 @@ async function startRun(): Promise<string | undefined> {
   return there.some((one) => one.id === id) ? undefined : id;
 }
 
-/** What a tour has left on the server is gone with it. */
+/** Remove the run of a tour from the server. */
 export async function forgetRun(): Promise<void> {
   const left = await run?.catch(() => undefined); // said already
   run = undefined;
