@@ -1,6 +1,6 @@
-import { client, data } from "./client";
+import { at, client, data } from "./client";
 
-const unit = (name: string) => ({ params: { path: { name } } });
+const unit = (name: string) => at({ name });
 
 /** The REST calls around the user's own units. */
 export const units = {

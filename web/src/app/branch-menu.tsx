@@ -2,7 +2,8 @@ import { Menu } from "@mantine/core";
 import { IconGitBranch, IconPlayerPlayFilled } from "@tabler/icons-react";
 import { fits } from "../api/fits";
 import type { Bench } from "../api/types";
-import { cardOf, slotMates, useCatalog } from "../api/use-catalog";
+import { slotMates, useCatalog } from "../api/use-catalog";
+import { titleOf } from "../bench/flag-words";
 import { goOn, goOnHaving } from "../bench/past";
 import { send } from "../bench/send";
 import { StripButton } from "./strip-button";
@@ -71,6 +72,3 @@ function DiagnoserItems({ bench }: { bench: Bench }) {
     </>
   );
 }
-
-const titleOf = (family: "faults" | "control", name: string) =>
-  cardOf(family, name)?.title ?? name.replaceAll("_", " ");

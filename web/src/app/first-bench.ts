@@ -4,9 +4,7 @@ import { ApiError } from "../api/client";
 import { askMe, may, useMe } from "../api/me";
 import type { Bench } from "../api/types";
 import type { SharedLayout } from "../bench/dock";
-import { benchInAddress, inAddress, openBench, openOwn, ownBench, showBench } from "../bench/open-bench";
-import { send } from "../bench/send";
-import { useBench } from "../stream/bench-store";
+import { benchInAddress, inAddress, openBench, openInstead, openOwn, ownBench, showBench } from "../bench/open-bench";
 import { formatTick } from "../ui/format";
 import { follow } from "./follow";
 import { showShared } from "./layouts";
@@ -53,11 +51,7 @@ export async function startAgain(scenario: string): Promise<void> {
 
 /** Start a bench of a library scenario; the bench shown pauses if no other page watches it. */
 export async function startBeside(scenario: string): Promise<void> {
-  const { bench } = useBench.getState();
-  const made = await api.createBench({ scenario, paused: false, quiet_lead: true });
-  // a student's bench before is gone
-  if (may("teach") && bench?.state === "running" && (bench.watchers ?? 0) <= 1) await send({ kind: "pause" });
-  openOwn(made.id);
+  await openInstead((await api.createBench({ scenario, paused: false, quiet_lead: true })).id);
 }
 
 /** Open the bench of this browser, or a fresh one. */

@@ -45,7 +45,7 @@ function Layouts() {
 
   return (
     <>
-      <Name label="Save the panels as they stand" button="Save" onName={(name) => saveLayout(name)} />
+      <Name label="Save this layout" button="Save" onName={(name) => saveLayout(name)} />
       <p className={styles.remark}>A saved layout keeps what you move in it from then on. It stays in this browser.</p>
       {own.length > 0 && (
         <ul className={styles.gallery} aria-label="Your layouts">

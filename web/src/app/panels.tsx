@@ -126,7 +126,7 @@ export const VIEW: Record<ViewName, View> = {
   allan: { title: "Allan deviation", only: "axes", component: AllanPanel },
 };
 
-type Benchlike = Pick<Bench, "axes"> | undefined;
+export type Benchlike = Pick<Bench, "axes"> | undefined;
 
 /** Whether a view has something to show on a bench; before there is one, all may. */
 export const suits = ({ only }: Pick<View, "only">, bench: Benchlike): boolean =>

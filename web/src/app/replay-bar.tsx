@@ -42,6 +42,10 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
     );
     if (took && next && bench.state !== "running") await send({ kind: "start" });
   };
+  const loopOver = (next: [number, number]) => {
+    setSpan(next);
+    void loop(true, next);
+  };
   const leave = showing(async () => {
     const id = benchBefore();
     if (id && (await api.benches()).some((b) => b.id === id)) openBench(id);
@@ -101,24 +105,13 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
       >
         Loop
       </Button>
-      <Button
-        title="The loop begins here"
-        onClick={() => {
-          const next: [number, number] = [bench.tick, to > bench.tick ? to : end];
-          setSpan(next);
-          void loop(true, next);
-        }}
-      >
+      <Button title="The loop begins here" onClick={() => loopOver([bench.tick, to > bench.tick ? to : end])}>
         from here
       </Button>
       <Button
         title="The loop ends here"
         disabled={bench.tick <= from + 2}
-        onClick={() => {
-          const next: [number, number] = [from, Math.min(bench.tick, end)];
-          setSpan(next);
-          void loop(true, next);
-        }}
+        onClick={() => loopOver([from, Math.min(bench.tick, end)])}
       >
         to here
       </Button>

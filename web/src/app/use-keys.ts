@@ -51,9 +51,7 @@ export function useKeys(): void {
       const target = event.target as HTMLElement;
       if (target.closest(TYPING)) return;
       if (event.key === " " && target.closest("button, a, summary, [role=button], [role=tab]")) return;
-      const binding = keymap().find(
-        (b) => b.key === event.key && (b.withControl ?? false) === (event.ctrlKey || event.metaKey),
-      );
+      const binding = keymap().find((b) => b.key === event.key && b.withControl === (event.ctrlKey || event.metaKey));
       if (!binding) return;
       event.preventDefault();
       binding.run();

@@ -74,7 +74,8 @@ export async function openReplay(recording: string): Promise<void> {
  */
 export async function openInstead(id: string): Promise<void> {
   const { bench } = useBench.getState();
-  if (bench?.state === "running" && (bench.watchers ?? 0) <= 1) await send({ kind: "pause" });
+  // the previous bench of a student is gone
+  if (may("teach") && bench?.state === "running" && (bench.watchers ?? 0) <= 1) await send({ kind: "pause" });
   openOwn(id);
 }
 

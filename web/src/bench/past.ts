@@ -4,6 +4,7 @@ import { announce } from "./announce";
 import { addBehind } from "./behind";
 import { openBench, openOwn } from "./open-bench";
 import { send, showError, showing } from "./send";
+import { untilBench } from "./until-bench";
 
 /** Ticks before a moment of the past that its panels can show. */
 const WINDOW_TICKS = 20_000;
@@ -63,19 +64,8 @@ async function seek(id: string, tick: number): Promise<void> {
 const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
 /** Wait until the page shows a bench. */
-function helloOf(id: string): Promise<void> {
-  return new Promise((resolve) => {
-    const done = () => {
-      clearTimeout(timer);
-      stop();
-      resolve();
-    };
-    const timer = setTimeout(done, HELLO_MS);
-    const stop = useBench.subscribe(({ bench, connection }) => {
-      if (bench?.id === id && connection.phase === "open") done();
-    });
-  });
-}
+const helloOf = (id: string): Promise<void> =>
+  untilBench(({ bench, connection }) => bench?.id === id && connection.phase === "open", HELLO_MS);
 
 /** Go back from the past to the bench it is of; a bench that only showed the past is closed. */
 export const backToNow = showing(async () => {

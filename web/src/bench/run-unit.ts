@@ -6,6 +6,7 @@ import { announce } from "./announce";
 import { openOwn } from "./open-bench";
 import { send } from "./send";
 import { sourceOnBench, valuesOf } from "./unit-values";
+import { untilBench } from "./until-bench";
 
 /** The bench that was made last for a unit; the next one takes its place. */
 let made: string | undefined;
@@ -46,20 +47,5 @@ export async function runUnit(card: BlockCard, source: string): Promise<void> {
 }
 
 /** Wait until the page has the bench with a text, or shows another. */
-function shown(name: string, source: string): Promise<void> {
-  const has = () => sourceOnBench(useBench.getState().bench?.parameters, name) === source;
-  return new Promise((resolve) => {
-    const settle = () => {
-      if (!has()) return;
-      stop();
-      clearTimeout(timer);
-      resolve();
-    };
-    const stop = useBench.subscribe(settle);
-    const timer = setTimeout(() => {
-      stop();
-      resolve();
-    }, MOST_WAIT_MS);
-    settle();
-  });
-}
+const shown = (name: string, source: string): Promise<void> =>
+  untilBench(({ bench }) => sourceOnBench(bench?.parameters, name) === source, MOST_WAIT_MS);

@@ -120,7 +120,7 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
             </Button>
           )}
           <Button size="xs" onClick={() => setLog(true)}>
-            What was done
+            Activity
           </Button>
           <Button size="xs" onClick={end}>
             End the class…
@@ -150,7 +150,7 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
       <Stale error={error} since={since} onRetry={again} />
       {members.length === 0 ? (
         <section aria-label="Students">
-          <EmptyState title="Nobody has joined yet">
+          <EmptyState title="No student has joined yet">
             Show the code on the wall. Students appear here when they join.
           </EmptyState>
         </section>

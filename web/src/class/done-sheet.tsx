@@ -19,7 +19,7 @@ interface DoneSheetProps {
 /** Who did what in a class, and when; newest first. */
 export function DoneSheet({ opened, onClose, ...rest }: DoneSheetProps) {
   return (
-    <Sheet opened={opened} title="What was done" size={480} onClose={onClose}>
+    <Sheet opened={opened} title="Activity" size={480} onClose={onClose}>
       {opened && <Done {...rest} />}
     </Sheet>
   );
@@ -35,9 +35,11 @@ function Done({ group, owners }: Pick<DoneSheetProps, "group" | "owners">) {
     <>
       <Stale error={error} since={since} onRetry={again} />
       {value?.length === 0 && (
-        <EmptyState title="Nothing yet">This list will show who joins, and what they do on their benches.</EmptyState>
+        <EmptyState title="Nothing yet">
+          This list will show new students and their actions on their benches.
+        </EmptyState>
       )}
-      <ol className={styles.done} aria-label="What was done, newest first">
+      <ol className={styles.done} aria-label="Activity, newest first">
         {value?.map(({ at, actor, text, tick, bench_id }) => {
           const owner = owners.get(bench_id ?? "");
           return (

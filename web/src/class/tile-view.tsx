@@ -4,6 +4,7 @@ import { memo, type ReactNode } from "react";
 import { answersOf } from "../api/blind";
 import type { BlockCard, HiddenAnswer, Tile, Verdict } from "../api/types";
 import { cardOf } from "../api/use-catalog";
+import { titleOf } from "../bench/flag-words";
 import { hypothesisWords } from "../bench/hypothesis-words";
 import { severityScale, severityText } from "../bench/severity";
 import { sheetWords } from "../bench/sheet-words";
@@ -107,8 +108,7 @@ export const TileView = memo(function TileView({ tile, isChosen, actions }: Tile
             {scenario}
           </p>
           <p className="note">
-            {cardOf("control", controller)?.title ?? controller.replaceAll("_", " ")} ·{" "}
-            <Faults faults={tile.faults ?? []} />
+            {titleOf("control", controller)} · <Faults faults={tile.faults ?? []} />
           </p>
           {tile.blind && tile.blind.bench === bench && <Hidden answer={tile.blind} />}
           {tile.sheet && (
@@ -158,12 +158,12 @@ function Faults({ faults }: { faults: NonNullable<Tile["faults"]> }) {
   if (acting.length === 0) return <span>no fault</span>;
   return (
     <Box component="b" c="var(--alarm)" fw={560}>
-      {acting.map(({ name, severity }) => `${titleOf(name)} ${strength(cardOf("faults", name), severity)}`).join(", ")}
+      {acting
+        .map(({ name, severity }) => `${titleOf("faults", name)} ${strength(cardOf("faults", name), severity)}`)
+        .join(", ")}
     </Box>
   );
 }
-
-const titleOf = (fault: string) => cardOf("faults", fault)?.title ?? fault.replaceAll("_", " ");
 
 function strength(fault: BlockCard | undefined, severity: number): string {
   const parameter = fault?.parameters.find((p) => p.name === "severity");

@@ -39,7 +39,7 @@ export function DesignerControls({ catalogue, device, state, onChange }: Designe
     );
   };
   return (
-    <section className={`card ${styles.controls}`} aria-label="What can be turned">
+    <section className={`card ${styles.controls}`} aria-label="Knobs">
       <NativeSelect
         label="Device"
         value={state.id}

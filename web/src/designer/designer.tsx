@@ -45,6 +45,7 @@ export function Designer() {
   const [spread, setSpread] = useState<ProcessSpread["statistics"][string] | undefined>(undefined);
   const [busy, during] = useBusy();
   const { evaluation, bode, drawing, refusal, design } = useDesign(state);
+  const isTurning = evaluation !== undefined && "gyro.axis_deg" in evaluation.metrics;
 
   useEffect(() => {
     api.deviceCatalogue().then(setCatalogue, showError);
@@ -127,40 +128,37 @@ export function Designer() {
         </Group>
       </header>
       <DesignerControls catalogue={catalogue} device={device} state={state} onChange={change} />
-      {evaluation && "gyro.axis_deg" in evaluation.metrics ? (
+      {evaluation && (isTurning || (bode && drawing)) ? (
         <>
           <section className={`column card ${styles.drawing}`} aria-label="Drawing">
-            <AxesView metrics={evaluation.metrics} title={evaluation.title} />
-          </section>
-          <div className={`column ${styles.results}`}>
-            <section className={`card ${styles.figures}`} aria-label="Figures">
-              <FigureGrid figures={evaluation.figures.filter(isOfGyroscope)} original={original?.figures} drawn />
-            </section>
-          </div>
-        </>
-      ) : evaluation && bode && drawing ? (
-        <>
-          <section className={`column card ${styles.drawing}`} aria-label="Drawing">
-            <DeviceView
-              geometry={evaluation.geometry}
-              title={evaluation.title}
-              onChooseDrawn={() => setState(newDesign(FIRST))}
-            />
+            {isTurning ? (
+              <AxesView metrics={evaluation.metrics} title={evaluation.title} />
+            ) : (
+              <DeviceView
+                geometry={evaluation.geometry}
+                title={evaluation.title}
+                onChooseDrawn={() => setState(newDesign(FIRST))}
+              />
+            )}
           </section>
           <div className={`column ${styles.results}`}>
             <section className={`card ${styles.figures}`} aria-label="Figures">
               <FigureGrid
-                figures={evaluation.figures}
+                figures={isTurning ? evaluation.figures.filter(isOfGyroscope) : evaluation.figures}
                 original={original?.figures}
-                drawn={evaluation.geometry !== null}
+                drawn={isTurning || evaluation.geometry !== null}
               />
             </section>
-            <section className={`card ${styles.response}`} aria-label="Frequency response">
-              <ResponseView bode={bode} drawing={drawing} />
-            </section>
-            <section className={`card ${styles.sensitivity}`} aria-label="Sensitivity">
-              <SensitivityTable evaluation={evaluation} />
-            </section>
+            {bode && drawing && (
+              <>
+                <section className={`card ${styles.response}`} aria-label="Frequency response">
+                  <ResponseView bode={bode} drawing={drawing} />
+                </section>
+                <section className={`card ${styles.sensitivity}`} aria-label="Sensitivity">
+                  <SensitivityTable evaluation={evaluation} />
+                </section>
+              </>
+            )}
           </div>
         </>
       ) : (

@@ -18,19 +18,7 @@ export const HYPOTHESES: readonly number[] = palette.hypotheses;
 export const SIGNALS: Partial<Record<string, readonly number[]>> = palette.signals;
 
 /** Canvas colours that CSS cannot reach; the rest are tokens in theme.css. */
-export const CANVAS: Record<
-  Scheme,
-  {
-    panel: string;
-    text: string;
-    muted: string;
-    grid: string;
-    axis: string;
-    accent: string;
-    alarm: string;
-    event: string;
-  }
-> = {
+export const CANVAS = {
   dark: {
     panel: "#161b21",
     text: "#e8ecf1",
@@ -51,7 +39,7 @@ export const CANVAS: Record<
     alarm: "#c4261d",
     event: "#7a8795",
   },
-};
+} satisfies Record<Scheme, Record<string, string>>;
 
 const parts = (colour: string) => [1, 3, 5].map((at) => Number.parseInt(colour.slice(at, at + 2), 16));
 

@@ -50,25 +50,19 @@ export function CompanyMenu() {
 function Here({ company }: { company: Company }) {
   const { driver, drivers, watching, more_watching, links } = company;
   const names = [...watching, ...(more_watching > 0 ? [`${more_watching} more`] : [])];
+  const people = [
+    ...drivers.map((one) => [nameOf(one), one.id === driver?.id && "drives"] as const),
+    ...(names.length > 0 ? [[names.join(", "), names.length === 1 ? "looks on" : "look on"] as const] : []),
+    ...(links > 0 ? [[formatCount(links, "page"), "by links to watch"] as const] : []),
+  ];
   return (
     <>
       <p className={styles.here}>Who is here</p>
-      {drivers.map((one) => (
-        <p key={one.id} className={styles.here}>
-          <b>{nameOf(one)}</b>
-          {one.id === driver?.id && " drives"}
+      {people.map(([name, does]) => (
+        <p key={name} className={styles.here}>
+          <b>{name}</b> {does}
         </p>
       ))}
-      {names.length > 0 && (
-        <p className={styles.here}>
-          <b>{names.join(", ")}</b> {names.length === 1 ? "looks on" : "look on"}
-        </p>
-      )}
-      {links > 0 && (
-        <p className={styles.here}>
-          <b>{formatCount(links, "page")}</b> by links to watch
-        </p>
-      )}
     </>
   );
 }

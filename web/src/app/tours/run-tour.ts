@@ -47,7 +47,7 @@ export async function startTour(tour: Tour): Promise<void> {
     setPage("bench");
     openBench(bench, true);
     await until(() => useBench.getState().bench?.id === bench);
-    layOutForScript(tour.layout);
+    layOutForScript("lab");
     await guide(driver, tour);
   } catch (error) {
     showError(error);

@@ -21,7 +21,7 @@ export function TourList() {
       </p>
       <Group gap={6}>
         {TOURS.map((tour) => (
-          <Button key={tour.id} disabled={narrow} onClick={() => void startTour(tour)}>
+          <Button key={tour.title} disabled={narrow} onClick={() => void startTour(tour)}>
             {tour.title}
           </Button>
         ))}

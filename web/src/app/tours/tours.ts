@@ -3,7 +3,7 @@ import { unless } from "../../api/client";
 import type { Command } from "../../api/types";
 import { dockNow, panelWith, showPanel } from "../../bench/dock";
 import { send } from "../../bench/send";
-import { type LayoutName, setPage } from "../../bench/view-store";
+import { setPage } from "../../bench/view-store";
 import { askLatest } from "../../bench/why";
 import { isActive } from "../../runs/jobs";
 import { useBench } from "../../stream/bench-store";
@@ -20,9 +20,7 @@ export interface TourStep {
 }
 
 export interface Tour {
-  id: string;
   title: string;
-  layout: LayoutName;
   steps: TourStep[];
 }
 
@@ -59,9 +57,7 @@ export async function forgetRun(): Promise<void> {
 
 export const TOURS: Tour[] = [
   {
-    id: "first",
     title: "First look round",
-    layout: "lab",
     steps: [
       {
         title: "A bench that runs",
@@ -98,9 +94,7 @@ export const TOURS: Tour[] = [
     ],
   },
   {
-    id: "faults",
     title: "Faults",
-    layout: "lab",
     steps: [
       {
         title: "The list of faults",
@@ -136,9 +130,7 @@ export const TOURS: Tour[] = [
     ],
   },
   {
-    id: "controllers",
     title: "Controllers",
-    layout: "lab",
     steps: [
       {
         title: "A device that has changed",
@@ -174,9 +166,7 @@ export const TOURS: Tour[] = [
     ],
   },
   {
-    id: "diagnosis",
     title: "Diagnosis",
-    layout: "lab",
     steps: [
       {
         title: "Six hypotheses",
@@ -211,9 +201,7 @@ export const TOURS: Tour[] = [
     ],
   },
   {
-    id: "runs",
     title: "Runs and claims",
-    layout: "lab",
     steps: [
       {
         title: "From live to headless",
