@@ -70,10 +70,7 @@ export function useAsked<T>(question: Question, ask: () => Promise<T>): Asked<T>
     gcTime: 0, // asked again later, a bench may have gone back in time
     placeholderData: keepPreviousData,
   });
-  const [last, keep] = useState<T | undefined>(undefined);
-  useEffect(() => {
-    if (data !== undefined && !isPlaceholderData) keep(data);
-  }, [data, isPlaceholderData]);
+  const last = useLast(isPlaceholderData ? undefined : data);
   return { answer: data ?? last, refusal: refusal(error), waiting: isFetching };
 }
 

@@ -28,27 +28,18 @@ export function addTo(
   api: DockviewApi,
   id: string,
   view: ViewName,
-  where: Where = {},
+  { inactive = false, ...where }: Where = {},
   scope?: ScopeConfig,
   title?: string,
 ): void {
-  const direction = where.below
-    ? "below"
-    : where.right
-      ? "right"
-      : where.left
-        ? "left"
-        : where.within
-          ? "within"
-          : undefined;
-  const referencePanel = where.below ?? where.right ?? where.left ?? where.within;
+  const [direction, referencePanel] = Object.entries(where)[0] ?? [];
   const options = {
     id,
     component: panelOf(view),
     ...(title ? { title } : {}),
     params: { view, ...(scope ? { scope } : {}) },
-    inactive: where.inactive ?? false,
-    ...(direction && referencePanel ? { position: { direction, referencePanel } } : {}),
+    inactive,
+    ...(direction ? { position: { direction, referencePanel } } : {}),
   };
   api.addPanel(options as AddPanelOptions);
 }

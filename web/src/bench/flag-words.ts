@@ -43,24 +43,11 @@ const leaf = (path: string) => path.slice(path.lastIndexOf(".") + 1).replaceAll(
 /** How loudly an event speaks: faults and trips are alarms, findings of diagnosers are news, run control is quiet. */
 export type EventTone = "alarm" | "found" | "change" | "quiet";
 
-const TONES: Record<string, EventTone> = {
-  inject: "alarm",
-  tripped: "alarm",
-  make_safe: "alarm",
-  recognised: "found",
-  heal: "change",
-  set: "change",
-  switch: "change",
-  truth_changed: "change",
-  reset_trip: "change",
-  failed: "alarm",
-  refused: "alarm",
-  scheduled: "change",
-  reset: "change",
-  restored: "change",
-  snapshot_taken: "change",
+const TONES: Partial<Record<EventTone, string[]>> = {
+  alarm: ["inject", "tripped", "make_safe", "failed", "refused"],
+  found: ["recognised"],
+  change: "heal set switch truth_changed reset_trip scheduled reset restored snapshot_taken".split(" "),
 };
 
-export function eventTone(event: Pick<LogEntry, "kind">): EventTone {
-  return TONES[event.kind] ?? "quiet";
-}
+export const eventTone = ({ kind }: Pick<LogEntry, "kind">): EventTone =>
+  (Object.keys(TONES) as EventTone[]).find((tone) => TONES[tone]?.includes(kind)) ?? "quiet";

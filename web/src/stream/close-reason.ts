@@ -1,6 +1,6 @@
 export interface CloseReason {
   /** Whether trying again by itself can help. */
-  retry: boolean;
+  retry?: boolean;
   /** The offer of the page when it cannot reconnect by itself. */
   offer?: "bench" | "reload" | "login";
   /** Not worth a notice: the page reconnects, and its header says that it is slow. */
@@ -11,13 +11,11 @@ export interface CloseReason {
 
 const REASONS: Record<number, CloseReason> = {
   4001: {
-    retry: false,
     offer: "reload",
     title: "The server speaks a newer version",
     advice: "Reload the page to get the matching one.",
   },
   4003: {
-    retry: false,
     title: "This address may not open the bench",
     advice: "Open the page at the address the server printed.",
   },
@@ -28,19 +26,16 @@ const REASONS: Record<number, CloseReason> = {
     advice: "Reconnecting.",
   },
   4401: {
-    retry: false,
     offer: "login",
     title: "You are not logged in",
     advice: "Open the address with the token that the server printed when it started.",
   },
   4403: {
-    retry: false,
     offer: "bench",
     title: "This bench is not yours",
     advice: "Another bench replaced it, or it belongs to another person.",
   },
   4404: {
-    retry: false,
     offer: "bench",
     title: "This bench was closed",
     advice: "It was closed, or the server was restarted: benches live as long as the server runs.",
