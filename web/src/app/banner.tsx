@@ -11,6 +11,9 @@ import { formatClock, formatTick } from "../ui/format";
 import { openOwnBench, startAgain } from "./first-bench";
 import { NoticeLine } from "./notice-line";
 
+const PLAYING = "Until it is over, the server hides the device, its noise and what happens to it.";
+const HIDDEN = "Until you answer, the server hides everything that tells which.";
+
 /** One line under the header when something needs to be known: a trip, a lost connection, silence, a hidden fault. */
 export function Banner() {
   const connection = useBench((s) => s.connection);
@@ -68,27 +71,15 @@ export function Banner() {
         {drives && <Button onClick={actions.reset}>Start over</Button>}
       </Line>
     );
-  if (blind && playing)
-    return (
-      <Line
-        tone="warn"
-        title={`A game is played here, seed ${playing.seed}`}
-        text="Until it is over, the server hides the device, its noise and what happens to it."
-      >
-        {drives && <Button onClick={() => showPanel("games", "faults")}>Games</Button>}
-      </Line>
-    );
-  if (blind)
-    return (
-      <Line
-        tone="warn"
-        title="A fault is hidden here, or none"
-        text="Until you answer, the server hides everything that tells which."
-      >
-        {drives && <Button onClick={() => showPanel("blind", "faults")}>Answer</Button>}
-      </Line>
-    );
-  return null;
+  if (!blind) return null;
+  const [title, text, view, words] = playing
+    ? [`A game is played here, seed ${playing.seed}`, PLAYING, "games", "Games"]
+    : ["A fault is hidden here, or none", HIDDEN, "blind", "Answer"];
+  return (
+    <Line tone="warn" title={title} text={text}>
+      {drives && <Button onClick={() => showPanel(view, "faults")}>{words}</Button>}
+    </Line>
+  );
 }
 
 const capital = (words: string): string => words.charAt(0).toUpperCase() + words.slice(1);

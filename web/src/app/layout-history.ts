@@ -17,7 +17,7 @@ const SETTLES_MS = 250;
 const IN_FRONT = new Set(["activeView", "activeGroup", "view"]);
 
 /** The shape of a layout, as text to compare. */
-export const shapeOf = ({ name, layout }: Pick<Kept, "name" | "layout">): string =>
+const shapeOf = ({ name, layout }: Pick<Kept, "name" | "layout">): string =>
   JSON.stringify([name, layout], (key, value) =>
     IN_FRONT.has(key) ? undefined : key === "size" ? Math.round(value) : value,
   );

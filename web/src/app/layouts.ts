@@ -13,7 +13,7 @@ import { PANELS } from "./panels";
 import { BUILT_IN_AXES } from "./two-axis-layouts";
 
 /** A layout of the user: its name, and whether it is in large type. */
-export interface OwnLayout {
+interface OwnLayout {
   name: string;
   large: boolean;
 }
@@ -168,17 +168,15 @@ async function fetchLayout(link: string): Promise<void> {
 }
 
 /** Put the panels as they stood in a layout. */
-export function putLayout(name: string, dock: SerializedDockview): void {
+export function putLayout(name: string, dock: SerializedDockview, large?: boolean): void {
   localStorage.setItem(storageKey(name), JSON.stringify(dock));
-  arrange(name);
+  arrange(name, large);
   chooseLayout(name);
 }
 
 function show(shared: SharedLayout, name: string): void {
   axes = shared.axes;
-  localStorage.setItem(storageKey(name), JSON.stringify(shared.dock));
-  arrange(name, shared.large);
-  chooseLayout(name);
+  putLayout(name, shared.dock, shared.large);
 }
 
 function stored(name: string): SerializedDockview | undefined {

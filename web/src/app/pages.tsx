@@ -17,7 +17,7 @@ import { Runs } from "../runs/runs";
 import { Theory } from "../theory/theory";
 import { Workspace } from "./workspace";
 
-export interface PageKind {
+interface PageKind {
   /** One word, under the icon. */
   name: string;
   title: string;

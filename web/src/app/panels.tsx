@@ -46,7 +46,7 @@ export interface PanelProps {
 }
 
 /** One view of a panel. */
-export interface View {
+interface View {
   title: string;
   /** It does something to the bench, which a recording that is played does not allow. */
   changes?: boolean;

@@ -19,7 +19,7 @@ export function Split({ upper, lower }: { upper: ReactNode; lower: ReactNode }) 
       { defaultSize: 100 - USUAL, min: 100 - MOST },
     ],
     sizes: [share, 100 - share],
-    onSizeChange: ([size]) => keep(Number(size)),
+    onSizeChange: ([size]) => keep(Math.round(Number(size))),
     step: STEP,
     resetOnDoubleClick: false,
   });

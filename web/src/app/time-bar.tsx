@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { IconArrowsDiff, IconGitBranch, IconPlayerTrackNextFilled } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { useMay } from "../api/me";
@@ -61,7 +61,7 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
           <span role="status"> computed again: {formatPercent(0.1 * Math.floor(10 * bench.travel.share), 0)}</span>
         )}
       </p>
-      <div className={styles.track}>
+      <Box pos="relative" flex="1 1 90px" miw={90} px={8}>
         <Slider
           size="sm"
           disabled={stale !== undefined}
@@ -79,7 +79,7 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
           ))}
           {bench.origin && !isPast && <i data-tone="branch" style={{ left: place(bench.origin.tick) }} />}
         </span>
-      </div>
+      </Box>
       <span className={styles.end}>{formatMoment(end * bench.dt_ms)}</span>
       <BranchMenu bench={bench} />
       {isPast ? <BackToNow /> : bench.origin && <Other />}

@@ -7,7 +7,7 @@ import { formatCount } from "../ui/format";
 /** The least time of a sentence on the page, to be read or spoken. */
 const LEAST_MS = 2000;
 
-export interface CaptionShown {
+interface CaptionShown {
   sentence: Sentence;
   /** Sentences that came and went since the one shown before. */
   more: number;

@@ -2,7 +2,7 @@ import type { PanelName, ViewName } from "../bench/panel-views";
 import { type Benchlike, PANELS, panelsOn, VIEW, viewsOn } from "./panels";
 
 /** A view of a panel in a list; the first view stands for its panel. */
-export interface ViewEntry {
+interface ViewEntry {
   panel: PanelName;
   view: ViewName;
   isFirst: boolean;

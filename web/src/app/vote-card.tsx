@@ -9,8 +9,8 @@ import { showError } from "../bench/send";
 import { formatCount, formatIn } from "../ui/format";
 import { Slider } from "../ui/slider";
 import { follow } from "./follow";
-import styles from "./vote-card.module.css";
 
+const LINE = { borderBottom: "1px solid var(--line)" };
 /** The interval at which a student's page asks for a vote. */
 const EVERY_MS = 4000;
 
@@ -45,7 +45,7 @@ function Card({ vote }: { vote: OpenVote }) {
   const cast = (answer: number, moment: number | null) =>
     castVote(vote.id, answer, moment).then(() => announce(`Your answer: ${nameOf(answers[answer])}`), showError);
   return (
-    <section className={`column ${styles.card}`} aria-label="Vote">
+    <Stack component="section" flex="none" gap={6} p="8px 14px" bg="var(--raised)" style={LINE} aria-label="Vote">
       <h2>{question.text}</h2>
       <Group gap={6}>
         {answers.map((answer, i) => (
@@ -88,6 +88,6 @@ function Card({ vote }: { vote: OpenVote }) {
               ? "Your answer is in. You can change it until the vote is closed."
               : "Tap to vote; votes are anonymous."}
       </p>
-    </section>
+    </Stack>
   );
 }

@@ -89,7 +89,7 @@ export const align = showing(async (alignment: Alignment) => {
 });
 
 /** Forget benches that are gone, or that have another rate than the bench on the page: the server draws nothing of them. */
-export async function forgetGone(): Promise<void> {
+async function forgetGone(): Promise<void> {
   const rate = rateHere();
   if (rate === undefined || useBehind.getState().behind.length === 0) return;
   const there = new Set((await api.benches()).flatMap((one) => (one.sample_rate_khz === rate ? [one.id] : [])));
@@ -104,7 +104,7 @@ async function shiftOf(id: string, alignment: Alignment): Promise<number | undef
   return here === undefined || there === undefined ? undefined : there - here;
 }
 
-export const lastOf = (events: readonly LogEntry[], kind: Alignment): number | undefined =>
+const lastOf = (events: readonly LogEntry[], kind: Alignment): number | undefined =>
   currentEvents([...events]).findLast((event) => event.kind === kind)?.tick;
 
 /** The benches behind the traces of another bench that the page shows now. */

@@ -41,13 +41,17 @@ export const titleOf = (family: string, name: string) => cardOf(family, name)?.t
 const leaf = (path: string) => path.slice(path.lastIndexOf(".") + 1).replaceAll("_", " ");
 
 /** How loudly an event speaks: faults and trips are alarms, findings of diagnosers are news, run control is quiet. */
-export type EventTone = "alarm" | "found" | "change" | "quiet";
+type EventTone = "alarm" | "found" | "change" | "quiet";
 
-const TONES: Partial<Record<EventTone, string[]>> = {
+const TONES = {
   alarm: ["inject", "tripped", "make_safe", "failed", "refused"],
   found: ["recognised"],
-  change: "heal set switch truth_changed reset_trip scheduled reset restored snapshot_taken".split(" "),
+  change: ["heal", "set", "switch", "truth_changed", "reset_trip", "scheduled", "reset", "restored", "snapshot_taken"],
 };
 
-export const eventTone = ({ kind }: Pick<LogEntry, "kind">): EventTone =>
-  (Object.keys(TONES) as EventTone[]).find((tone) => TONES[tone]?.includes(kind)) ?? "quiet";
+/** By kind, for it is asked for each event in each frame. */
+const TONE_OF = new Map(
+  Object.entries(TONES).flatMap(([tone, kinds]) => kinds.map((kind) => [kind, tone as EventTone] as const)),
+);
+
+export const eventTone = ({ kind }: Pick<LogEntry, "kind">): EventTone => TONE_OF.get(kind) ?? "quiet";

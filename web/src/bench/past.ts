@@ -3,7 +3,7 @@ import { useBench } from "../stream/bench-store";
 import { announce } from "./announce";
 import { addBehind } from "./behind";
 import { openBench, openOwn } from "./open-bench";
-import { send, showError, showing } from "./send";
+import { onBench, send, showError, showing } from "./send";
 import { untilBench } from "./until-bench";
 
 /** Ticks before a moment of the past that its panels can show. */
@@ -68,10 +68,8 @@ const helloOf = (id: string): Promise<void> =>
   untilBench(({ bench, connection }) => bench?.id === id && connection.phase === "open", HELLO_MS);
 
 /** Go back from the past to the bench it is of; a bench that only showed the past is closed. */
-export const backToNow = showing(async () => {
-  const bench = useBench.getState().bench;
-  if (!bench?.origin) return;
-  const { id, origin } = bench;
+export const backToNow = onBench(async ({ id, origin }) => {
+  if (!origin) return;
   await api.reopenBench(origin.bench); // the server may have closed it
   openBench(origin.bench, true, true);
   if (origin.is_past) await api.removeBench(id);
@@ -101,9 +99,7 @@ export const goOn = showing(async (name: string, change?: () => Promise<boolean>
 });
 
 /** Start a branch at the moment shown with other values from tick 0 on; all commands are repeated. */
-export const goOnHaving = showing(async (name: string, set: Record<string, unknown>) => {
-  const bench = useBench.getState().bench;
-  if (!bench) return;
+export const goOnHaving = onBench(async (bench, name: string, set: Record<string, unknown>) => {
   const made = await api.variant(bench.id, set, true);
   await api.nameBench(made.id, name.slice(0, LONGEST_NAME));
   const isPast = bench.origin?.is_past ?? false;
@@ -115,9 +111,7 @@ export const goOnHaving = showing(async (name: string, set: Record<string, unkno
 });
 
 /** Fork the bench before the commands of a tick, and run it without them. */
-export const goOnWithout = showing(async (tick: number, words: string) => {
-  const bench = useBench.getState().bench;
-  if (!bench) return;
+export const goOnWithout = onBench(async (bench, tick: number, words: string) => {
   const made = await api.fork(bench.id, {
     tick,
     before: true,
@@ -132,9 +126,8 @@ export const goOnWithout = showing(async (tick: number, words: string) => {
 });
 
 /** Fork a bench that has tripped from shortly before. */
-export const forkBeforeTrip = showing(async () => {
-  const bench = useBench.getState().bench;
-  if (!bench?.trip) return;
+export const forkBeforeTrip = onBench(async (bench) => {
+  if (!bench.trip) return;
   const before = Math.round(BEFORE_TRIP_PERIODS * (bench.drive_period_ticks ?? BEFORE_TRIP_TICKS));
   const tick = Math.max(bench.trip.tick - before, bench.earliest_tick ?? 0);
   const made = await api.fork(bench.id, { tick, paused: true, window_ticks: WINDOW_TICKS });

@@ -8,7 +8,7 @@ export type Way = "undo" | "redo";
 const seen = new Map<number, number>();
 
 /** A change of the bench that can be taken back or made again. */
-export interface BenchChange {
+interface BenchChange {
   text: string;
   at: number;
 }

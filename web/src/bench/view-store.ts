@@ -9,7 +9,7 @@ export type LayoutName = (typeof LAYOUT_NAMES)[number];
 const CHOSEN = "combbench.layout.chosen";
 
 /** The instance on the bench that the block card shows, such as "plant" or "diagnosers.kalman". */
-export type CardId = string;
+type CardId = string;
 
 interface ViewStore {
   page: PageName;

@@ -1,12 +1,13 @@
+import { Box, Group } from "@mantine/core";
 import { classes } from "../api/classes";
 import { useAnswer } from "../api/queries";
 import { EmptyState } from "../ui/empty-state";
 import { formatTick } from "../ui/format";
 import { Sheet } from "../ui/sheet";
 import { Stale } from "../ui/stale";
-import styles from "./class.module.css";
 
 const EVERY_MS = 3000;
+const LINE = { borderBottom: "1px solid var(--line)" };
 
 interface DoneSheetProps {
   opened: boolean;
@@ -39,18 +40,29 @@ function Done({ group, owners }: Pick<DoneSheetProps, "group" | "owners">) {
           This list will show new students and their actions on their benches.
         </EmptyState>
       )}
-      <ol className={styles.done} aria-label="Activity, newest first">
+      <ol aria-label="Activity, newest first">
         {value?.map(({ at, actor, text, tick, bench_id }) => {
           const owner = owners.get(bench_id ?? "");
           return (
-            <li key={`${at} ${actor} ${text}`}>
-              <time dateTime={at}>{new Date(at).toLocaleTimeString()}</time>
-              <p>
+            <Group
+              component="li"
+              key={`${at} ${actor} ${text}`}
+              gap={12}
+              py={6}
+              fz="sm"
+              wrap="nowrap"
+              align="start"
+              style={LINE}
+            >
+              <Box component="time" flex="none" miw="9ch" c="dimmed" dateTime={at}>
+                {new Date(at).toLocaleTimeString()}
+              </Box>
+              <p style={{ overflowWrap: "anywhere" }}>
                 <b>{actor}</b>
                 {owner && owner !== actor && ` on the bench of ${owner}`}: {text}
                 {tick !== null && <small> {formatTick(tick)}</small>}
               </p>
-            </li>
+            </Group>
           );
         })}
       </ol>

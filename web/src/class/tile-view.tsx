@@ -19,7 +19,7 @@ import styles from "./tile.module.css";
 const LEAST_UM = 0.5;
 const COLOUR = SIGNALS["plant.displacement"]?.[0] ?? 1;
 
-export interface TileActions {
+interface TileActions {
   open(tile: Tile): void;
   choose(id: string, chosen: boolean): void;
   run(tile: Tile, start: boolean): void;

@@ -1,4 +1,4 @@
-import { Modal } from "@mantine/core";
+import { Box, Modal } from "@mantine/core";
 import { useEffect } from "react";
 import { QrCode } from "../ui/qr-code";
 import styles from "./wall.module.css";
@@ -31,10 +31,13 @@ export function Wall({ opened, name, code, address, onClose }: WallProps) {
       onClose={onClose}
       title={name}
       closeButtonProps={{ "aria-label": "Leave the wall" }}
-      classNames={{ content: styles.wall, body: styles.body, title: styles.title }}
+      classNames={{ content: "column", body: styles.body }}
+      styles={{ title: { fontSize: "var(--size-4)", fontWeight: 650 } }}
       transitionProps={{ duration: 0 }}
     >
-      <p className={styles.code}>{code}</p>
+      <Box component="p" fz="min(12vw, 36vh)" fw={700} lh={1} style={{ whiteSpace: "nowrap" }}>
+        {code}
+      </Box>
       <div className={`row ${styles.foot}`}>
         <QrCode address={address} />
         <p>

@@ -33,8 +33,7 @@ export function DesignerControls({ catalogue, device, state, onChange }: Designe
         original={original}
         minimum={card?.minimum}
         maximum={card?.maximum}
-        onMove={set}
-        onChange={set}
+        {...both(set)}
       />
     );
   };
@@ -58,23 +57,17 @@ export function DesignerControls({ catalogue, device, state, onChange }: Designe
       <fieldset className={styles.group}>
         <legend>Environment</legend>
         {(isGyroscope(device) ? AROUND_A_PACKAGE : ENVIRONMENT).map((knob) => {
-          const set = (value: number) =>
-            onChange({ ...state, environment: { ...state.environment, [knob.path]: value } });
-          return (
-            <Knob
-              key={knob.path}
-              {...knob}
-              value={state.environment[knob.path] ?? AIR[knob.path]}
-              original={AIR[knob.path]}
-              onMove={set}
-              onChange={set}
-            />
-          );
+          const { environment } = state;
+          const set = (value: number) => onChange({ ...state, environment: { ...environment, [knob.path]: value } });
+          const air = AIR[knob.path];
+          return <Knob key={knob.path} {...knob} {...both(set)} value={environment[knob.path] ?? air} original={air} />;
         })}
       </fieldset>
     </section>
   );
 }
+
+const both = (set: (value: number) => void) => ({ onMove: set, onChange: set });
 
 function defaultOf(catalogue: DeviceCatalogue, path: string): number {
   return Number(catalogue.geometry.find((p) => `geometry.${p.name}` === path)?.default ?? 0);

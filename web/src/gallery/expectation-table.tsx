@@ -1,4 +1,3 @@
-import { Box } from "@mantine/core";
 import { useState } from "react";
 import type { GalleryCard } from "../api/types";
 import { formatShort } from "../ui/format";
@@ -8,6 +7,7 @@ import { Verdict } from "../ui/verdict";
 import styles from "./gallery.module.css";
 
 const SHOWN = 3;
+const MORE = { marginTop: 4, padding: "2px 0", color: "var(--accent)", font: "560 var(--size-0) var(--font)" };
 
 type Expected = GalleryCard["expectations"][number];
 /** A row; runs of earlier versions lack the newer fields. */
@@ -45,9 +45,9 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
   const [all, setAll] = useState(false);
   if (entries.length === 0)
     return (
-      <Box component="p" className="note" flex={1}>
+      <p className="note" style={{ flex: 1 }}>
         This experiment makes no claim.
-      </Box>
+      </p>
     );
   const rows = all ? entries : entries.slice(0, SHOWN);
   const hasOpenLoop = entries.some((entry) => typeof entry.open_loop === "number");
@@ -87,7 +87,7 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
                   {all && remarks(entry).map((text) => <small key={text}>{text}</small>)}
                 </th>
                 <td>{expected}</td>
-                <td className={styles.measured} data-ok={entry.ok}>
+                <td style={{ fontWeight: 620, color: entry.ok === false ? "var(--alarm)" : undefined }}>
                   {say(entry.measured)}
                   {entry.ok === false && " ✗"}
                 </td>
@@ -99,7 +99,7 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
         </tbody>
       </table>
       {entries.length > SHOWN || entries.some((entry) => remarks(entry).length > 0) ? (
-        <button type="button" className={styles.more} aria-expanded={all} onClick={() => setAll(!all)}>
+        <button type="button" style={MORE} aria-expanded={all} onClick={() => setAll(!all)}>
           {all ? "less" : entries.length > SHOWN ? `all ${entries.length} figures, with notes` : "notes"}
         </button>
       ) : null}

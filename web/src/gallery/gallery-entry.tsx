@@ -47,7 +47,7 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
   const headless = () => api.startRun({ scenario: card.id }).then(onChanged, showError);
 
   return (
-    <li ref={element} className={`column card ${styles.entry}`}>
+    <Box component="li" ref={element} className="column card" p={12} style={{ gap: 8 }}>
       <div className={styles.thumbnail}>
         {card.figure ? (
           <img src={`./api/v1/gallery/${card.id}/figure?v=${card.figure}`} alt={`Figure of ${title}`} loading="lazy" />
@@ -55,19 +55,19 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
           <img src={`./api/v1/runs/${card.run}/thumbnail`} alt={`Figure of ${title}`} loading="lazy" />
         ) : (
           !underWay && (
-            <div className={`column ${styles.wait}`} data-failed={card.problem !== ""}>
+            <div className={`column note ${styles.wait}`} data-failed={card.problem !== ""}>
               {card.problem ? `No figure: ${card.problem}` : isMaking ? "Its figure is being made" : "Not measured yet"}
             </div>
           )
         )}
         {underWay && (
-          <div className={`column ${styles.wait}`}>
+          <div className={`column note ${styles.wait}`}>
             {card.state === "queued" ? "waits for its turn" : "running"}
             <Progress value={card.progress * 100} size="sm" w="60%" aria-label={`Progress of ${title}`} />
           </div>
         )}
       </div>
-      <div className={styles.words}>
+      <div>
         <h2>
           <PlaceLink place={{ page: "gallery", item: card.id }}>{title}</PlaceLink>
         </h2>
@@ -76,11 +76,13 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
           {card.source && ` · ${card.source}`}
         </small>
         {headlines(card).map(({ metric, figure, ours, printed }) => (
-          <p key={metric} className={styles.headline}>
+          <Box component="p" key={metric} mt={6}>
             {figure}: <b>ours {ours}</b> / printed {printed}
-          </p>
+          </Box>
         ))}
-        <p>{card.claim || card.summary}</p>
+        <Box component="p" mt={4} fz="sm">
+          {card.claim || card.summary}
+        </Box>
       </div>
       <ExpectationTable entries={card.expectations} verdict={card.verdict} />
       <Group component="footer" gap="4px 10px">
@@ -130,6 +132,6 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
           )}
         </Group>
       </Group>
-    </li>
+    </Box>
   );
 }

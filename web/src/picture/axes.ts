@@ -1,7 +1,7 @@
 import { labelsOn, tickLabels } from "../ui/format";
 import { CANVAS, fontFor } from "../ui/palette";
 import { linearTicks, powerTicks } from "../ui/ticks";
-import { timeLabels, timeSplits, timeUnit } from "../ui/time-axis";
+import { timeLabels, timeUnit } from "../ui/time-axis";
 import type { UnitScale } from "../ui/unit-scale";
 import type { Box, Field, Look, Pen } from "./pen";
 import { type TickedRange, ticksOf } from "./ticked-range";
@@ -69,7 +69,7 @@ export function timeAxis({ start, end }: { start: number; end: number }, dtMs: n
   return {
     range: [start, end],
     unit: timeUnit(span).unit,
-    ticks: (count) => timeSplits(first, first + span, Math.max(2, count)).map((ms) => ms / dtMs + origin),
+    ticks: (count) => linearTicks(first, first + span, Math.max(2, count)).map((ms) => ms / dtMs + origin),
     say: (ticks) =>
       timeLabels(
         ticks.map((tick) => (tick - origin) * dtMs),

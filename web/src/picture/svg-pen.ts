@@ -158,7 +158,7 @@ export function svgColour(css: string): { colour: string; opacity: number } {
 }
 
 /** The attributes of a fill or a stroke. */
-export function svgPaint(kind: "fill" | "stroke", css: string, alpha = 1): string {
+function svgPaint(kind: "fill" | "stroke", css: string, alpha = 1): string {
   const { colour, opacity } = svgColour(css);
   const seen = Math.round(opacity * alpha * 1000) / 1000;
   return `${kind}="${colour}"${seen < 1 ? ` ${kind}-opacity="${seen}"` : ""}`;

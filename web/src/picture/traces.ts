@@ -1,7 +1,7 @@
 import type { Place, Plot } from "./axes";
 import type { Field, Pen } from "./pen";
 
-export interface Stroke {
+interface Stroke {
   colour: string;
   width?: number;
   dashes?: readonly number[];

@@ -1,5 +1,5 @@
 import type { Document } from "../api/types";
-import { metricName, metricTitle } from "../ui/metric-name";
+import { metricTitle } from "../ui/metric-name";
 import { roundTo } from "../ui/unit-scale";
 
 /** A value at a dotted path of the scenario, as typed; one value or several. */
@@ -9,7 +9,7 @@ export interface Row {
 }
 
 /** Bounds of a value at a dotted path, as typed. */
-export interface RangeRow {
+interface RangeRow {
   path: string;
   min: string;
   max: string;
@@ -148,7 +148,7 @@ export function pathsOf(document: unknown, prefix = ""): string[] {
 /** A path in words: "sensor.noise_um" reads "noise, µm · sensor". */
 export function pathTitle(path: string): string {
   const [last = "", ...outer] = path.split(".").reverse();
-  const of = outer.reverse().map(metricName).join(" ");
+  const of = outer.reverse().join(" ").replaceAll("_", " ");
   return of ? `${metricTitle(last)} · ${of}` : metricTitle(last);
 }
 

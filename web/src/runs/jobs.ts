@@ -28,6 +28,8 @@ export const sweepName = (sweep: SweepRun): string => sweep.label || sweep.title
 export const seedText = (run: Run): string =>
   run.seeds.length > 1 ? formatCount(run.seeds.length, "seed") : `seed ${run.seeds[0]}`;
 
+const commonOf = ({ id, state, created }: Run | SweepRun) => ({ id, state, created, isActive: isActive(state) });
+
 /** Runs and campaigns as one list, newest first. */
 export function jobsOf(runs: readonly Run[], sweeps: readonly SweepRun[]): Job[] {
   return [
@@ -35,26 +37,20 @@ export function jobsOf(runs: readonly Run[], sweeps: readonly SweepRun[]): Job[]
       (run): Job => ({
         kind: "run",
         run,
-        id: run.id,
+        ...commonOf(run),
         title: runName(run),
         about: `${run.scenario_id} · ${seedText(run)}`,
-        state: run.state,
-        created: run.created,
         progress: run.progress,
-        isActive: isActive(run.state),
       }),
     ),
     ...sweeps.map(
       (sweep): Job => ({
         kind: "campaign",
         sweep,
-        id: sweep.id,
+        ...commonOf(sweep),
         title: sweepName(sweep),
         about: `${sweep.name} · ${formatNumber(sweep.done ?? 0, 0)} of ${formatCount(sweep.runs, "run")}`,
-        state: sweep.state,
-        created: sweep.created,
         progress: sweep.runs ? (sweep.done ?? 0) / sweep.runs : 0,
-        isActive: isActive(sweep.state),
       }),
     ),
   ].sort((a, b) => Date.parse(b.created) - Date.parse(a.created));

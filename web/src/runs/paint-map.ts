@@ -8,7 +8,7 @@ import { labelScale, labelText } from "./points";
 export type Part = CampaignPicture["parts"][number];
 
 /** A figure over two numbers: the values of each, in their order, and the place of each point among them. */
-export interface MapShown {
+interface MapShown {
   part: Part;
   x: MetricScale;
   y: MetricScale;

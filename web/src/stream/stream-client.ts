@@ -25,7 +25,7 @@ export interface StreamHandlers {
   explain(): Promise<number | undefined>;
 }
 
-export interface Head {
+interface Head {
   tick: number;
   dtMs: number;
   running: boolean;

@@ -21,6 +21,10 @@ const PRESETS: { name: string; tones: Tone[] }[] = [
   { name: "Two tones", tones: [0.1, 0.4].map((frequency) => ({ amplitude: 10, frequency })) },
   { name: "Four tones", tones: [0.1, 0.4, 0.9, 1.6].map((frequency) => ({ amplitude: 10, frequency })) },
 ];
+const FIELDS = [
+  { key: "frequency", label: "Frequency", unit: "", minimum: 0, maximum: 1000 },
+  { key: "amplitude", label: "Amplitude", unit: "V", minimum: -1e6, maximum: 1e6 },
+] as const;
 const NAMES = ["least", "middle", "largest"];
 
 /** Whether an input tells the three parameters of a resonator apart. */
@@ -49,26 +53,16 @@ export function Excitation() {
           {tones.map((tone, i) => (
             // biome-ignore lint/suspicious/noArrayIndexKey: a tone is known by its place
             <tr key={i}>
-              <td>
-                <NumberField
-                  label={`Frequency of tone ${i + 1}`}
-                  unit=""
-                  value={tone.frequency}
-                  minimum={0}
-                  maximum={1000}
-                  onCommit={(frequency) => change(i, { frequency })}
-                />
-              </td>
-              <td>
-                <NumberField
-                  label={`Amplitude of tone ${i + 1}`}
-                  unit="V"
-                  value={tone.amplitude}
-                  minimum={-1e6}
-                  maximum={1e6}
-                  onCommit={(amplitude) => change(i, { amplitude })}
-                />
-              </td>
+              {FIELDS.map(({ key, label, ...limits }) => (
+                <td key={key}>
+                  <NumberField
+                    label={`${label} of tone ${i + 1}`}
+                    value={tone[key]}
+                    onCommit={(value) => change(i, { [key]: value })}
+                    {...limits}
+                  />
+                </td>
+              ))}
               <td>
                 <ActionIcon
                   size={26}

@@ -1,10 +1,10 @@
-import { Button, Group, TextInput } from "@mantine/core";
+import { Box, Button, Group, TextInput } from "@mantine/core";
 import { useMemo, useState } from "react";
 import { api } from "../api/api";
 import { useAsked } from "../api/queries";
 import type { PositiveReal as Found } from "../api/types";
 import { Painted } from "../picture/painted";
-import type { Box, Look, Pen } from "../picture/pen";
+import type { Look, Box as Paper, Pen } from "../picture/pen";
 import { PictureMenu } from "../picture/picture-menu";
 import { formatShort, formatSi } from "../ui/format";
 import { Formula } from "../ui/formula";
@@ -64,11 +64,11 @@ export function PositiveReal() {
                 : "Not positive real"}
           </p>
           {answer.reasons.length > 0 && (
-            <ul className={styles.reasons}>
+            <Box component="ul" mb={8} pl={18} fz="sm">
               {answer.reasons.map((reason) => (
                 <li key={reason}>{reason}</li>
               ))}
-            </ul>
+            </Box>
           )}
           <dl className={styles.facts}>
             {factsOf(answer).map(([name, fact]) => (
@@ -103,7 +103,7 @@ function RealPart({ found }: { found: Found }) {
   const [overFrequency, nyquist] = useMemo(
     () =>
       [paintOverFrequency, paintNyquist].map(
-        (paint) => (pen: Pen, box: Box, look: Look) => paint(pen, box, found, look),
+        (paint) => (pen: Pen, box: Paper, look: Look) => paint(pen, box, found, look),
       ),
     [found],
   );

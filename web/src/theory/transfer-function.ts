@@ -1,7 +1,7 @@
 import { add, isZero, multiply, type Polynomial, polynomialLatex } from "./polynomial";
 
 /** A ratio of polynomials in s. */
-export interface TransferFunction {
+interface TransferFunction {
   numerator: Polynomial;
   denominator: Polynomial;
 }

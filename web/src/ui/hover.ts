@@ -46,7 +46,7 @@ export function useRestingTick(wanted = true): number | undefined {
 }
 
 /** Where the time panels should look: a tick of the past, or live. */
-export type JumpTarget = { tick: number } | "live";
+type JumpTarget = { tick: number } | "live";
 
 const jumpers = new Set<(target: JumpTarget) => void>();
 

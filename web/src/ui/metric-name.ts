@@ -8,16 +8,6 @@ import { plainScale, roundTo } from "./unit-scale";
 const UNITS: Partial<Record<string, string>> = names.units;
 const WORDS: Partial<Record<string, string>> = names.words;
 
-/** A metric in words: "diagnosis.kalman.correct_fraction" reads "kalman correct fraction". */
-export function metricName(metric: string): string {
-  return metric
-    .replace(/^(?:control|device|diagnosis|identify|lateral|sensing)\./, "")
-    .replace(/^twins\.([^.]+)\./, "$1: ")
-    .replaceAll(/[._]/g, " ")
-    .replaceAll(/\bum\b/g, "µm")
-    .replaceAll(/\bpct\b/g, "%");
-}
-
 /** How figures of one metric are shown beside each other. */
 export interface MetricScale {
   /** The metric in words. */

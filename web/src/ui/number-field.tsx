@@ -78,7 +78,11 @@ export function NumberField({
           }
         }}
       />
-      {unit && <span className={styles.unit}>{unit}</span>}
+      {unit && (
+        <span className="remark" style={{ marginLeft: 5 }}>
+          {unit}
+        </span>
+      )}
       {wrong && (
         <span role="alert" className={styles.wrong}>
           {wrong}

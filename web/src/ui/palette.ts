@@ -62,11 +62,6 @@ export function faded(colour: string, scheme: Scheme): string {
   return `#${mixed.map((part) => part.toString(16).padStart(2, "0")).join("")}`;
 }
 
-/** A trace's colour on white, whatever it is on the screen. */
-export const onWhite = (colour: string): string =>
-  TRACE_COLOURS.light[TRACE_COLOURS.dark.indexOf(colour)] ??
-  (TRACE_COLOURS.light.includes(colour) ? colour : CANVAS.light.text);
-
 /** Font for text on a canvas, in device pixels. */
 export function fontFor(size: number, ratio: number, weight = 450): string {
   return `${weight} ${size * ratio}px "IBM Plex Sans Variable", system-ui, sans-serif`;

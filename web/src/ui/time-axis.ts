@@ -1,6 +1,6 @@
 import { formatShort, labelsOn } from "./format";
 
-export interface TimeUnit {
+interface TimeUnit {
   unit: "µs" | "ms" | "s";
   /** Shown value = ms x factor. */
   factor: number;
@@ -18,9 +18,6 @@ export function timeLabels(splitsMs: readonly number[], spanMs: number): string[
   const { factor } = timeUnit(spanMs);
   return labelsOn({ factor, exponent: "" }, splitsMs);
 }
-
-/** Round values across a span of time. */
-export { linearTicks as timeSplits } from "./ticks";
 
 /** Lengths of device time that panels offer, ms. */
 export const TIME_WINDOWS_MS = {

@@ -1,6 +1,5 @@
 import { Box } from "@mantine/core";
 import { DASHES } from "./palette";
-import styles from "./ui.module.css";
 
 /** A short stroke in a trace's colour and dash. */
 export function TraceSwatch({ colour, dash }: { colour: string; dash: number }) {
@@ -23,7 +22,7 @@ export function TraceSwatch({ colour, dash }: { colour: string; dash: number }) 
 export function SignalName({ name }: { name: string }) {
   const [block, ...rest] = name.split(".");
   return (
-    <span className={styles.signal} title={name}>
+    <span style={{ whiteSpace: "nowrap" }} title={name}>
       <Box component="span" c="dimmed">
         {words(block)}
       </Box>{" "}

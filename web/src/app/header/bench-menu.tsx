@@ -122,7 +122,7 @@ function Remove({ bench, onDone }: { bench: Bench; onDone(): void }) {
 const SHOWN_MS = 8000;
 
 /** Whether the server said a moment ago that this page takes frames too slowly. */
-export function useSlowPage(): boolean {
+function useSlowPage(): boolean {
   const notice = useBench((s) => (s.notice?.code === "slow_client" ? s.notice : undefined));
   const [slow, setSlow] = useState(false);
   useEffect(() => {

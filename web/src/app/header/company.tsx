@@ -57,11 +57,16 @@ function Here({ company }: { company: Company }) {
   ];
   return (
     <>
-      <p className={styles.here}>Who is here</p>
+      <Box component="p" className="note" p="2px 12px">
+        Who is here
+      </Box>
       {people.map(([name, does]) => (
-        <p key={name} className={styles.here}>
-          <b>{name}</b> {does}
-        </p>
+        <Box component="p" key={name} className="note" p="2px 12px" style={{ overflowWrap: "anywhere" }}>
+          <Box component="b" c="var(--text)" fw={560}>
+            {name}
+          </Box>{" "}
+          {does}
+        </Box>
       ))}
     </>
   );

@@ -2,15 +2,18 @@ import { ActionIcon, Button, Group, Menu, Popover } from "@mantine/core";
 import { IconChevronLeft, IconChevronRight, IconExternalLink, IconList, IconNotes, IconX } from "@tabler/icons-react";
 import { useEffect, useRef } from "react";
 import { useDock } from "../../bench/dock";
-import { cueBefore, goTo, nextCue, useLecture } from "../../bench/lecture";
+import { cueBefore, goTo, leaveLecture, nextCue, useLecture } from "../../bench/lecture";
 import { setPage, useView } from "../../bench/view-store";
 import { askCue } from "../../bench/vote";
 import { useBench } from "../../stream/bench-store";
-import { leave } from "./leave";
+import { setLayout } from "../layouts";
 import styles from "./lecture.module.css";
 import { LectureClock, Notes } from "./notes";
 import { openPresenter, usePresenter } from "./presenter";
 import { showCue } from "./show-cue";
+
+/** The bench and the layout are then as before the lecture. */
+const leave = () => leaveLecture().then((before) => before && setLayout(before.layout));
 
 /** The cues of a lecture in the strip under the panels. The notes have a window of their own; here they open on request. */
 export function LectureStrip() {

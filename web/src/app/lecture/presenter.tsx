@@ -1,4 +1,4 @@
-import { Button, Group } from "@mantine/core";
+import { Box, Button, Group } from "@mantine/core";
 import { type ReactNode, useEffect, useState } from "react";
 import { lectures } from "../../api/lectures";
 import { useAsked } from "../../api/queries";
@@ -148,7 +148,10 @@ function Page({ now, turn, children }: PageProps) {
   return (
     <main className={`column ${styles.presenter}`}>
       <h1>
-        <span>{now.place}</span> {now.cue?.title}
+        <Box component="span" c="dimmed" fw={400}>
+          {now.place}
+        </Box>{" "}
+        {now.cue?.title}
       </h1>
       <ClockFace used={used} planned={now.planned} whole={now.whole} />
       {now.cue && <Notes cue={now.cue} next={now.next} />}

@@ -1,5 +1,5 @@
 /** The groups of results, in their order. */
-export const GROUPS = ["Places", "Panels", "Scenarios", "Devices", "Settings", "Equations"] as const;
+const GROUPS = ["Places", "Panels", "Scenarios", "Devices", "Settings", "Equations"] as const;
 
 export interface Entry {
   group: (typeof GROUPS)[number];

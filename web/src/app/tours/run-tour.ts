@@ -26,7 +26,7 @@ export const useTour = create<{ runs: boolean }>(() => ({ runs: false }));
 
 /** Whether a tour was already offered or taken in this browser. */
 export const tourSeen = (): boolean => localStorage.getItem(SEEN) !== null;
-export const noteTourSeen = (): void => localStorage.setItem(SEEN, "yes");
+const noteTourSeen = (): void => localStorage.setItem(SEEN, "yes");
 
 /** Drive the page through a tour on a bench of its own, and put all back when it ends or is left. */
 export async function startTour(tour: Tour): Promise<void> {
