@@ -63,8 +63,8 @@ test("a class runs from its code to its end", async ({ page, server, elsewhere }
   await expect(ada.getByTestId("bench-state")).toHaveText("paused");
   await expect(all.getByRole("button", { name: /^Reset/ })).toHaveCount(0);
 
-  await page.getByRole("button", { name: "What was done" }).click();
-  const log = page.getByRole("list", { name: "What was done, newest first" });
+  await page.getByRole("button", { name: "Activity" }).click();
+  const log = page.getByRole("list", { name: "Activity, newest first" });
   await expect(log.getByText("began a scenario on all benches")).toBeVisible();
   await expect(log.getByRole("listitem").filter({ hasText: "Ada" }).first()).toContainText(/tick|joined/);
   await page.keyboard.press("Escape");

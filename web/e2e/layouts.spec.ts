@@ -32,7 +32,7 @@ test("panels close at their tabs and come back; a layout is saved, renamed, dele
   await front(page, "Voltage");
   await named("Voltage").locator(".dock-close").click();
   await menu("Save, rename or share");
-  const name = sheet.getByLabel("Save the panels as they stand");
+  const name = sheet.getByLabel("Save this layout");
   await sheet.getByRole("button", { name: "Save" }).click();
   await expect(sheet.getByText("Give it a name.")).toBeVisible();
   await name.fill("Lab");

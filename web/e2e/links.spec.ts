@@ -51,7 +51,7 @@ test("links to an experiment and to a layout open the same tick, log, cursors an
   await page.getByRole("tab", { name: "Voltage", exact: true }).locator(".dock-close").click();
   await chooseMore(page, /^Save, rename or share/);
   const sheet = page.getByRole("dialog", { name: "Layouts" });
-  await sheet.getByLabel("Save the panels as they stand").fill("Motion alone");
+  await sheet.getByLabel("Save this layout").fill("Motion alone");
   await sheet.getByRole("button", { name: "Save" }).click();
   await sheet.getByRole("button", { name: "Make a link of the Motion alone layout" }).click();
   const layout = sheet.getByLabel("Link of the layout");

@@ -2,7 +2,7 @@ import type { Page } from "@playwright/test";
 import { expect, test } from "../lab";
 import { nameOf, SCREENS } from "../screens";
 
-const PANELS = ["What can be turned", "Drawing", "Figures", "Frequency response", "Sensitivity"];
+const PANELS = ["Knobs", "Drawing", "Figures", "Frequency response", "Sensitivity"];
 
 /** Parts that are missing, stick out of their panel or of the page, or cover another panel. */
 const faultsOf = (page: Page): Promise<string[]> =>

@@ -1,4 +1,4 @@
-import { ApiError, client, data } from "./client";
+import { ApiError, at, client, data } from "./client";
 import type {
   AliasSource,
   BodeOf,
@@ -21,13 +21,13 @@ import type {
   Wanted,
 } from "./types";
 
-const bench = (bench_id: string) => ({ params: { path: { bench_id } } });
-const run = (run_id: string) => ({ params: { path: { run_id } } });
-const recording = (recording_id: string) => ({ params: { path: { recording_id } } });
-const parameterSet = (set_id: string) => ({ params: { path: { set_id } } });
-const link = (link_id: string) => ({ params: { path: { link_id } } });
-const threshold = (threshold_id: string) => ({ params: { path: { threshold_id } } });
-const sweep = (sweep_id: string) => ({ params: { path: { sweep_id } } });
+const bench = (bench_id: string) => at({ bench_id });
+const run = (run_id: string) => at({ run_id });
+const recording = (recording_id: string) => at({ recording_id });
+const parameterSet = (set_id: string) => at({ set_id });
+const link = (link_id: string) => at({ link_id });
+const threshold = (threshold_id: string) => at({ threshold_id });
+const sweep = (sweep_id: string) => at({ sweep_id });
 const command = (id: string, body: Command) =>
   data(client.POST("/api/v1/benches/{bench_id}/commands", { ...bench(id), body }));
 
@@ -41,25 +41,15 @@ export const api = {
   identify: (id: string, body: SweptSine) =>
     data(client.POST("/api/v1/benches/{bench_id}/identification", { ...bench(id), body })),
   unstableRegion: (bench_id: string, drive_v: number) =>
-    data(
-      client.GET("/api/v1/benches/{bench_id}/unstable-region", { params: { path: { bench_id }, query: { drive_v } } }),
-    ),
+    data(client.GET("/api/v1/benches/{bench_id}/unstable-region", at({ bench_id }, { drive_v }))),
   explanation: (bench_id: string, name: string, tick: number) =>
-    data(
-      client.GET("/api/v1/benches/{bench_id}/diagnosers/{name}/explain", {
-        params: { path: { bench_id, name }, query: { tick } },
-      }),
-    ),
+    data(client.GET("/api/v1/benches/{bench_id}/diagnosers/{name}/explain", at({ bench_id, name }, { tick }))),
   turn: (bench_id: string, name: string, tick: number) =>
-    data(
-      client.GET("/api/v1/benches/{bench_id}/diagnosers/{name}/turn", {
-        params: { path: { bench_id, name }, query: { tick } },
-      }),
-    ),
+    data(client.GET("/api/v1/benches/{bench_id}/diagnosers/{name}/turn", at({ bench_id, name }, { tick }))),
   aliases: (bench_id: string, name: string, body: Partial<AliasSource>) =>
     data(
       client.POST("/api/v1/benches/{bench_id}/diagnosers/{name}/aliases", {
-        params: { path: { bench_id, name } },
+        ...at({ bench_id, name }),
         body: { within_um: 0, ...body },
       }),
     ),
@@ -68,7 +58,7 @@ export const api = {
   persistency: (body: ExcitationSource) => data(client.POST("/api/v1/theory/persistency", { body })),
   instabilityMap: (body: MapSource) => data(client.POST("/api/v1/theory/instability-map", { body })),
   readout: (bench_id: string, name: string) =>
-    data(client.GET("/api/v1/benches/{bench_id}/readouts/{name}", { params: { path: { bench_id, name } } })),
+    data(client.GET("/api/v1/benches/{bench_id}/readouts/{name}", at({ bench_id, name }))),
   printed: async (id: string) => (await data(client.GET("/api/v1/benches/{bench_id}/printed", bench(id)))).marks,
   claims: (id: string) => data(client.GET("/api/v1/benches/{bench_id}/claims", bench(id))),
   findThreshold: (body: NewThreshold) => data(client.POST("/api/v1/thresholds", { body })),
@@ -79,8 +69,7 @@ export const api = {
   scenarios: async () => (await data(client.GET("/api/v1/scenarios"))).scenarios,
   /** `first`: the cards in sight, whose figures are made before the others. */
   gallery: (first: string[]) => data(client.GET("/api/v1/gallery", { params: { query: { first } } })),
-  benchmark: (benchmark_id: string) =>
-    data(client.GET("/api/v1/benchmarks/{benchmark_id}", { params: { path: { benchmark_id } } })),
+  benchmark: (benchmark_id: string) => data(client.GET("/api/v1/benchmarks/{benchmark_id}", at({ benchmark_id }))),
   runs: async (query: RunFilter) => (await data(client.GET("/api/v1/runs", { params: { query } }))).runs,
   renameRun: (id: string, label: string) =>
     data(client.PATCH("/api/v1/runs/{run_id}", { ...run(id), body: { label } })),
@@ -100,29 +89,22 @@ export const api = {
   removeSweeps: (ids?: string[]) => data(client.POST("/api/v1/sweeps/remove", { body: { ids } })),
   cancelSweep: (id: string) => data(client.DELETE("/api/v1/sweeps/{sweep_id}", sweep(id))),
   sweepPoints: (id: string, query: PointQuery) =>
-    data(client.GET("/api/v1/sweeps/{sweep_id}/points", { params: { ...sweep(id).params, query } })),
+    data(client.GET("/api/v1/sweeps/{sweep_id}/points", at({ sweep_id: id }, query))),
   sweepPicture: (id: string, query: { figure?: string; across?: string }) =>
-    data(client.GET("/api/v1/sweeps/{sweep_id}/picture", { params: { ...sweep(id).params, query } })),
+    data(client.GET("/api/v1/sweeps/{sweep_id}/picture", at({ sweep_id: id }, query))),
   sweepDistribution: (id: string, query: { x: string; y?: string }) =>
-    data(client.GET("/api/v1/sweeps/{sweep_id}/distribution", { params: { ...sweep(id).params, query } })),
-  scenario: (scenario_id: string) =>
-    data(client.GET("/api/v1/scenarios/{scenario_id}", { params: { path: { scenario_id } } })),
+    data(client.GET("/api/v1/sweeps/{sweep_id}/distribution", at({ sweep_id: id }, query))),
+  scenario: (scenario_id: string) => data(client.GET("/api/v1/scenarios/{scenario_id}", at({ scenario_id }))),
   trace: (bench_id: string, signals: string[], start_tick: number, end_tick: number, columns: number) =>
     data(
-      client.GET("/api/v1/benches/{bench_id}/trace", {
-        params: { path: { bench_id }, query: { signals, start_tick, end_tick, columns } },
-      }),
+      client.GET("/api/v1/benches/{bench_id}/trace", at({ bench_id }, { signals, start_tick, end_tick, columns })),
     ) as Promise<Trace>,
   recordings: async () => (await data(client.GET("/api/v1/recordings"))).recordings,
   recording: (id: string) => data(client.GET("/api/v1/recordings/{recording_id}", recording(id))),
   record: (id: string, body: Wanted) =>
     data(client.POST("/api/v1/benches/{bench_id}/recordings", { ...bench(id), body })),
   stopRecording: (bench_id: string, recording_id: string) =>
-    data(
-      client.POST("/api/v1/benches/{bench_id}/recordings/{recording_id}/stop", {
-        params: { path: { bench_id, recording_id } },
-      }),
-    ),
+    data(client.POST("/api/v1/benches/{bench_id}/recordings/{recording_id}/stop", at({ bench_id, recording_id }))),
   removeRecording: (id: string) => data(client.DELETE("/api/v1/recordings/{recording_id}", recording(id))),
   replay: (id: string) =>
     data(
@@ -163,9 +145,9 @@ export const api = {
   saveParameterSet: (id: string, name: string) =>
     data(client.POST("/api/v1/benches/{bench_id}/parameter-sets", { ...bench(id), body: { name } })),
   applyParameterSet: (bench_id: string, set_id: string) =>
-    data(client.POST("/api/v1/benches/{bench_id}/parameter-sets/{set_id}", { params: { path: { bench_id, set_id } } })),
+    data(client.POST("/api/v1/benches/{bench_id}/parameter-sets/{set_id}", at({ bench_id, set_id }))),
   compareParameterSets: (id: string, query: { other?: string; bench?: string }) =>
-    data(client.GET("/api/v1/parameter-sets/{set_id}/difference", { params: { path: { set_id: id }, query } })),
+    data(client.GET("/api/v1/parameter-sets/{set_id}/difference", at({ set_id: id }, query))),
   renameParameterSet: (id: string, name: string) =>
     data(client.PATCH("/api/v1/parameter-sets/{set_id}", { ...parameterSet(id), body: { name } })),
   removeParameterSet: (id: string) => data(client.DELETE("/api/v1/parameter-sets/{set_id}", parameterSet(id))),

@@ -1,8 +1,8 @@
-import { client, data } from "./client";
+import { at, client, data } from "./client";
 import type { HiddenAnswer } from "./types";
 
-const ofBench = (bench_id: string) => ({ params: { path: { bench_id } } });
-const ofClass = (class_id: string) => ({ params: { path: { class_id } } });
+const ofBench = (bench_id: string) => at({ bench_id });
+const ofClass = (class_id: string) => at({ class_id });
 
 /** The REST calls around hidden faults: on a bench, and for a class. */
 export const blind = {

@@ -1,8 +1,8 @@
-import { client, data } from "./client";
+import { at, client, data } from "./client";
 import type { Class, Command, Document, DrivingTurn, NewBench, NewClass, Tile } from "./types";
 
-const ofClass = (class_id: string) => ({ params: { path: { class_id } } });
-const ofBench = (bench_id: string) => ({ params: { path: { bench_id } } });
+const ofClass = (class_id: string) => at({ class_id });
+const ofBench = (bench_id: string) => at({ bench_id });
 
 /** The REST calls around classes, and around links to watch a bench. */
 export const classes = {
@@ -15,9 +15,7 @@ export const classes = {
   members: async (id: string) =>
     (await data(client.GET("/api/v1/classes/{class_id}/members", ofClass(id)))).members as Tile[],
   sendAway: (class_id: string, member_id: string) =>
-    data(
-      client.DELETE("/api/v1/classes/{class_id}/members/{member_id}", { params: { path: { class_id, member_id } } }),
-    ),
+    data(client.DELETE("/api/v1/classes/{class_id}/members/{member_id}", at({ class_id, member_id }))),
   command: (id: string, command: Command, members: string[] | null) =>
     data(client.POST("/api/v1/classes/{class_id}/commands", { ...ofClass(id), body: { command, members } })),
   begin: (id: string, body: NewBench) =>
@@ -30,11 +28,7 @@ export const classes = {
   giveLayout: (id: string, name: string, layout: Document | null) =>
     data(client.PUT("/api/v1/classes/{class_id}/layout", { ...ofClass(id), body: { name, layout } })),
   lowerHand: (class_id: string, member_id: string) =>
-    data(
-      client.DELETE("/api/v1/classes/{class_id}/members/{member_id}/hand", {
-        params: { path: { class_id, member_id } },
-      }),
-    ),
+    data(client.DELETE("/api/v1/classes/{class_id}/members/{member_id}/hand", at({ class_id, member_id }))),
   /** Ask for a bench, hand it over, take it back; `to` is whom it concerns. */
   drive: (bench: string, what: DrivingTurn, to = "") =>
     data(client.POST("/api/v1/benches/{bench_id}/driving", { ...ofBench(bench), body: { do: what, to } })),
@@ -47,12 +41,10 @@ export const classes = {
   letWatch: (bench: string, link: string, hours: number) =>
     data(client.POST("/api/v1/benches/{bench_id}/watchers", { ...ofBench(bench), body: { hours, link } })),
   endWatching: (bench_id: string, watcher_id: string) =>
-    data(
-      client.DELETE("/api/v1/benches/{bench_id}/watchers/{watcher_id}", { params: { path: { bench_id, watcher_id } } }),
-    ),
+    data(client.DELETE("/api/v1/benches/{bench_id}/watchers/{watcher_id}", at({ bench_id, watcher_id }))),
 };
 
-/** Where students join, in full; nothing while nobody can. */
+/** The full address at which students join; undefined while joining is closed. */
 export function joinAddress({ path, addresses }: Pick<Class, "path"> & { addresses?: string[] }): string | undefined {
   if (addresses?.[0]) return addresses[0];
   return path ? new URL(`.${path}`, document.baseURI).href : undefined;

@@ -17,7 +17,14 @@ async function reach(request: Request): Promise<Response> {
   }
 }
 
-/** What an answer carries; a refusal becomes an `ApiError` that says what happened and what to do. */
+/** The parameters of a call: of its path, and of its query. */
+export function at<P>(path: P): { params: { path: P } };
+export function at<P, Q>(path: P, query: Q): { params: { path: P; query: Q } };
+export function at(path: unknown, query?: unknown) {
+  return { params: { path, query } };
+}
+
+/** The data of an answer; a refusal becomes an `ApiError` with its reason and its advice. */
 export async function data<T>(answer: Promise<{ data?: T; error?: unknown; response: Response }>): Promise<T> {
   const { data, error, response } = await answer;
   if (!response.ok) throw new ApiError(response.status, errorBody(error, response.status));

@@ -1,6 +1,6 @@
 import type { Bench, BlockCard } from "./types";
 
-/** Whether a block can stand on a bench whose plant moves along these axes; none means one displacement. */
+/** Whether a block suits a bench whose plant moves along these axes; no axes mean one displacement. */
 export function fits({ axes, per_axis }: Pick<BlockCard, "axes" | "per_axis">, ofBench: readonly string[]): boolean {
   if (axes === null || per_axis) return !per_axis || ofBench.length > 0;
   return axes.length === 0 ? ofBench.length === 0 : axes.every((axis) => ofBench.includes(axis));

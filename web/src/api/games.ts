@@ -1,11 +1,8 @@
-import { client, data } from "./client";
+import { at, client, data } from "./client";
 import type { HandedIn } from "./types";
 
-const ofGame = (game_id: string, seed: number) => ({ params: { path: { game_id }, query: { seed } } });
-const toGame = (game_id: string, body: { seed: number; hand_in: HandedIn }) => ({
-  params: { path: { game_id } },
-  body,
-});
+const ofGame = (game_id: string, seed: number) => at({ game_id }, { seed });
+const toGame = (game_id: string, body: { seed: number; hand_in: HandedIn }) => ({ ...at({ game_id }), body });
 
 /** The REST calls around games. */
 export const games = {
@@ -16,11 +13,7 @@ export const games = {
   handIn: (game: string, seed: number, hand_in: HandedIn) =>
     data(client.POST("/api/v1/games/{game_id}/attempts", toGame(game, { seed, hand_in }))),
   reveal: (game: string, seed: number) =>
-    data(client.POST("/api/v1/games/{game_id}/reveal", { params: { path: { game_id: game } }, body: { seed } })),
+    data(client.POST("/api/v1/games/{game_id}/reveal", { ...at({ game_id: game }), body: { seed } })),
   ofClass: (class_id: string, game_id: string, seed: number) =>
-    data(
-      client.GET("/api/v1/classes/{class_id}/games/{game_id}", {
-        params: { path: { class_id, game_id }, query: { seed } },
-      }),
-    ),
+    data(client.GET("/api/v1/classes/{class_id}/games/{game_id}", at({ class_id, game_id }, { seed }))),
 };

@@ -14,7 +14,7 @@ export async function ticketed(address: string): Promise<string> {
   return url.href;
 }
 
-/** Exchange what a launch has put into the address for a session. A page that is in no frame gets a cookie, and begins again. */
+/** Exchange the launch code in the address for a session. A page that is in no frame gets a cookie, and begins again. */
 export async function launch(): Promise<void> {
   if (!window.location.pathname.endsWith("/lti")) return;
   const given = new URLSearchParams(window.location.hash.slice(1));
@@ -49,7 +49,7 @@ const refusal = (message: string): ApiErrorBody => ({ code: "lti_refused", messa
 const isKept = (address: string): boolean =>
   new URL(address, document.baseURI).pathname.startsWith(new URL("./api/", document.baseURI).pathname);
 
-/** A link to a file of the server gets its ticket when somebody follows it. */
+/** A link to a file of the server gets its ticket at the click. */
 function follow(event: MouseEvent): void {
   const link = (event.target as Element | null)?.closest?.("a");
   if (!link || !isKept(link.href)) return;

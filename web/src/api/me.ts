@@ -2,7 +2,7 @@ import { create } from "zustand";
 import { client, data } from "./client";
 import type { Me } from "./types";
 
-/** What the page offers: to change the bench it shows, or what only a teacher, or somebody alone, may do. */
+/** A right: to change the bench on the page, or to do what a teacher does. */
 export type Right = "drive" | "teach";
 
 const RIGHTS: Record<Me["role"], readonly Right[]> = {
@@ -17,16 +17,16 @@ interface MeStore {
   at: string | undefined;
 }
 
-/** Who is at this page; asked before anything is shown. */
+/** The person at this page; the page asks for it before it shows anything. */
 export const useMe = create<MeStore>(() => ({ me: undefined, at: undefined }));
 
-/** Whether the person at this page may do something; the server decides, and the page leaves out what it would refuse. */
+/** Whether the person at this page has a right; the server decides, and the page leaves out the controls that it would refuse. */
 export function may(right: Right, role = useMe.getState().me?.role): boolean {
   if (role === undefined || !RIGHTS[role].includes(right)) return false;
   return role !== "student" || !looksOn(useMe.getState());
 }
 
-/** Whether a student only looks at the bench on the page: it is shown to all, and is not one to drive. */
+/** Whether a student only watches the bench on the page: it is shown to all, and the student may not drive it. */
 const looksOn = ({ me, at }: MeStore): boolean =>
   at !== undefined && at === me?.shown && at !== me.bench && at !== me.lent;
 
@@ -35,7 +35,7 @@ export const useMay = (right: Right): boolean => useMe(({ me }) => may(right, me
 /** Whether the page was opened by a link to watch, which shows one bench and nothing else of the server. */
 export const useWatches = (): boolean => useMe(({ me }) => me?.role === "watcher");
 
-/** Ask who is at this page, and which bench is theirs. */
+/** Ask the server for the person at this page and for their bench. */
 export async function askMe(): Promise<Me> {
   return keep(await data(client.GET("/api/v1/me")));
 }
@@ -49,8 +49,8 @@ export async function raiseHand(raised: boolean): Promise<Me> {
 export const givenLayout = () => data(client.GET("/api/v1/me/layout"));
 
 /**
- * Where the page of somebody goes: to a bench just handed over or just shown to all, else it stays where it may, else to
- * the own bench. Nothing: it stays.
+ * The bench to which a page goes: a bench just handed over or just shown to all, else the present one if it is still
+ * allowed, else the own bench. Undefined: the page stays.
  */
 export function placeOf(me: Me, before: Me | undefined, at: string | undefined): string | undefined {
   if (me.lent && me.lent !== before?.lent) return me.lent;

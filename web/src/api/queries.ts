@@ -3,11 +3,11 @@ import { useCallback, useEffect, useState } from "react";
 import { ApiError } from "./client";
 import { usePanelVisible } from "./panel-visible";
 
-/** What the page has asked the server, and when; one answer for all who ask the same. */
+/** The questions to the server and their answers; equal questions share one answer. */
 export const queryClient = new QueryClient({
   defaultOptions: {
     queries: {
-      retry: false, // a refusal stays one; who asks again and again has a pace of its own
+      retry: false, // a refusal is final; repeated questions have their own interval
       networkMode: "always", // the server may be this machine
       throwOnError: (error) => !(error instanceof ApiError),
     },
@@ -19,7 +19,7 @@ type Question = readonly unknown[] | undefined;
 
 export interface Answer<T> {
   value: T | undefined;
-  /** Why the newest question got no answer; what is shown is older then. */
+  /** Why the newest question got no answer; the value is an older one then. */
   error: ApiError | undefined;
   /** When `value` came. */
   since: Date | undefined;
@@ -70,10 +70,7 @@ export function useAsked<T>(question: Question, ask: () => Promise<T>): Asked<T>
     gcTime: 0, // asked again later, a bench may have gone back in time
     placeholderData: keepPreviousData,
   });
-  const [last, keep] = useState<T | undefined>(undefined);
-  useEffect(() => {
-    if (data !== undefined && !isPlaceholderData) keep(data);
-  }, [data, isPlaceholderData]);
+  const last = useLast(isPlaceholderData ? undefined : data);
   return { answer: data ?? last, refusal: refusal(error), waiting: isFetching };
 }
 

@@ -12,8 +12,8 @@ export const keepSession = (secret: string): void => {
   session = secret;
 };
 
-/** What a call carries beside the cookie. */
+/** The headers of a call besides the cookie. */
 export const sessionHeaders = (): Record<string, string> => (session ? { Authorization: `Bearer ${session}` } : {});
 
-/** What a stream offers to speak beside its protocol: a socket has no header that a page could set. */
+/** The subprotocols of a stream that carry the session: a page cannot set a header of a socket. */
 export const sessionProtocols = (): string[] => (session ? [`combbench.session.${session}`] : []);

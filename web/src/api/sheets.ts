@@ -1,7 +1,7 @@
-import { client, data } from "./client";
+import { at, client, data } from "./client";
 
-const ofSheet = (sheet_id: string) => ({ params: { path: { sheet_id } } });
-const ofStep = (sheet_id: string, step_id: string) => ({ params: { path: { sheet_id, step_id } } });
+const ofSheet = (sheet_id: string) => at({ sheet_id });
+const ofStep = (sheet_id: string, step_id: string) => at({ sheet_id, step_id });
 
 /** The REST calls around lab sheets. */
 export const sheets = {
@@ -20,13 +20,9 @@ export const sheets = {
   close: (id: string, step: string) =>
     data(client.POST("/api/v1/sheets/{sheet_id}/steps/{step_id}/close", ofStep(id, step))),
   keep: (sheet_id: string, recording_id: string) =>
-    data(
-      client.PUT("/api/v1/sheets/{sheet_id}/recordings/{recording_id}", {
-        params: { path: { sheet_id, recording_id } },
-      }),
-    ),
+    data(client.PUT("/api/v1/sheets/{sheet_id}/recordings/{recording_id}", at({ sheet_id, recording_id }))),
   forAll: (class_id: string, sheet: string, members: string[] | null) =>
-    data(client.POST("/api/v1/classes/{class_id}/sheet", { params: { path: { class_id } }, body: { sheet, members } })),
+    data(client.POST("/api/v1/classes/{class_id}/sheet", { ...at({ class_id }), body: { sheet, members } })),
   report: (id: string) => `./api/v1/sheets/${encodeURIComponent(id)}/report`,
   grades: (class_id: string, format: "csv" | "json") => `./api/v1/classes/${class_id}/grades?format=${format}`,
 };

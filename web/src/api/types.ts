@@ -9,7 +9,7 @@ export type ApiErrorBody = Schemas["ErrorBody"];
 export type DrivingTurn = Schemas["DrivingTurn"]["do"];
 export type Benchmark = Schemas["BenchmarkDetail"];
 export type BenchmarkRow = Benchmark["results"][number]["rows"][number];
-/** A claim of a live bench, beside what was measured. */
+/** A claim of a live bench with the measured figure. */
 export type Claim = Schemas["BenchClaim"];
 export type Device = Schemas["DeviceCard"];
 export type DeviceCatalogue = Schemas["Devices"];
@@ -21,9 +21,9 @@ export type GameKind = Schemas["Kind"];
 export type GameLine = Schemas["Standing"];
 /** A game at a seed, as the caller may see it. */
 export type GamePlay = Schemas["Play"];
-/** What is handed in at a game, by the names of its parameters. */
+/** The values handed in at a game, by the names of its parameters. */
 export type HandedIn = Record<string, number | string>;
-/** A hidden fault, and what somebody said of it. */
+/** A hidden fault and the answer to it. */
 export type HiddenAnswer = Schemas["Answer"];
 /** A number that may be turned to see where a claim begins to hold. */
 export type ClaimKnob = Schemas["Knob"];
@@ -37,7 +37,7 @@ export type PointQuery = NonNullable<operations["get_sweep_points"]["parameters"
 export type PositiveReal = Schemas["PositiveRealReport"];
 export type Lecture = Schemas["LectureDetail"];
 export type Cue = Schemas["CueDetail"];
-/** What is told of a hidden fault. */
+/** The known part of a hidden fault. */
 export type Question = Schemas["HiddenQuestion"];
 export type ScenarioSummary = Schemas["ScenarioCard"];
 export type Score = Schemas["Scores"];
@@ -69,5 +69,5 @@ export type Command =
   | Schemas["ResetTrip"]
   | Schemas["Seek"]
   | Schemas["Loop"];
-/** What is printed of a figure, as it is drawn over a signal. */
+/** A printed figure as a mark over a signal. */
 export type PrintedMark = Schemas["Mark"];

@@ -1,8 +1,8 @@
-import { client, data } from "./client";
+import { at, client, data } from "./client";
 
-const unit = (name: string) => ({ params: { path: { name } } });
+const unit = (name: string) => at({ name });
 
-/** The REST calls around units of one's own. */
+/** The REST calls around the user's own units. */
 export const units = {
   all: () => data(client.GET("/api/v1/units")),
   text: (name: string) => data(client.GET("/api/v1/units/{name}", unit(name))),

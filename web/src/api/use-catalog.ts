@@ -11,7 +11,7 @@ const FOR_EVER = { staleTime: Number.POSITIVE_INFINITY, gcTime: Number.POSITIVE_
 
 const UNITS = ["units"];
 
-/** The library's blocks and the units of the bench; a unit named like a block of the library stands in its place. */
+/** The library's blocks and the units of the bench; a unit replaces the block of the library of the same name. */
 function withUnits(blocks: BlockCard[], units: BlockCard[]): BlockCard[] {
   if (units.length === 0) return blocks;
   const own = new Set(units.map((unit) => `${unit.family}/${unit.name}`));
@@ -31,7 +31,7 @@ const blocksNow = (): BlockCard[] =>
 export const cardOf = (family: string, name: string): BlockCard | undefined =>
   blocksNow().find((b) => b.family === family && b.name === name);
 
-/** The controllers that stand in the slot of one of them, in the order of the catalogue, as far as it has come. */
+/** The controllers in the same slot as a controller, in the order of the catalogue, as far as it has arrived. */
 export function slotMates(controller: string, controllers: readonly string[]): string[] {
   const slot = cardOf("control", controller)?.slot ?? "";
   return controllersOf(slot, controllers, blocksNow()).map((b) => b.name);

@@ -1,7 +1,7 @@
-import { client, data } from "./client";
+import { at, client, data } from "./client";
 import type { NewVote } from "./types";
 
-const ofVote = (vote_id: string) => ({ params: { path: { vote_id } } });
+const ofVote = (vote_id: string) => at({ vote_id });
 
 /** The REST calls around votes. */
 export const votes = {

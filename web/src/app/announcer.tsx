@@ -23,7 +23,7 @@ export function Announcer() {
 
   useEffect(() => {
     if (!blind) return;
-    announce(""); // what was said last may tell a verdict
+    announce(""); // the last announcement may name a verdict
     alarm("");
   }, [blind]);
 

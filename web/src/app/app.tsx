@@ -93,7 +93,7 @@ export function App() {
   }, [start]);
 
   if (role && role !== "teacher" && (loggedOut || failure?.code === "unauthorised")) return <Ended role={role} />;
-  if (!role && !failure) return null; // what is shown depends on who looks
+  if (!role && !failure) return null; // the contents depend on the role
   return (
     <div className="page" data-stale={stale} data-present={present}>
       {phone || present || failure ? null : onBench ? <Header /> : <PageHeader />}

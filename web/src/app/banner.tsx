@@ -1,5 +1,5 @@
-import { Button } from "@mantine/core";
-import { type ReactNode, useEffect, useState } from "react";
+import { Box, Button } from "@mantine/core";
+import { type ComponentProps, useEffect, useState } from "react";
 import { useMay } from "../api/me";
 import { actions } from "../bench/actions";
 import { showPanel } from "../bench/dock";
@@ -8,8 +8,11 @@ import { useBench } from "../stream/bench-store";
 import { staleWords, useStaleSince } from "../stream/freshness";
 import { stream } from "../stream/stream";
 import { formatClock, formatTick } from "../ui/format";
-import styles from "./banner.module.css";
 import { openOwnBench, startAgain } from "./first-bench";
+import { NoticeLine } from "./notice-line";
+
+const PLAYING = "Until it is over, the server hides the device, its noise and what happens to it.";
+const HIDDEN = "Until you answer, the server hides everything that tells which.";
 
 /** One line under the header when something needs to be known: a trip, a lost connection, silence, a hidden fault. */
 export function Banner() {
@@ -68,50 +71,22 @@ export function Banner() {
         {drives && <Button onClick={actions.reset}>Start over</Button>}
       </Line>
     );
-  if (blind && playing)
-    return (
-      <Line
-        tone="warn"
-        title={`A game is played here, seed ${playing.seed}`}
-        text="Until it is over, the server hides the device, its noise and what happens to it."
-      >
-        {drives && <Button onClick={() => showPanel("games", "faults")}>Games</Button>}
-      </Line>
-    );
-  if (blind)
-    return (
-      <Line
-        tone="warn"
-        title="A fault is hidden here, or none"
-        text="Until you answer, the server hides everything that tells which."
-      >
-        {drives && <Button onClick={() => showPanel("blind", "faults")}>Answer</Button>}
-      </Line>
-    );
-  return null;
+  if (!blind) return null;
+  const [title, text, view, words] = playing
+    ? [`A game is played here, seed ${playing.seed}`, PLAYING, "games", "Games"]
+    : ["A fault is hidden here, or none", HIDDEN, "blind", "Answer"];
+  return (
+    <Line tone="warn" title={title} text={text}>
+      {drives && <Button onClick={() => showPanel(view, "faults")}>{words}</Button>}
+    </Line>
+  );
 }
 
 const capital = (words: string): string => words.charAt(0).toUpperCase() + words.slice(1);
 
-function Line({
-  tone,
-  title,
-  text,
-  children,
-}: {
-  tone: "alarm" | "warn";
-  title: string;
-  text: string;
-  children?: ReactNode;
-}) {
-  return (
-    // Announced by the page's live regions, not here a second time.
-    <section className={`row ${styles.banner}`} data-tone={tone} data-brief={tone === "warn"} aria-label="Notice">
-      <strong>{title}</strong>
-      <span>{text}</span>
-      <div className={`line ${styles.actions}`}>{children}</div>
-    </section>
-  );
+function Line(line: Omit<ComponentProps<typeof NoticeLine>, "label">) {
+  // Announced by the page's live regions, not here a second time.
+  return <NoticeLine label="Notice" isBrief={line.tone === "warn"} {...line} />;
 }
 
 function Countdown({ until }: { until: number | undefined }) {
@@ -122,7 +97,11 @@ function Countdown({ until }: { until: number | undefined }) {
   }, []);
   if (until === undefined) return null;
   const left = Math.ceil((until - now) / 1000);
-  return <span className={styles.countdown}>{left > 0 ? `again in ${left} s` : "trying"}</span>;
+  return (
+    <Box component="span" miw="9ch" c="dimmed">
+      {left > 0 ? `again in ${left} s` : "trying"}
+    </Box>
+  );
 }
 
 /** What to do when the bench on the page is no more. */

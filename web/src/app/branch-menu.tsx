@@ -2,12 +2,13 @@ import { Menu } from "@mantine/core";
 import { IconGitBranch, IconPlayerPlayFilled } from "@tabler/icons-react";
 import { fits } from "../api/fits";
 import type { Bench } from "../api/types";
-import { cardOf, slotMates, useCatalog } from "../api/use-catalog";
+import { slotMates, useCatalog } from "../api/use-catalog";
+import { titleOf } from "../bench/flag-words";
 import { goOn, goOnHaving } from "../bench/past";
 import { send } from "../bench/send";
 import { StripButton } from "./strip-button";
 
-/** What can begin at the moment shown: the same again, or with one thing changed. The bench itself is left as it is. */
+/** The branches that can begin at the moment shown: the same again, or with one change. The bench itself is left as it is. */
 export function BranchMenu({ bench }: { bench: Bench }) {
   useCatalog(); // the titles come with it
   const others = slotMates(bench.controller, bench.controllers).filter((name) => name !== bench.controller);
@@ -51,7 +52,7 @@ export function BranchMenu({ bench }: { bench: Bench }) {
   );
 }
 
-/** Diagnosers that the bench has not; one that is chosen sees everything that was, from tick 0. */
+/** The diagnosers that the bench lacks; a chosen one sees the whole run from tick 0. */
 function DiagnoserItems({ bench }: { bench: Bench }) {
   const { blocks } = useCatalog();
   const there = new Set([...Object.keys(bench.diagnosers), ...Object.values(bench.diagnosers).map(({ kind }) => kind)]);
@@ -71,6 +72,3 @@ function DiagnoserItems({ bench }: { bench: Bench }) {
     </>
   );
 }
-
-const titleOf = (family: "faults" | "control", name: string) =>
-  cardOf(family, name)?.title ?? name.replaceAll("_", " ");

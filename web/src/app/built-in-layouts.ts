@@ -7,7 +7,7 @@ const MOTION = scopeConfig(["plant.displacement", "sensor.displacement", "model.
 const TRACKING = scopeConfig(["model.tracking_error"]);
 const VOLTAGE = scopeConfig(["reference.voltage", "drive.voltage"]);
 
-/** The loop is drawn no smaller than this; what stands below it is as wide. */
+/** The smallest size of the loop; the panels below it are as wide. */
 export const LOOP_PX = { width: 326, height: 312 };
 
 /** A column of faults or controllers is read at this width. */
@@ -28,27 +28,18 @@ export function addTo(
   api: DockviewApi,
   id: string,
   view: ViewName,
-  where: Where = {},
+  { inactive = false, ...where }: Where = {},
   scope?: ScopeConfig,
   title?: string,
 ): void {
-  const direction = where.below
-    ? "below"
-    : where.right
-      ? "right"
-      : where.left
-        ? "left"
-        : where.within
-          ? "within"
-          : undefined;
-  const referencePanel = where.below ?? where.right ?? where.left ?? where.within;
+  const [direction, referencePanel] = Object.entries(where)[0] ?? [];
   const options = {
     id,
     component: panelOf(view),
     ...(title ? { title } : {}),
     params: { view, ...(scope ? { scope } : {}) },
-    inactive: where.inactive ?? false,
-    ...(direction && referencePanel ? { position: { direction, referencePanel } } : {}),
+    inactive,
+    ...(direction ? { position: { direction, referencePanel } } : {}),
   };
   api.addPanel(options as AddPanelOptions);
 }
@@ -79,7 +70,7 @@ export function addBehind(api: DockviewApi, front: string, views: ViewName[]): v
 /** The layouts everybody has; sizes are shares of the page. */
 export type Layouts = Record<LayoutName, (api: DockviewApi, width: number, height: number) => void>;
 
-/** Those of a device with one displacement. */
+/** The layouts for a device with one displacement. */
 export const BUILT_IN: Layouts = {
   lecture(api, width, height) {
     addTo(api, "motion", "time", {}, MOTION, "Displacement");

@@ -1,5 +1,4 @@
 import { Button, CloseButton } from "@mantine/core";
-import type { ReactNode } from "react";
 import { classes } from "../api/classes";
 import { useMe } from "../api/me";
 import { useClasses } from "../api/use-classes";
@@ -8,10 +7,10 @@ import { openBench } from "../bench/open-bench";
 import { showError } from "../bench/send";
 import { setPage, useView } from "../bench/view-store";
 import { useBench } from "../stream/bench-store";
-import styles from "./banner.module.css";
 import { follow, leaveGiven, useGiven } from "./follow";
+import { NoticeLine } from "./notice-line";
 
-/** Lines under the header about others: who asks to drive, whose bench this is, what the teacher shows or has arranged. */
+/** Lines under the header about others: requests to drive, the owner of the bench, the teacher's bench and layout. */
 export function ClassLines() {
   const role = useMe((s) => s.me?.role);
   return (
@@ -24,18 +23,18 @@ export function ClassLines() {
   );
 }
 
-/** Somebody asks the person at this page for the bench. */
+/** Another person asks to drive the bench. */
 function Asked() {
   const company = useCompany();
   const me = useMe((s) => s.me?.id);
   if (!company || company.driver?.id !== me) return null;
   return company.asking.map((one) => (
-    <Line key={one.id} tone="warn" title={`${nameOf(one)} asks to drive this bench.`}>
+    <NoticeLine label="Class" key={one.id} tone="warn" title={`${nameOf(one)} asks to drive this bench.`}>
       <Button variant="filled" onClick={() => changeDriver("hand_over", one)}>
         Hand over
       </Button>
       <Button onClick={() => changeDriver("refuse", one)}>Go on driving</Button>
-    </Line>
+    </NoticeLine>
   ));
 }
 
@@ -57,27 +56,38 @@ function Place() {
       .catch(showError);
   if (at === me.lent && at !== me.bench)
     return (
-      <Line title="Your teacher has handed you this bench." text="You drive it until your teacher takes it back.">
+      <NoticeLine
+        label="Class"
+        title="Your teacher has handed you this bench."
+        text="You drive it until your teacher takes it back."
+      >
         <Button variant="filled" onClick={() => changeDriver("leave").then(goHome)}>
           Give it back
         </Button>
-      </Line>
+      </NoticeLine>
     );
   if (at === me.shown && at !== me.bench)
     return (
-      <Line title="Your teacher shows this bench to all." text="You are watching; your own bench keeps running.">
+      <NoticeLine
+        label="Class"
+        title="Your teacher shows this bench to all."
+        text="You are watching; your own bench keeps running."
+      >
         <Button onClick={goHome}>My own bench</Button>
-      </Line>
+      </NoticeLine>
     );
-  if (at === me.shown) return <Line title="Your teacher shows your bench to all." />;
+  if (at === me.shown) return <NoticeLine label="Class" title="Your teacher shows your bench to all." />;
   const other = me.lent ?? me.shown;
   if (!other || at === other) return null;
   return (
-    <Line title={me.lent ? "Your teacher has handed you a bench." : "Your teacher shows a bench to all."}>
+    <NoticeLine
+      label="Class"
+      title={me.lent ? "Your teacher has handed you a bench." : "Your teacher shows a bench to all."}
+    >
       <Button variant="filled" onClick={() => goTo(other)}>
         {me.lent ? "Drive it" : "See it"}
       </Button>
-    </Line>
+    </NoticeLine>
   );
 }
 
@@ -86,10 +96,10 @@ function Given() {
   const given = useGiven((s) => s.given);
   if (!given) return null;
   return (
-    <Line title={`Your teacher has arranged your panels: ${given.name}.`}>
+    <NoticeLine label="Class" title={`Your teacher has arranged your panels: ${given.name}.`}>
       <Button onClick={leaveGiven}>Back to mine</Button>
       <CloseButton size="sm" aria-label="Keep this layout" onClick={() => useGiven.setState({ given: undefined })} />
-    </Line>
+    </NoticeLine>
   );
 }
 
@@ -102,7 +112,8 @@ function Shown() {
   return all
     .filter(({ shown }) => shown === bench)
     .map(({ id, name }) => (
-      <Line
+      <NoticeLine
+        label="Class"
         key={id}
         title={`All of ${name} see this bench.`}
         text="They cannot change it; their own benches keep running."
@@ -110,26 +121,6 @@ function Shown() {
         <Button variant="filled" onClick={() => classes.endShowing(id).then(again, showError)}>
           End showing
         </Button>
-      </Line>
+      </NoticeLine>
     ));
-}
-
-function Line({
-  tone = "note",
-  title,
-  text,
-  children,
-}: {
-  tone?: "note" | "warn";
-  title: string;
-  text?: string;
-  children?: ReactNode;
-}) {
-  return (
-    <section className={`row ${styles.banner}`} data-tone={tone} aria-label="Class">
-      <strong>{title}</strong>
-      {text && <span>{text}</span>}
-      <div className={`line ${styles.actions}`}>{children}</div>
-    </section>
-  );
 }

@@ -7,7 +7,7 @@ const Editor = lazy(() => import("../panels/editor/editor").then(({ Editor }) =>
 /** The bench keeps more than a third of the page; a narrow page gives all it has. */
 const WIDTH = "clamp(min(100vw, 30rem), 62vw, 920px)";
 
-/** The editor of units of one's own, in a wide drawer; the editor of texts is loaded when it is opened first. */
+/** The editor of the user's own units, in a wide drawer; its text editor is loaded when it is first opened. */
 export function EditorDrawer() {
   return (
     <SideSheet name="editor" title="Editor" size={WIDTH}>

@@ -4,9 +4,7 @@ import { ApiError } from "../api/client";
 import { askMe, may, useMe } from "../api/me";
 import type { Bench } from "../api/types";
 import type { SharedLayout } from "../bench/dock";
-import { benchInAddress, inAddress, openBench, openOwn, ownBench, showBench } from "../bench/open-bench";
-import { send } from "../bench/send";
-import { useBench } from "../stream/bench-store";
+import { benchInAddress, inAddress, openBench, openInstead, openOwn, ownBench, showBench } from "../bench/open-bench";
 import { formatTick } from "../ui/format";
 import { follow } from "./follow";
 import { showShared } from "./layouts";
@@ -17,7 +15,7 @@ const SHOWPIECES = ["first-look", "live", "ch5-seven-step"];
 /** Longer than this takes about a second to repeat. */
 const LONG_TICKS = 300_000;
 
-/** Open what the address names: an experiment by its link, or a bench to join; else the bench of this browser. Who is not the teacher has one bench. */
+/** Open the experiment or the bench in the address, else the bench of this browser. A student or a watcher has one bench. */
 export async function openFirstBench(): Promise<void> {
   const { role } = await askMe();
   if (role !== "teacher") return follow();
@@ -26,7 +24,7 @@ export async function openFirstBench(): Promise<void> {
   const named = benchInAddress();
   if (!named) return openOwnBench();
   await broughtBack(named);
-  openBench(named, true); // one that is gone says so
+  openBench(named, true); // a closed bench shows its own notice
 }
 
 /** Open the experiment of a link on a fresh bench, with its layout. */
@@ -51,13 +49,9 @@ export async function startAgain(scenario: string): Promise<void> {
   openOwn((await api.createBench({ scenario, paused: false, quiet_lead: true })).id, true);
 }
 
-/** Start a bench of a library scenario; the one shown is paused if nobody else watches it. */
+/** Start a bench of a library scenario; the bench shown pauses if no other page watches it. */
 export async function startBeside(scenario: string): Promise<void> {
-  const { bench } = useBench.getState();
-  const made = await api.createBench({ scenario, paused: false, quiet_lead: true });
-  // a student's bench before is gone
-  if (may("teach") && bench?.state === "running" && (bench.watchers ?? 0) <= 1) await send({ kind: "pause" });
-  openOwn(made.id);
+  await openInstead((await api.createBench({ scenario, paused: false, quiet_lead: true })).id);
 }
 
 /** Open the bench of this browser, or a fresh one. */
@@ -75,14 +69,14 @@ export async function openOwnBench(): Promise<void> {
     });
 }
 
-/** Show the bench again that the server has closed, if it was only let go: nobody watched it then. A student is given another. */
+/** Open a bench again that the server has closed because no page watched it. A student gets another bench. */
 export async function comeBack(): Promise<void> {
   if (!may("teach")) return useMe.getState().me?.role === "student" ? follow() : undefined;
   const id = benchInAddress();
   if (id && (await broughtBack(id))) showBench(id);
 }
 
-/** Whether a bench is live, now that it has been opened again if it was let go. */
+/** Whether a bench is live; a bench that the server has closed is opened again first. */
 async function broughtBack(id: string): Promise<boolean> {
   const live = await unlessGone(api.bench(id));
   if (live) return true;
@@ -95,7 +89,7 @@ async function broughtBack(id: string): Promise<boolean> {
   return back !== undefined;
 }
 
-/** What the server answers; nothing when there is no such bench, or it cannot be repeated. */
+/** The bench of an answer; undefined if it does not exist or cannot be repeated. */
 async function unlessGone(answer: Promise<Bench>): Promise<Bench | undefined> {
   try {
     return await answer;

@@ -11,7 +11,7 @@ import { isBuiltIn, setLayout, showGiven } from "./layouts";
 
 const TAKEN = "combbench.layout.given";
 
-/** The layout that the teacher has given to this page, and the one that was shown before. */
+/** The layout that the teacher has given to this page, and the layout before it. */
 export const useGiven = create<{ given: { name: string; before: string } | undefined }>(() => ({ given: undefined }));
 
 /** Ask which bench the person at this page sees and drives now, and go there. */

@@ -97,6 +97,6 @@ const sources = import.meta.glob<string>(["../**/*.{ts,tsx}", "!../**/*.{test,d}
 
 it("has one source of freshness: no other part of the page looks at the connection to tell", () => {
   const looks = Object.keys(sources).filter((path) => /connection\.(phase|staleSince)/.test(sources[path]));
-  // these say how the page reconnects, what it offers, and when another bench is open
+  // these cover reconnection, the offers of the page, and another open bench
   expect(looks.sort()).toEqual(["../bench/past.ts", "./app.tsx", "./banner.tsx", "./header/state-badge.tsx"]);
 });

@@ -1,49 +1,51 @@
-import { Button } from "@mantine/core";
+import { Box, Button, Group } from "@mantine/core";
 import { api } from "../api/api";
 import { useAnswer } from "../api/queries";
 import { formatCount } from "../ui/format";
-import styles from "./full-server.module.css";
 
 const AGAIN_MS = 4000;
+const LINE = { borderTop: "1px solid var(--line)" };
 
 interface FullServerProps {
   onJoin(bench: string): void;
   onRetry(): void;
 }
 
-/** There is no room for one more bench: which there are, when one goes, and what can be done now. */
+/** The server has no room for another bench: the open benches, the next to close, and the choices of the user. */
 export function FullServer({ onJoin, onRetry }: FullServerProps) {
   const { value: benches = [] } = useAnswer(["benches"], api.benches, () => AGAIN_MS);
   const leaving = benches.flatMap((b) => b.let_go_in_s ?? []);
   return (
-    <main className={styles.full}>
-      <h1>This server has no free bench</h1>
-      <p>
+    <Box component="main" flex={1} w="min(100%, 620px)" m="0 auto" p="32px 16px" style={{ overflowY: "auto" }}>
+      <Box component="h1" fz="xl">
+        This server has no free bench
+      </Box>
+      <Box component="p" maw="60ch" c="dimmed">
         It has {benches.length === 1 ? "one bench" : `${benches.length} benches`}, which is its limit.{" "}
         {leaving.length > 0
           ? `Nobody watches ${leaving.length} of them; the next one is let go in ${formatCount(Math.ceil(Math.min(...leaving) / 60), "minute")}, unless somebody comes back to it.`
           : "All benches are watched or busy. Wait until one is closed, or ask the administrator of the server."}{" "}
         Meanwhile you can join one and watch.
-      </p>
+      </Box>
       <Button variant="filled" size="sm" onClick={onRetry}>
         Try again
       </Button>
-      <ul aria-label="Benches that run">
+      <Box component="ul" mt={24} aria-label="Benches that run">
         {benches.map((b) => (
-          <li key={b.id}>
+          <Group component="li" key={b.id} justify="space-between" wrap="nowrap" py={8} style={LINE}>
             <div>
               <b>{b.title}</b>
-              <small>
+              <Box component="small" display="block">
                 {b.state} · {b.watchers} watching · since{" "}
                 {new Date(b.created).toLocaleTimeString([], { timeStyle: "short" })}
-              </small>
+              </Box>
             </div>
-            <Button size="xs" onClick={() => onJoin(b.id)} aria-label={`Join ${b.title}`}>
+            <Button size="xs" flex="none" onClick={() => onJoin(b.id)} aria-label={`Join ${b.title}`}>
               Join
             </Button>
-          </li>
+          </Group>
         ))}
-      </ul>
-    </main>
+      </Box>
+    </Box>
   );
 }

@@ -32,7 +32,7 @@ beforeEach(() => {
 
 const show = (view: ViewName) => mount(<PanelBody view={view} params={{}} setParams={() => undefined} />);
 
-/** What the page has of a bench on which added mass acts, beside the question of the server. */
+/** The data of the page about a bench with an added mass, and the question of the server. */
 const knowing = { ...hidden, faults: open.faults, diagnosers: open.diagnosers, pending: open.pending };
 
 it.each(NAMES)("shows nothing in the view %s that tells the hidden fault", async (view) => {

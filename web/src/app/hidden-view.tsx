@@ -1,4 +1,4 @@
-import { Box, Button } from "@mantine/core";
+import { Box, Button, Group } from "@mantine/core";
 import { useMemo, useState } from "react";
 import { useShallow } from "zustand/react/shallow";
 import { useMay } from "../api/me";
@@ -6,7 +6,6 @@ import type { Question } from "../api/types";
 import type { ViewName } from "../bench/panel-views";
 import { useBench } from "../stream/bench-store";
 import { scopeConfig } from "../stream/scope-config";
-import styles from "./hidden-view.module.css";
 import { type PanelParams, servedIn, suits, VIEW } from "./panels";
 
 /** What finds a fault by measurement alone, with the words of its button. */
@@ -51,8 +50,8 @@ export function HiddenView({ view, question }: { view: ViewName; question: Quest
   const Tool = shown && VIEW[shown.view].component;
   return (
     <section className="view" aria-label={`${VIEW[view].title}, hidden`}>
-      <div className={`row ${styles.bar}`}>
-        <p>{`${VIEW[view].title}: hidden until ${question.game ? "the game is over" : "you answer"}. Measure instead:`}</p>
+      <Group flex="none" gap="4px 6px" p="6px 10px" style={{ borderBottom: "1px solid var(--line)" }}>
+        <p className="note">{`${VIEW[view].title}: hidden until ${question.game ? "the game is over" : "you answer"}. Measure instead:`}</p>
         {tools.map(({ view: tool, words }) => (
           <Button
             key={tool}
@@ -64,7 +63,7 @@ export function HiddenView({ view, question }: { view: ViewName; question: Quest
             {words}
           </Button>
         ))}
-      </div>
+      </Group>
       {Tool && (
         <Box flex={1} mih={0}>
           <Tool params={{ scope: measured, ...params }} setParams={setParams} />

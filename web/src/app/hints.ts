@@ -9,7 +9,7 @@ export interface Hint {
   isDone(event: LogEntry): boolean;
 }
 
-/** What a stranger is told of a bench: what it is, what to try, and which scenario shows it all. */
+/** The introduction to a bench: a description, things to try, and a scenario that shows all of it. */
 export interface Hints {
   intro: string;
   /** The sentence after the intro. */
@@ -33,7 +33,7 @@ const SWITCH: Hint = { id: "switch", text: "change the controller", isDone: swit
 const isMass = ({ command }: LogEntry) =>
   Boolean(command && "fault" in command && command.fault === "added_mass" && command.severity > 0);
 
-/** Whether a name is that of a hypothesis of more mass and nothing else. */
+/** Whether a name belongs to a hypothesis of more mass alone. */
 const namesMass = (diagnosers: Shown["diagnosers"], label: unknown) =>
   Object.values(diagnosers).some(({ names, factors }) => {
     const { mass = 1, ...others } = factors[names.indexOf(String(label))] ?? {};

@@ -1,4 +1,4 @@
-import { may, type Right } from "../api/me";
+import { may } from "../api/me";
 import { actions } from "../bench/actions";
 import { makeSlide } from "../bench/change";
 import { focusNextGroup } from "../bench/dock";
@@ -7,6 +7,7 @@ import { lectureRuns } from "../bench/lecture";
 import { toggleNarrator } from "../bench/narrator";
 import type { PageName } from "../bench/places";
 import { askLatest } from "../bench/why";
+import { type KeyBinding, keyOf } from "./key-binding";
 import { setLayout } from "./layouts";
 import { LECTURE_KEYS } from "./lecture/lecture-keys";
 import { openPresenter } from "./lecture/presenter";
@@ -16,19 +17,6 @@ import { openSearch } from "./search/search";
 import { takeBack } from "./take-back";
 import { themeSwitch } from "./theme";
 
-export interface KeyBinding {
-  /** `KeyboardEvent.key`, as typed. */
-  key: string;
-  shown: string;
-  /** With Ctrl, or Command where there is one. */
-  withControl?: boolean;
-  does: string;
-  group: "Run" | "Look" | "Bench" | "Pages";
-  /** What one must be allowed for the key to do anything. */
-  needs?: Right;
-  run(): void;
-}
-
 /** The keys of the person at the page; the sheet and the listener read the same list. */
 export const keymap = (): KeyBinding[] => {
   const keys = KEYS.filter(({ needs }) => !needs || may(needs));
@@ -37,93 +25,47 @@ export const keymap = (): KeyBinding[] => {
   return [...lecture, ...keys.filter(({ key }) => !lecture.some((one) => one.key === key))];
 };
 
-const NOTES: KeyBinding = {
-  key: "i",
-  shown: "I",
-  does: "notes of the speaker in a window of their own",
-  group: "Look",
-  run: openPresenter,
-};
+const run = keyOf("Run", "drive");
+const bench = keyOf("Bench", "drive");
+const teach = keyOf("Bench", "teach");
+const look = keyOf("Look");
+
+const NOTES = look("i", "I", "notes of the speaker in a window of their own", openPresenter);
 
 const KEYS: KeyBinding[] = [
-  { key: " ", shown: "Space", does: "run or pause", group: "Run", needs: "drive", run: actions.toggle },
-  { key: ".", shown: ".", does: "one tick", group: "Run", needs: "drive", run: actions.stepTick },
-  { key: ",", shown: ",", does: "one drive period", group: "Run", needs: "drive", run: actions.stepPeriod },
-  { key: "]", shown: "]", does: "twice as fast", group: "Run", needs: "drive", run: actions.faster },
-  { key: "[", shown: "[", does: "half as fast", group: "Run", needs: "drive", run: actions.slower },
-  { key: "R", shown: "Shift R", does: "reset to the start", group: "Run", needs: "drive", run: actions.reset },
-  {
-    key: ">",
-    shown: ">",
-    does: "skip to the next step of the scenario",
-    group: "Run",
-    needs: "drive",
-    run: actions.skip,
-  },
-  { key: "h", shown: "H", does: "heal all faults", group: "Bench", needs: "drive", run: actions.healAll },
-  { key: "c", shown: "C", does: "next controller", group: "Bench", needs: "drive", run: actions.nextController },
-  { key: "x", shown: "X", does: "save what happened as a scenario", group: "Bench", run: actions.saveScenario },
-  { key: "S", shown: "Shift S", does: "share by a link", group: "Bench", needs: "teach", run: actions.share },
-  { key: "v", shown: "V", does: "record, and stop", group: "Bench", needs: "drive", run: actions.record },
-  { key: "f", shown: "F", does: "fork", group: "Bench", needs: "teach", run: actions.fork },
-  { key: "k", shown: "K", does: "keep this moment", group: "Bench", needs: "teach", run: actions.keep },
-  { key: "o", shown: "O", does: "write a unit of your own", group: "Bench", needs: "teach", run: openEditor },
-  { key: "n", shown: "N", does: "new bench", group: "Bench", needs: "drive", run: actions.newBench },
-  {
-    key: "z",
-    shown: "Ctrl Z",
-    withControl: true,
-    does: "undo",
-    group: "Bench",
-    needs: "drive",
-    run: () => takeBack("undo"),
-  },
-  {
-    key: "y",
-    shown: "Ctrl Y",
-    withControl: true,
-    does: "redo",
-    group: "Bench",
-    needs: "drive",
-    run: () => takeBack("redo"),
-  },
-  {
-    key: "Z",
-    shown: "Ctrl Shift Z",
-    withControl: true,
-    does: "redo",
-    group: "Bench",
-    needs: "drive",
-    run: () => takeBack("redo"),
-  },
-  { key: "l", shown: "L", does: "all panels live", group: "Look", run: actions.live },
-  { key: "1", shown: "1", does: "lecture layout", group: "Look", run: () => setLayout("lecture") },
-  { key: "2", shown: "2", does: "lab layout", group: "Look", run: () => setLayout("lab") },
-  { key: "3", shown: "3", does: "research layout", group: "Look", run: () => setLayout("research") },
-  { key: "s", shown: "S", does: "slide of before and after the last change", group: "Look", run: makeSlide },
-  { key: "w", shown: "W", does: "why the newest verdict", group: "Look", run: askLatest },
-  { key: "p", shown: "P", does: "present: panels only, on the whole screen", group: "Look", run: togglePresent },
-  { key: "q", shown: "Q", does: "narrator on or quiet", group: "Look", run: toggleNarrator },
-  { key: "d", shown: "D", does: "dark or light", group: "Look", run: () => themeSwitch.flip() },
-  { key: "F6", shown: "F6", does: "next group of panels", group: "Look", run: focusNextGroup },
-  {
-    key: "k",
-    shown: "Ctrl K",
-    withControl: true,
-    does: "search panels, scenarios, equations, devices, settings, places",
-    group: "Look",
-    run: openSearch,
-  },
-  { key: "?", shown: "?", does: "this sheet", group: "Look", run: actions.keys },
-  ...Object.entries(PAGES).map(
-    ([name, { key, title, needs }]): KeyBinding => ({
-      key,
-      shown: key.toUpperCase(),
-      does: title,
-      group: "Pages",
-      needs,
-      run: () => actions.page(name as PageName),
-    }),
+  run(" ", "Space", "run or pause", actions.toggle),
+  run(".", ".", "one tick", actions.stepTick),
+  run(",", ",", "one drive period", actions.stepPeriod),
+  run("]", "]", "twice as fast", actions.faster),
+  run("[", "[", "half as fast", actions.slower),
+  run("R", "Shift R", "reset to the start", actions.reset),
+  run(">", ">", "skip to the next step of the scenario", actions.skip),
+  bench("h", "H", "heal all faults", actions.healAll),
+  bench("c", "C", "next controller", actions.nextController),
+  keyOf("Bench")("x", "X", "save what happened as a scenario", actions.saveScenario),
+  teach("S", "Shift S", "share by a link", actions.share),
+  bench("v", "V", "record, and stop", actions.record),
+  teach("f", "F", "fork", actions.fork),
+  teach("k", "K", "keep this moment", actions.keep),
+  teach("o", "O", "write a unit of your own", openEditor),
+  bench("n", "N", "new bench", actions.newBench),
+  bench("z", "Ctrl Z", "undo", () => takeBack("undo")),
+  bench("y", "Ctrl Y", "redo", () => takeBack("redo")),
+  bench("Z", "Ctrl Shift Z", "redo", () => takeBack("redo")),
+  look("l", "L", "all panels live", actions.live),
+  look("1", "1", "lecture layout", () => setLayout("lecture")),
+  look("2", "2", "lab layout", () => setLayout("lab")),
+  look("3", "3", "research layout", () => setLayout("research")),
+  look("s", "S", "slide of before and after the last change", makeSlide),
+  look("w", "W", "why the newest verdict", askLatest),
+  look("p", "P", "present: panels only, on the whole screen", togglePresent),
+  look("q", "Q", "narrator on or quiet", toggleNarrator),
+  look("d", "D", "dark or light", () => themeSwitch.flip()),
+  look("F6", "F6", "next group of panels", focusNextGroup),
+  look("k", "Ctrl K", "search panels, scenarios, equations, devices, settings, places", openSearch),
+  look("?", "?", "this sheet", actions.keys),
+  ...Object.entries(PAGES).map(([name, { key, title, needs }]) =>
+    keyOf("Pages", needs)(key, key.toUpperCase(), title, () => actions.page(name as PageName)),
   ),
 ];
 

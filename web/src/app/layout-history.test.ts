@@ -10,7 +10,7 @@ afterEach(() => {
   vi.useRealTimers();
 });
 
-/** A dock of which only the stored form counts. */
+/** A dock with its stored form alone. */
 function dock() {
   let listener: () => void = () => {};
   let stored = { grid: { width: 100, height: 50, root: { size: 10 } }, panels: {}, activeGroup: "1" };

@@ -13,16 +13,16 @@ type Arrange = (name: string, layout: SerializedDockview) => void;
 const MOST = 50;
 const SETTLES_MS = 250;
 
-/** Parts of a stored layout that only say what is in front: looking at another tab changes nothing. */
+/** Parts of a stored layout that name the active tab: a change of tab is no change of the layout. */
 const IN_FRONT = new Set(["activeView", "activeGroup", "view"]);
 
-/** What a layout consists of, as text to compare. */
-export const shapeOf = ({ name, layout }: Pick<Kept, "name" | "layout">): string =>
+/** The shape of a layout, as text to compare. */
+const shapeOf = ({ name, layout }: Pick<Kept, "name" | "layout">): string =>
   JSON.stringify([name, layout], (key, value) =>
     IN_FRONT.has(key) ? undefined : key === "size" ? Math.round(value) : value,
   );
 
-/** Whether the place for the panels has another size: all of them change theirs then, and nobody asked for it. */
+/** Whether the dock has another size: all panels then change theirs, without a request of the user. */
 const isResized = ({ grid: a }: SerializedDockview, { grid: b }: SerializedDockview): boolean =>
   a.width !== b.width || a.height !== b.height;
 
@@ -67,7 +67,7 @@ export class LayoutHistory {
     this.adopt();
   }
 
-  /** Take what is there once it has settled as it is: nobody made it who would want the one before. */
+  /** Adopt the next settled layout: the user has not made it, so it cannot be undone. */
   private adopt(): void {
     this.isOurs = true;
     this.settleSoon();

@@ -1,4 +1,4 @@
-import { ActionIcon, Button, TextInput } from "@mantine/core";
+import { ActionIcon, Button, Group, TextInput } from "@mantine/core";
 import { IconCheck, IconLink, IconPencil, IconPresentation, IconTrash } from "@tabler/icons-react";
 import { type FormEvent, useState } from "react";
 import { api } from "../api/api";
@@ -13,7 +13,7 @@ import { deleteLayout, ownLayouts, refusal, renameLayout, saveLayout, setLayout,
 import { LinkBox } from "./link-box";
 import { SideSheet } from "./side-sheet";
 
-/** Layouts of one's own: save, rename, delete, share. */
+/** The user's own layouts: save, rename, delete, share. */
 export function LayoutSheet() {
   return (
     <SideSheet name="layouts" title="Layouts" size={440}>
@@ -45,7 +45,7 @@ function Layouts() {
 
   return (
     <>
-      <Name label="Save the panels as they stand" button="Save" onName={(name) => saveLayout(name)} />
+      <Name label="Save this layout" button="Save" onName={(name) => saveLayout(name)} />
       <p className={styles.remark}>A saved layout keeps what you move in it from then on. It stays in this browser.</p>
       {own.length > 0 && (
         <ul className={styles.gallery} aria-label="Your layouts">
@@ -64,7 +64,7 @@ function Layouts() {
               ) : (
                 <>
                   <h3>{name}</h3>
-                  <div className={`line ${styles.buttons}`}>
+                  <Group flex="none" gap={4} wrap="nowrap">
                     <Button size="xs" variant="light" disabled={layout === name} onClick={() => setLayout(name)}>
                       {layout === name ? "Shown" : "Show"}
                     </Button>
@@ -81,7 +81,7 @@ function Layouts() {
                     >
                       <IconTrash size={16} />
                     </ActionIcon>
-                  </div>
+                  </Group>
                 </>
               )}
             </li>
@@ -113,7 +113,7 @@ interface NameProps {
   onName(name: string): void;
 }
 
-/** A name to be given to a layout, refused where it stands. */
+/** A field for the name of a layout; a refusal appears at the field. */
 function Name({ label, button, first = "", onName }: NameProps) {
   const [name, setName] = useState(first);
   const [error, setError] = useState<string | undefined>(undefined);

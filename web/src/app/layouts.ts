@@ -12,8 +12,8 @@ import { layoutHistory } from "./layout-history";
 import { PANELS } from "./panels";
 import { BUILT_IN_AXES } from "./two-axis-layouts";
 
-/** A layout of one's own: its name, and whether it is in large type. */
-export interface OwnLayout {
+/** A layout of the user: its name, and whether it is in large type. */
+interface OwnLayout {
   name: string;
   large: boolean;
 }
@@ -25,12 +25,12 @@ export const FROM_TEACHER = "from your teacher";
 /** The layout of a cue of a lecture, or of a step of a tour; it goes when that is left. */
 const FROM_SCRIPT = "from a script";
 const LONGEST_NAME = 40;
-/** No panel is made for less, px. */
+/** The least width of a panel, px. */
 const LEAST_PX = 240;
 /** The id of a link. */
 const LINK = /^[2-9a-z]{8}$/;
 
-/** Whether the panels stand as for a bench with axes. */
+/** Whether the layout is for a bench with axes. */
 let axes = false;
 /** A layout that came before there was a dock to show it in. */
 let coming: { shared: SharedLayout; name: string } | undefined;
@@ -41,7 +41,7 @@ const storageKey = (name: string) => `combbench.layout.4.${kind()}${isBuiltIn(na
 
 export const isBuiltIn = (name: string): name is LayoutName => name in BUILT_IN;
 
-/** The layouts of one's own for the kind of bench on the page. */
+/** The user's own layouts for the kind of bench on the page. */
 export const ownLayouts = (): OwnLayout[] => JSON.parse(localStorage.getItem(LIST()) ?? "[]") as OwnLayout[];
 
 /** A name, if there is such a layout for the kind of bench on the page. */
@@ -50,7 +50,7 @@ const known = (name: string | undefined): string | undefined =>
 
 const keepList = (layouts: OwnLayout[]) => localStorage.setItem(LIST(), JSON.stringify(layouts));
 
-/** Lay the panels out for the benches of a kind; within one kind they stay where they are. */
+/** Lay the panels out for the benches of a kind; within one kind they keep their places. */
 export function layOutFor(withAxes: boolean): void {
   if (withAxes === axes) return;
   axes = withAxes;
@@ -58,7 +58,7 @@ export function layOutFor(withAxes: boolean): void {
   layoutHistory.forget();
 }
 
-/** The dock to lay out; called once it stands. A panel without a title of its own has that of its kind. */
+/** Set the dock to lay out, once it exists. A panel without a title gets the title of its kind. */
 export function attachDock(api: DockviewApi): void {
   useDock.setState({ dock: api });
   api.onDidAddGroup((group) => group.api.setConstraints({ minimumWidth: LEAST_PX }));
@@ -75,7 +75,7 @@ export function attachDock(api: DockviewApi): void {
   else if (asked && !known(asked) && LINK.test(asked)) fetchLayout(asked).catch(showError);
 }
 
-/** Remember how the panels stand, what each shows included. */
+/** Remember the layout with the settings of each panel. */
 export function keepLayout(): void {
   const dock = dockNow();
   if (dock) localStorage.setItem(storageKey(useView.getState().layout), JSON.stringify(dock.toJSON()));
@@ -93,7 +93,7 @@ export function layOutForScript(name: LayoutName): void {
   arrange(FROM_SCRIPT, name === "lecture", name);
 }
 
-/** Bring a built-in layout back to what it was at first. */
+/** Reset a built-in layout to its first state. */
 export function resetLayout(): void {
   const name = useView.getState().layout;
   localStorage.removeItem(storageKey(name));
@@ -114,7 +114,7 @@ export function refusal(name: string): string | undefined {
   return undefined;
 }
 
-/** Keep the panels as they stand under a name; what is moved from now on is kept there. */
+/** Save the present layout under a name; later changes are saved there too. */
 export function saveLayout(name: string, large = useView.getState().large): void {
   keepList([...ownLayouts(), { name, large }]);
   useView.setState({ layout: name });
@@ -138,7 +138,7 @@ export function deleteLayout(name: string): void {
   localStorage.removeItem(storageKey(name));
 }
 
-/** The panels as they stand, to be passed on. */
+/** The present layout, to be shared. */
 export function sharedLayout(): SharedLayout | undefined {
   const dock = dockNow()?.toJSON();
   return dock && { dock, large: useView.getState().large, axes };
@@ -155,7 +155,7 @@ function showNext(shared: SharedLayout, name: string): void {
   if (!coming) show(shared, name);
 }
 
-/** Show the layout of a link, and keep it under its name, or one beside it if there is such a layout. */
+/** Show the layout of a link, and keep it under its name, with a number if the name is taken. */
 async function fetchLayout(link: string): Promise<void> {
   const { title, content } = await api.link(link);
   if (!content.layout) return;
@@ -168,17 +168,15 @@ async function fetchLayout(link: string): Promise<void> {
 }
 
 /** Put the panels as they stood in a layout. */
-export function putLayout(name: string, dock: SerializedDockview): void {
+export function putLayout(name: string, dock: SerializedDockview, large?: boolean): void {
   localStorage.setItem(storageKey(name), JSON.stringify(dock));
-  arrange(name);
+  arrange(name, large);
   chooseLayout(name);
 }
 
 function show(shared: SharedLayout, name: string): void {
   axes = shared.axes;
-  localStorage.setItem(storageKey(name), JSON.stringify(shared.dock));
-  arrange(name, shared.large);
-  chooseLayout(name);
+  putLayout(name, shared.dock, shared.large);
 }
 
 function stored(name: string): SerializedDockview | undefined {

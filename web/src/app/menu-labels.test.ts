@@ -18,7 +18,7 @@ const SIZE: Record<string, number> = {
 };
 const UNIT = /^(?:to )?(\d+(?:\.\d+)?) (\S+)$/;
 
-/** What a label says, in ms, kHz, or as a share. */
+/** The value of a label, in ms, kHz, or as a share. */
 function said(label: string): number {
   const [, number, unit] = UNIT.exec(label) ?? [];
   expect(SIZE[unit], label).toBeDefined();

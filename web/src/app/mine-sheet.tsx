@@ -1,4 +1,4 @@
-import { ActionIcon, Box, Button, TextInput } from "@mantine/core";
+import { ActionIcon, Box, Button, Group, TextInput } from "@mantine/core";
 import { IconPencil, IconTrash } from "@tabler/icons-react";
 import { useCallback, useEffect, useState } from "react";
 import { api } from "../api/api";
@@ -15,7 +15,7 @@ import { openLink } from "./first-bench";
 import { OpenScenario } from "./open-scenario";
 import { SideSheet } from "./side-sheet";
 
-/** Scenarios from disk, and what was kept on the server: one's own first. */
+/** Scenarios from disk, and the experiments kept on the server: the user's own first. */
 export function MineSheet() {
   const teaches = useMay("teach");
   return (
@@ -61,7 +61,7 @@ function Kept() {
   );
 }
 
-/** What was kept, and what can be done with it; only the person who made it renames and deletes it here. */
+/** A kept experiment and its buttons; only its author can rename and delete it here. */
 function Row({ link, isOwn = false, onChanged }: { link: Link; isOwn?: boolean; onChanged(): void }) {
   const [title, setTitle] = useState<string | undefined>(undefined);
   const [busy, during] = useBusy();
@@ -98,13 +98,13 @@ function Row({ link, isOwn = false, onChanged }: { link: Link; isOwn?: boolean; 
             />
           </form>
         )}
-        {link.note && <p>{link.note}</p>}
+        {link.note && <p className="note">{link.note}</p>}
         <small>
           {link.tick ? `done up to ${formatTick(link.tick)}` : "from its beginning"} ·{" "}
           {new Date(link.created).toLocaleString([], { dateStyle: "short", timeStyle: "short" })}
         </small>
       </Box>
-      <div className={`line ${styles.buttons}`}>
+      <Group flex="none" gap={4} wrap="nowrap">
         <Button size="xs" variant="light" loading={busy} onClick={open} aria-label={`Open ${link.title}`}>
           Open
         </Button>
@@ -124,7 +124,7 @@ function Row({ link, isOwn = false, onChanged }: { link: Link; isOwn?: boolean; 
             </ActionIcon>
           </>
         )}
-      </div>
+      </Group>
     </li>
   );
 }

@@ -1,4 +1,4 @@
-import { Button, NativeSelect, Switch, Text, TextInput } from "@mantine/core";
+import { Box, Button, NativeSelect, SimpleGrid, Switch, Text, TextInput } from "@mantine/core";
 import { IconClipboardList, IconFolderOpen, IconRulerMeasure } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
@@ -23,8 +23,26 @@ export function NewBench() {
   );
 }
 
-/** Whether a device can stand in for that of a scenario: its plant is for devices of this kind. */
+/** Whether a device suits the plant of a scenario. */
 const suits = (device: Device, scenario: ScenarioSummary) => device.plants.includes(scenario.plant ?? "");
+
+/** By the first word of a verdict. */
+const COLOURS: Record<string, string> = {
+  reproduced: "var(--running)",
+  ours: "var(--accent)",
+  partly: "var(--paused)",
+  not: "var(--paused)",
+};
+
+const closeAnd = (open: () => void) => () => {
+  useView.setState({ dialog: "none" });
+  open();
+};
+
+const beginSheet = () => {
+  setPage("bench");
+  showSheet();
+};
 
 function Gallery() {
   const [scenarios, setScenarios] = useState<ScenarioSummary[] | undefined>(undefined);
@@ -59,44 +77,25 @@ function Gallery() {
       `${s.id} ${s.title} ${s.summary}`.toLowerCase().includes(query.toLowerCase()) && (!chosen || suits(chosen, s)),
   );
   const unsuited = chosen && benches ? benches.filter((s) => !suits(chosen, s)).length : 0;
+  const fromDisk = "Open a scenario from disk";
+  const others = [
+    { Icon: IconRulerMeasure, words: "Design a device of your own", open: closeAnd(() => setPage("designer")) },
+    {
+      Icon: IconFolderOpen,
+      words: teaches ? `${fromDisk}, or one of mine` : fromDisk,
+      open: () => useView.setState({ dialog: "mine" }),
+    },
+    { Icon: IconClipboardList, words: "Begin a lab sheet", open: closeAnd(beginSheet) },
+  ];
   return (
     <>
       {!teaches && <p className={styles.remark}>It takes the place of your bench.</p>}
-      <Button
-        fullWidth
-        size="xs"
-        mb="sm"
-        leftSection={<IconRulerMeasure size={16} />}
-        onClick={() => {
-          useView.setState({ dialog: "none" });
-          setPage("designer");
-        }}
-      >
-        Design a device of your own
-      </Button>
-      <Button
-        fullWidth
-        size="xs"
-        mb="sm"
-        leftSection={<IconFolderOpen size={16} />}
-        onClick={() => useView.setState({ dialog: "mine" })}
-      >
-        {teaches ? "Open a scenario from disk, or one of mine" : "Open a scenario from disk"}
-      </Button>
-      <Button
-        fullWidth
-        size="xs"
-        mb="sm"
-        leftSection={<IconClipboardList size={16} />}
-        onClick={() => {
-          useView.setState({ dialog: "none" });
-          setPage("bench");
-          showSheet();
-        }}
-      >
-        Begin a lab sheet
-      </Button>
-      <div className={styles.filters}>
+      {others.map(({ Icon, words, open }) => (
+        <Button key={words} fullWidth size="xs" mb="sm" leftSection={<Icon size={16} />} onClick={open}>
+          {words}
+        </Button>
+      ))}
+      <SimpleGrid cols={2} spacing={12} mb={8} style={{ alignItems: "end" }}>
         <TextInput label="Search" value={query} onChange={(e) => setQuery(e.currentTarget.value)} data-autofocus />
         <NativeSelect
           label="Device"
@@ -105,7 +104,7 @@ function Gallery() {
           onChange={(e) => setDevice(e.currentTarget.value)}
         />
         <Switch label="Start paused" checked={paused} onChange={(e) => setPaused(e.currentTarget.checked)} />
-      </div>
+      </SimpleGrid>
       {!found && <Text c="dimmed">Loading the library…</Text>}
       {unsuited > 0 && (
         <Text c="dimmed" size="xs" mb={4}>
@@ -118,11 +117,16 @@ function Gallery() {
           <li key={s.id}>
             <div>
               <h3>{s.title}</h3>
-              <p>{s.summary || s.claim}</p>
+              <p className="note">{s.summary || s.claim}</p>
               <small>
                 {s.id}
                 {s.source && ` · ${s.source}`}
-                {s.verdict && <span data-verdict={s.verdict.split(" ")[0]}> · {s.verdict}</span>}
+                {s.verdict && (
+                  <Box component="span" c={COLOURS[s.verdict.split(" ")[0]]}>
+                    {" "}
+                    · {s.verdict}
+                  </Box>
+                )}
               </small>
             </div>
             <Button

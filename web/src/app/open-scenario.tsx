@@ -12,7 +12,7 @@ import styles from "./dialogs.module.css";
 /** The server takes no larger body. */
 const MOST_BYTES = 1_000_000;
 
-/** Open a scenario from disk, chosen or dropped; what is wrong with it is said here. Only a teacher keeps it. */
+/** Open a scenario from disk, chosen or dropped; its errors appear here. Only a teacher can keep it. */
 export function OpenScenario({ onKept }: { onKept?(): void }) {
   const teaches = useMay("teach");
   const [keep, setKeep] = useState(true);

@@ -1,12 +1,12 @@
 import { CloseButton } from "@mantine/core";
 import { useState } from "react";
 import { useBench } from "../stream/bench-store";
-import styles from "./banner.module.css";
+import { NoticeLine } from "./notice-line";
 
 /** The version of a program and the first letters of the hash of its code. */
 const brief = (version: string) => version.replace(/ (\w{7})\w*$/, " $1");
 
-/** What came with the link a bench was opened by: its note, and whether the bits are still those of then. */
+/** The note of the link of a bench, and a warning if the bits differ from the time of the link. */
 export function OpenedLine() {
   const opened = useBench((s) => s.bench?.opened);
   const bench = useBench((s) => s.bench?.id);
@@ -17,21 +17,13 @@ export function OpenedLine() {
       ? "This bench gives other bits here than where it was made."
       : `Made with ${brief(opened.version)}; this bench gives other bits today (${brief(opened.version_now)}).`;
   return (
-    <section
-      className={`row ${styles.banner}`}
-      data-tone={opened.same_bits ? "hint" : "warn"}
-      aria-label="Note of the link"
+    <NoticeLine
+      label="Note of the link"
+      tone={opened.same_bits ? "note" : "warn"}
+      title={opened.note && "Note:"}
+      text={[opened.note, !opened.same_bits && other].filter(Boolean).join(" ")}
     >
-      {opened.note && (
-        <>
-          <strong>Note:</strong>
-          <span>{opened.note}</span>
-        </>
-      )}
-      {!opened.same_bits && <span>{other}</span>}
-      <div className={`line ${styles.actions}`}>
-        <CloseButton size="sm" aria-label="Dismiss the note" onClick={() => setDismissed(bench)} />
-      </div>
-    </section>
+      <CloseButton size="sm" aria-label="Dismiss the note" onClick={() => setDismissed(bench)} />
+    </NoticeLine>
   );
 }

@@ -4,9 +4,9 @@ import { ApiError } from "../api/client";
 import { hasAxes } from "../api/fits";
 import { may } from "../api/me";
 import type { Bench, Device, Document, LogEntry } from "../api/types";
-import { cardOf } from "../api/use-catalog";
 import { announce } from "../bench/announce";
-import { openInstead, openOwn } from "../bench/open-bench";
+import { titleOf } from "../bench/flag-words";
+import { openInstead } from "../bench/open-bench";
 import { benchOf, gyroscopeBenchOf, isGyroscope } from "../designer/design";
 import { useBench } from "../stream/bench-store";
 import { currentEvents } from "../stream/event-log";
@@ -24,8 +24,7 @@ export async function beginWith(device: Device): Promise<void> {
   if (!bench) return;
   const made = await make(bench, device);
   const lost = await takeAlong(bench, made, ownFaults(bench, events));
-  if (may("teach")) await openInstead(made.id);
-  else openOwn(made.id); // the bench before is gone
+  await openInstead(made.id);
   const title = `The bench begins with ${device.title}`;
   announce(`${title}.`);
   if (lost.length === 0) return;
@@ -66,6 +65,3 @@ async function takeAlong(from: Bench, to: Bench, faults: Bench["faults"]): Promi
   }
   return lost;
 }
-
-const titleOf = (family: "control" | "faults", name: string) =>
-  cardOf(family, name)?.title ?? name.replaceAll("_", " ");

@@ -17,13 +17,13 @@ import { Runs } from "../runs/runs";
 import { Theory } from "../theory/theory";
 import { Workspace } from "./workspace";
 
-export interface PageKind {
+interface PageKind {
   /** One word, under the icon. */
   name: string;
   title: string;
   icon: ReactNode;
   key: string;
-  /** What one must be allowed for the page to be there. */
+  /** The right that the page needs. */
   needs?: Right;
   /** The page whose tab it is. */
   tabOf?: PageName;
@@ -87,7 +87,7 @@ export const PAGES: Record<PageName, PageKind> = {
   },
 };
 
-/** Whether a page is there for somebody. */
+/** Whether a page is offered to a role. */
 export const isOffered = (page: PageName, role: Me["role"] | undefined): boolean => {
   const { needs } = PAGES[page];
   return !needs || may(needs, role);

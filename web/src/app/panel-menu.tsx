@@ -4,11 +4,11 @@ import type { DockviewGroupPanel, IDockviewPanel } from "dockview-react";
 import { type KeyboardEvent, useState } from "react";
 import { useShallow } from "zustand/react/shallow";
 import { addPanel, addScope, closePanel, showPanel } from "../bench/dock";
-import { hasSeveral, type PanelName, VIEWS } from "../bench/panel-views";
+import { hasSeveral, type ViewName } from "../bench/panel-views";
 import { presetsOn } from "../panels/scope/scope-presets";
 import { useBench } from "../stream/bench-store";
-import styles from "./panel-menu.module.css";
-import { PANELS, panelsOn, VIEW, viewsOn } from "./panels";
+import { ranked } from "./search/find";
+import { viewEntries } from "./view-entries";
 
 interface Entry {
   key: string;
@@ -39,7 +39,7 @@ export function PanelMenu({
           <IconPlus size={14} />
         </button>
       </Menu.Target>
-      <Menu.Dropdown className={styles.menu}>
+      <Menu.Dropdown mah="min(640px, calc(100vh - 80px))">
         <Menu.Search
           size="xs"
           m="4px 4px 8px"
@@ -52,9 +52,7 @@ export function PanelMenu({
         {entries.map(({ key, title, about, run }) => (
           <Menu.Item key={key} onClick={run}>
             {title}
-            <Box component="small" display="block">
-              {about}
-            </Box>
+            <small>{about}</small>
           </Menu.Item>
         ))}
         {entries.length === 0 && (
@@ -76,33 +74,29 @@ export function PanelMenu({
 function useEntries(query: string): Entry[] {
   const axes = useBench(useShallow((s) => s.bench?.axes));
   const signals = useBench((s) => s.bench?.signals);
-  const bench = axes && { axes };
-  const wanted = query.trim().toLowerCase();
-  const panels = panelsOn(bench).map((panel) => ({
-    key: panel,
-    ...PANELS[panel],
-    run: () => (hasSeveral(panel) ? addScope("Scope", []) : openPanel(panel)),
+  const views = viewEntries(axes && { axes }).map(({ panel, view, isFirst, title, about }) => ({
+    key: view,
+    title,
+    about,
+    isFirst,
+    run: () => openView(view, isFirst, hasSeveral(panel)),
   }));
-  if (!wanted) return panels;
-  const views = panelsOn(bench).flatMap((panel) =>
-    viewsOn(panel, bench)
-      .slice(1)
-      .map((view) => ({
-        key: view,
-        title: VIEW[view].title,
-        about: `A view of ${PANELS[panel].title}`,
-        run: () => (hasSeveral(panel) ? void addPanel(view) : showPanel(view)),
-      })),
-  );
+  if (!query.trim()) return views.filter(({ isFirst }) => isFirst);
   const scopes = presetsOn(signals ?? []).map((preset) => ({
     key: `scope ${preset.title}`,
     title: preset.title,
     about: `A scope on ${preset.signals.slice(0, 3).join(", ")}${preset.signals.length > 3 ? ", …" : ""}`,
     run: () => addScope(preset.title, preset.signals),
   }));
-  const all = [...panels, ...views, ...scopes];
-  const found = (entry: Entry, part: "title" | "about") => entry[part].toLowerCase().includes(wanted);
-  return [...all.filter((e) => found(e, "title")), ...all.filter((e) => !found(e, "title") && found(e, "about"))];
+  const panels = [...views.filter(({ isFirst }) => isFirst), ...views.filter(({ isFirst }) => !isFirst)];
+  return ranked([...panels, ...scopes], query);
+}
+
+/** Another panel for the first view of a panel, the view itself for the others; a scope opens once more. */
+function openView(view: ViewName, isFirst: boolean, several: boolean): void {
+  if (isFirst && several) addScope("Scope", []);
+  else if (isFirst || several) addPanel(view);
+  else showPanel(view);
 }
 
 /** Enter opens the first entry; once the arrows have marked another, the menu itself opens that. */
@@ -111,5 +105,3 @@ function openFirst({ key, currentTarget }: KeyboardEvent<HTMLInputElement>): voi
   if (key === "Enter" && !menu?.querySelector("[data-menu-active]"))
     menu?.querySelector<HTMLElement>("[role=menuitem]")?.click();
 }
-
-const openPanel = (panel: PanelName): void => void addPanel(VIEWS[panel][0]);

@@ -46,11 +46,11 @@ export interface PanelProps {
 }
 
 /** One view of a panel. */
-export interface View {
+interface View {
   title: string;
   /** It does something to the bench, which a recording that is played does not allow. */
   changes?: boolean;
-  /** It works with what the server serves while a fault is to be found, or of some questions. */
+  /** It works with the data that the server serves while a fault is hidden, always or for some questions. */
   whileBlind?: true | ((question: Question) => boolean);
   /** The benches it is for, unless for all: those with one displacement, or those with axes. */
   only?: "displacement" | "axes";
@@ -126,13 +126,13 @@ export const VIEW: Record<ViewName, View> = {
   allan: { title: "Allan deviation", only: "axes", component: AllanPanel },
 };
 
-type Benchlike = Pick<Bench, "axes"> | undefined;
+export type Benchlike = Pick<Bench, "axes"> | undefined;
 
 /** Whether a view has something to show on a bench; before there is one, all may. */
 export const suits = ({ only }: Pick<View, "only">, bench: Benchlike): boolean =>
   only === undefined || bench === undefined || (only === "axes") === hasAxes(bench);
 
-/** Whether a view shows what it should while the answer to a question is hidden. */
+/** Whether a view works while the answer to a question is hidden. */
 export const servedIn = ({ whileBlind }: Pick<View, "whileBlind">, question: Question): boolean =>
   typeof whileBlind === "function" ? whileBlind(question) : whileBlind === true;
 

@@ -15,7 +15,7 @@ import { useBench } from "../stream/bench-store";
 import { useBoardState } from "../stream/freshness";
 import styles from "./phone.module.css";
 
-/** What a thumb reaches: time, the views that change the bench, and everything else. */
+/** The bar within reach of a thumb: run and stop, the views that change the bench, and all others. */
 export function PhoneBar({ onMore }: { onMore(): void }) {
   const state = useBoardState();
   const running = state === "running";
@@ -28,6 +28,7 @@ export function PhoneBar({ onMore }: { onMore(): void }) {
         <>
           <button
             type="button"
+            className="bar-button"
             data-run={running ? "stop" : "run"}
             disabled={state === "tripped" || state === undefined}
             onClick={actions.toggle}
@@ -44,7 +45,7 @@ export function PhoneBar({ onMore }: { onMore(): void }) {
           <Turn view="sheet" words="Lab sheet" icon={<IconFileText size={20} />} />
         </>
       )}
-      <button type="button" aria-haspopup="dialog" onClick={onMore}>
+      <button type="button" className="bar-button" aria-haspopup="dialog" onClick={onMore}>
         <IconDots size={20} />
         More
       </button>
@@ -56,7 +57,12 @@ export function PhoneBar({ onMore }: { onMore(): void }) {
 function Turn({ view, words, icon }: { view: ViewName; words: string; icon: ReactNode }) {
   const shown = useView((s) => s.extra === view);
   return (
-    <button type="button" aria-pressed={shown} onClick={() => useView.setState({ extra: shown ? "" : view })}>
+    <button
+      type="button"
+      className="bar-button"
+      aria-pressed={shown}
+      onClick={() => useView.setState({ extra: shown ? "" : view })}
+    >
       {icon}
       {words}
     </button>

@@ -1,4 +1,4 @@
-import { Drawer } from "@mantine/core";
+import { Box, Button, Drawer, Group } from "@mantine/core";
 import { IconShare2 } from "@tabler/icons-react";
 import { useShallow } from "zustand/react/shallow";
 import { useMay } from "../api/me";
@@ -9,6 +9,8 @@ import { useBench } from "../stream/bench-store";
 import { PANELS, panelsOn, VIEW, viewsOn } from "./panels";
 import styles from "./phone.module.css";
 import { Rail } from "./rail";
+
+const BUTTON = { size: "sm", px: 12, fw: 500 };
 
 /** Every panel with a line of words and its views, and the other pages. */
 export function PhoneMore({ opened, onClose }: { opened: boolean; onClose(): void }) {
@@ -31,27 +33,29 @@ export function PhoneMore({ opened, onClose }: { opened: boolean; onClose(): voi
       size="100%"
       title="Panels"
       closeButtonProps={{ "aria-label": "Close" }}
-      classNames={{ content: styles.more, body: styles.moreBody }}
+      classNames={{ content: "column", body: `column ${styles.body}` }}
     >
       <ul className={styles.list}>
         {panels.map(({ title, about, views }) => (
           <li key={title}>
             <h2>{title}</h2>
-            <p>{about}</p>
-            <div>
+            <Box component="p" className="note" mb={6}>
+              {about}
+            </Box>
+            <Group gap={6}>
               {views.map((view) => (
-                <button key={view} type="button" data-view={view} onClick={() => show(view)}>
+                <Button key={view} {...BUTTON} data-view={view} onClick={() => show(view)}>
                   {VIEW[view].title}
-                </button>
+                </Button>
               ))}
-            </div>
+            </Group>
           </li>
         ))}
         {teaches && (
           <li>
-            <button type="button" onClick={actions.share}>
-              <IconShare2 size={16} /> Share this experiment by a link
-            </button>
+            <Button {...BUTTON} leftSection={<IconShare2 size={16} />} onClick={actions.share}>
+              Share this experiment by a link
+            </Button>
           </li>
         )}
       </ul>

@@ -5,6 +5,7 @@ import { pickSample } from "../bench/why";
 import { showSheet } from "../panels/sheet/begin";
 import { server } from "../testing/fake-server";
 import { connect } from "../testing/fake-transport";
+import { drawOnce } from "../testing/jsdom-gaps";
 import { recordedAnswer, recordedBench } from "../testing/recorded";
 import { be, mount } from "../testing/render";
 import { PANELS, panelsOn, VIEW, viewsOn } from "./panels";
@@ -176,5 +177,6 @@ it("drags the divider", async () => {
   await user.pointer(at(240));
   expect(height()).toBe(45);
   await user.pointer([{ ...at(180), keys: "[MouseLeft>]" }, at(240)]); // of 400 px
+  await drawOnce();
   expect(height()).toBe(60);
 });

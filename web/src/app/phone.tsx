@@ -77,7 +77,7 @@ function Lower({ usual }: { usual: ViewName }) {
   const panel = extra === "time" || (extra === "sheet" && !drives) ? undefined : panelOf(extra);
   if (panel) return <Asked key={panel} panel={panel} view={extra as ViewName} />;
   return (
-    <div className={styles.usual}>
+    <div style={{ overflowY: "auto" }}>
       <Box h="100%" mih={220}>
         <PanelBody view={usual} params={{}} setParams={() => undefined} />
       </Box>

@@ -2,7 +2,7 @@ import { openPlace, useView } from "../bench/view-store";
 
 const PARAMETER = "present";
 
-/** Show only what an audience looks at, on the whole screen where the browser lets it; or all again. */
+/** Show the panels alone, on the full screen where the browser allows it; or everything again. */
 export function setPresent(present: boolean): void {
   if (present) openPlace("bench", "", true);
   const url = new URL(window.location.href);
@@ -16,7 +16,7 @@ export function setPresent(present: boolean): void {
 
 export const togglePresent = () => setPresent(!useView.getState().present);
 
-/** Escape leaves the whole screen before the page hears of the key; what is presented ends with it. */
+/** Escape leaves the full screen before the page receives the key; the presentation ends with it. */
 export function followFullScreen(): () => void {
   const changed = () => {
     if (!document.fullscreenElement && useView.getState().present) setPresent(false);

@@ -13,7 +13,7 @@ export function Rail() {
   const offered = Object.entries(PAGES).filter(([id, { tabOf }]) => !tabOf && isOffered(id as PageName, role));
   return (
     <nav className={`column ${styles.rail}`} aria-label="Pages">
-      <button type="button" title="Search (Ctrl K)" onClick={openSearch}>
+      <button type="button" className="bar-button" title="Search (Ctrl K)" onClick={openSearch}>
         <IconSearch size={21} />
         Search
       </button>
@@ -21,6 +21,7 @@ export function Rail() {
         <button
           key={id}
           type="button"
+          className="bar-button"
           title={`${title} (${key.toUpperCase()})`}
           aria-current={id === page ? "page" : undefined}
           onClick={() => setPage(id as PageName)}

@@ -42,6 +42,10 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
     );
     if (took && next && bench.state !== "running") await send({ kind: "start" });
   };
+  const loopOver = (next: [number, number]) => {
+    setSpan(next);
+    void loop(true, next);
+  };
   const leave = showing(async () => {
     const id = benchBefore();
     if (id && (await api.benches()).some((b) => b.id === id)) openBench(id);
@@ -52,7 +56,9 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
   return (
     <section className={`row ${styles.bar}`} aria-label="Replay">
       <strong>Replay</strong>
-      <span className={styles.name}>{about.name}</span>
+      <Box component="span" className="cut" maw={220}>
+        {about.name}
+      </Box>
       <Box pos="relative" flex="1 1 200px" p="0 8px">
         <Slider
           size="sm"
@@ -77,9 +83,9 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
           />
         )}
       </Box>
-      <span className={styles.time}>
+      <Box component="span" c="dimmed" style={{ whiteSpace: "nowrap" }}>
         {ms(Math.min(bench.tick, end))} of {ms(first)} … {ms(end)}
-      </span>
+      </Box>
       <NativeSelect
         aria-label="Speed of the replay"
         value={String(nearest ?? 1)}
@@ -99,24 +105,13 @@ function Bar({ recording, bench }: { recording: string; bench: Bench }) {
       >
         Loop
       </Button>
-      <Button
-        title="The loop begins here"
-        onClick={() => {
-          const next: [number, number] = [bench.tick, to > bench.tick ? to : end];
-          setSpan(next);
-          void loop(true, next);
-        }}
-      >
+      <Button title="The loop begins here" onClick={() => loopOver([bench.tick, to > bench.tick ? to : end])}>
         from here
       </Button>
       <Button
         title="The loop ends here"
         disabled={bench.tick <= from + 2}
-        onClick={() => {
-          const next: [number, number] = [from, Math.min(bench.tick, end)];
-          setSpan(next);
-          void loop(true, next);
-        }}
+        onClick={() => loopOver([from, Math.min(bench.tick, end)])}
       >
         to here
       </Button>

@@ -53,7 +53,7 @@ function MadeLink({ bench }: { bench: string }) {
 
   useEffect(() => {
     if (asked.current) return;
-    asked.current = true; // the moment shared is that of the click
+    asked.current = true; // the link is for the moment of the click
     const layout = sharedLayout();
     api.makeLink({ bench, title: "", note: "", layout: layout ? { ...layout } : null }).then(
       ({ id, tick }) => {

@@ -1,9 +1,9 @@
 import { screen, within } from "@testing-library/react";
 import { beforeEach, expect, it } from "vitest";
 import type { Bench, LogEntry } from "../api/types";
-import { logEntry } from "../stream/log-entry.fixture";
 import { server } from "../testing/fake-server";
 import { connect } from "../testing/fake-transport";
+import { logEntry } from "../testing/log-entry";
 import { recordedAnswer, recordedBench } from "../testing/recorded";
 import { mount } from "../testing/render";
 import { Strip } from "./strip";

@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button, Stack } from "@mantine/core";
 import { IconPlayerTrackNext, IconRepeat } from "@tabler/icons-react";
 import { useMemo } from "react";
 import { useMay } from "../api/me";
@@ -118,7 +118,7 @@ export function Findings({ scored }: { scored: Scored[] }) {
         const nothing = scored.length > 0 && step.isFault ? "nothing to find" : "done";
         const words = step.done ? found.join("; ") || nothing : "to come";
         return (
-          <li key={`${step.tick} ${step.when}`}>
+          <Stack component="li" key={`${step.tick} ${step.when}`} gap={0} align="flex-start">
             {repeats && step.done ? (
               <button type="button" title="Replay this step" onClick={() => actions.replayStep(step.tick)}>
                 {i + 1} {step.words}
@@ -128,8 +128,10 @@ export function Findings({ scored }: { scored: Scored[] }) {
                 {i + 1} {step.words}
               </b>
             )}
-            <span>{words}</span>
-          </li>
+            <Box component="span" c="dimmed">
+              {words}
+            </Box>
+          </Stack>
         );
       })}
     </ol>

@@ -1,4 +1,4 @@
-import { Button, Popover } from "@mantine/core";
+import { Box, Button, Popover } from "@mantine/core";
 import { IconChevronUp } from "@tabler/icons-react";
 import { useState } from "react";
 import { useMay } from "../api/me";
@@ -66,11 +66,11 @@ function Rest({ tips, hasSteps }: { tips: TickedHints | undefined; hasSteps: boo
         {tips && <HintList tips={tips} />}
         {hasSteps && <Findings scored={scored} />}
         {narrates && said && (
-          <div className={rest.said}>
+          <Box flex="none" h={200}>
             <NarratorPanel />
-          </div>
+          </Box>
         )}
-        <Button variant="subtle" onClick={toggleNarrator}>
+        <Button variant="subtle" style={{ alignSelf: "start" }} onClick={toggleNarrator}>
           {narrates ? "Narrator off (Q)" : "Narrator on (Q)"}
         </Button>
       </Popover.Dropdown>

@@ -4,7 +4,7 @@ import { benchChange, changeBench, type Way } from "../bench/undo";
 import { layoutHistory } from "./layout-history";
 import { putLayout } from "./layouts";
 
-/** Take back what was done last, to the bench or to the layout; or make again what was taken back last. */
+/** Undo the last change of the bench or of the layout; or redo the last change that was undone. */
 export function takeBack(way: Way): void {
   const bench = benchChange(way);
   const layout = layoutHistory.lastAt(way);

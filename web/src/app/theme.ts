@@ -46,12 +46,12 @@ const dark: MantineColorsTuple = [
   "#0d1115",
 ];
 
-/** A size of Mantine, or what a finger needs. */
+/** A size of Mantine, or the least size for a finger. */
 const atLeastTarget = (name: string, size: string | number = "sm") => `max(var(--${name}-${size}), var(--target))`;
 
 const SMALL = { defaultProps: { size: "xs" } };
 
-/** The label stands beside the middle of its box, which a finger needs larger than the letters. */
+/** The label is centred on its box, which is larger than the letters for a finger. */
 const BESIDE = { body: { alignItems: "center" } };
 
 /** Mantine on our tokens. */
@@ -157,5 +157,5 @@ export const cssVariables: CSSVariablesResolver = () => {
   return { variables: {}, dark: shared, light: shared };
 };
 
-/** Flips between dark and light; the page puts the real thing in when it stands. */
+/** Flips between dark and light; the page sets the function. */
 export const themeSwitch = { flip: (): void => undefined };

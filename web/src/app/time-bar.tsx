@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { IconArrowsDiff, IconGitBranch, IconPlayerTrackNextFilled } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { useMay } from "../api/me";
@@ -33,7 +33,7 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
   const stale = useStaleSince();
   const [newest, setNewest] = useState({ of: bench.id, tick: bench.tick });
   const [held, setHeld] = useState<number | undefined>(undefined);
-  // the bench that is looked back at goes on; where it was when it was left is the end of the bar
+  // the bench continues while the page shows its past; the bar ends at the tick at which the page left it
   useEffect(() => {
     const of = isPast ? (bench.origin?.bench ?? "") : bench.id;
     setNewest((n) => ({ of, tick: isPast ? Math.max(n.of === of ? n.tick : 0, bench.tick) : bench.tick }));
@@ -61,7 +61,7 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
           <span role="status"> computed again: {formatPercent(0.1 * Math.floor(10 * bench.travel.share), 0)}</span>
         )}
       </p>
-      <div className={styles.track}>
+      <Box pos="relative" flex="1 1 90px" miw={90} px={8}>
         <Slider
           size="sm"
           disabled={stale !== undefined}
@@ -79,7 +79,7 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
           ))}
           {bench.origin && !isPast && <i data-tone="branch" style={{ left: place(bench.origin.tick) }} />}
         </span>
-      </div>
+      </Box>
       <span className={styles.end}>{formatMoment(end * bench.dt_ms)}</span>
       <BranchMenu bench={bench} />
       {isPast ? <BackToNow /> : bench.origin && <Other />}
@@ -108,7 +108,7 @@ function Other() {
   );
 }
 
-/** What lies behind the traces is chosen in the panel Compare. */
+/** Opens the panel Compare, which chooses the benches behind the traces. */
 function Compare() {
   const count = useBehind((s) => s.behind.length);
   return (

@@ -1,4 +1,4 @@
-import { Button, CloseButton } from "@mantine/core";
+import { Box, Button, CloseButton, Group } from "@mantine/core";
 import { IconPlayerPlayFilled, IconSquare, IconSquareCheckFilled } from "@tabler/icons-react";
 import { useMay } from "../api/me";
 import { showPanel } from "../bench/dock";
@@ -34,22 +34,22 @@ export function HintList({ tips }: { tips: TickedHints }) {
   const teaches = useMay("teach");
   return (
     <section aria-label="Things to try">
-      <p>
+      <Box component="p" mb={6}>
         {tips.intro} {tips.more}
-      </p>
+      </Box>
       <ul className={rest.hints}>
         {tips.hints.map(({ id, text }) => (
-          <li key={id} data-done={tips.done.has(id)}>
+          <Group component="li" key={id} gap={6} wrap="nowrap" data-done={tips.done.has(id)}>
             {tips.done.has(id) ? <IconSquareCheckFilled size={16} /> : <IconSquare size={16} />}
             {text}
             {tips.done.has(id) && <span className="visually-hidden">, done</span>}
-          </li>
+          </Group>
         ))}
       </ul>
-      <div className={rest.actions}>
+      <Group gap={6} mt={8}>
         {teaches && !tourSeen() && <OfferTour />}
         {tips.canHide && <Button onClick={() => showPanel("blind", "faults")}>Find a hidden fault</Button>}
-      </div>
+      </Group>
     </section>
   );
 }

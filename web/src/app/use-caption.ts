@@ -4,10 +4,10 @@ import { useSaid, useVoting } from "../bench/narrator";
 import { useBench } from "../stream/bench-store";
 import { formatCount } from "../ui/format";
 
-/** A sentence stands at least this long, so that it can be read or spoken. */
+/** The least time of a sentence on the page, to be read or spoken. */
 const LEAST_MS = 2000;
 
-export interface CaptionShown {
+interface CaptionShown {
   sentence: Sentence;
   /** Sentences that came and went since the one shown before. */
   more: number;

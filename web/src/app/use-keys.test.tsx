@@ -136,7 +136,7 @@ it("no key of a watcher changes the bench", async () => {
   expect(useView.getState().dialog).toBe("none");
 });
 
-it("X saves what happened as a scenario, and S waits for a change to make a slide of", async () => {
+it("X saves the run as a scenario, and S makes a slide only after a change", async () => {
   server.on("GET", "/benches/:id/scenario", "# a scenario");
   const saved = vi.spyOn(files, "saveFile").mockReturnValue();
   const { user } = mountKeys();

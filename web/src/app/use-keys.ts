@@ -21,7 +21,7 @@ const noteKey = () => {
   pointed = false;
 };
 
-/** What was chosen with the pointer gives the keys back; who chooses with keys stays where they are. */
+/** A choice by pointer returns the keys to the page; a choice by keys keeps the focus. */
 function giveBack({ target }: Event): void {
   if (pointed && target instanceof HTMLElement && target.matches(CHOSEN)) target.blur();
 }
@@ -51,9 +51,7 @@ export function useKeys(): void {
       const target = event.target as HTMLElement;
       if (target.closest(TYPING)) return;
       if (event.key === " " && target.closest("button, a, summary, [role=button], [role=tab]")) return;
-      const binding = keymap().find(
-        (b) => b.key === event.key && (b.withControl ?? false) === (event.ctrlKey || event.metaKey),
-      );
+      const binding = keymap().find((b) => b.key === event.key && b.withControl === (event.ctrlKey || event.metaKey));
       if (!binding) return;
       event.preventDefault();
       binding.run();

@@ -16,11 +16,11 @@ export function useReadingSize(phone: boolean): number {
   return scale;
 }
 
-/** The window for which the sizes of a lecture are made; those of a larger one grow with it. */
+/** The window for which the sizes of a lecture are made; the sizes grow with a larger window. */
 const MADE_FOR = { width: 1366, height: 768 };
 const MOST = 3;
 
-/** How large letters of large type are, as a factor on those of the window it is made for. */
+/** The factor on the letters of large type in a window of this size. */
 export function readingScale(large: boolean, width: number, height: number): number {
   if (!large) return 1;
   return Math.min(MOST, Math.max(1, Math.min(width / MADE_FOR.width, height / MADE_FOR.height)));

@@ -12,7 +12,7 @@ const gyroscope = (await recordedBench("gyroscope")).bench;
 const WIDE = 800;
 const NARROW = 80;
 
-/** A docked panel, of which only the kind and the parameters count. */
+/** A docked panel with its kind and its parameters alone. */
 function docked(kind: PanelName, params: object = {}) {
   const heard = new Set<() => void>();
   const panel = {

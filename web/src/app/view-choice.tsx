@@ -1,14 +1,14 @@
 import { Menu } from "@mantine/core";
 import { IconChevronDown } from "@tabler/icons-react";
 import type { IDockviewPanel } from "dockview-react";
-import { useEffect, useState } from "react";
 import { useShallow } from "zustand/react/shallow";
 import { turnTo, viewOf } from "../bench/dock";
 import type { PanelName } from "../bench/panel-views";
 import { useBench } from "../stream/bench-store";
 import { PANELS, VIEW, viewShown, viewsOn } from "./panels";
+import { useDockValue } from "./use-dock-value";
 
-/** Width of a letter and of what is around a name, px: the names stand in a row where the header has room for them. */
+/** Width of a letter and of the space around a name, px: the names form a row if the header has room for it. */
 const LETTER_PX = 7;
 const AROUND_PX = 18;
 
@@ -16,7 +16,10 @@ const AROUND_PX = 18;
 export function ViewChoice({ panel, room }: { panel: IDockviewPanel; room: number }) {
   const name = panel.view.contentComponent as PanelName;
   const axes = useBench(useShallow((s) => s.bench?.axes));
-  const shown = viewShown(name, useView(panel));
+  const shown = viewShown(
+    name,
+    useDockValue(panel.api.onDidParametersChange, () => viewOf(panel)),
+  );
   const views = viewsOn(name, axes && { axes });
   if (views.length < 2) return null;
   const wide = views.reduce((sum, view) => sum + AROUND_PX + LETTER_PX * VIEW[view].title.length, 0);
@@ -54,15 +57,4 @@ export function ViewChoice({ panel, room }: { panel: IDockviewPanel; room: numbe
       ))}
     </div>
   );
-}
-
-/** The view that a docked panel is turned to. */
-function useView(panel: IDockviewPanel): string {
-  const [view, setView] = useState(viewOf(panel));
-  useEffect(() => {
-    setView(viewOf(panel));
-    const subscription = panel.api.onDidParametersChange(() => setView(viewOf(panel)));
-    return () => subscription.dispose();
-  }, [panel]);
-  return view;
 }

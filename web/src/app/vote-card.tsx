@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Button, Group, Stack } from "@mantine/core";
 import { useEffect, useState } from "react";
 import { ApiError } from "../api/client";
 import { castVote, useMe } from "../api/me";
@@ -9,9 +9,9 @@ import { showError } from "../bench/send";
 import { formatCount, formatIn } from "../ui/format";
 import { Slider } from "../ui/slider";
 import { follow } from "./follow";
-import styles from "./vote-card.module.css";
 
-/** How soon a student's page hears of a vote. */
+const LINE = { borderBottom: "1px solid var(--line)" };
+/** The interval at which a student's page asks for a vote. */
 const EVERY_MS = 4000;
 
 /** The open vote of a student's class: one answer at a tap, and a moment, until the vote is closed. */
@@ -45,9 +45,9 @@ function Card({ vote }: { vote: OpenVote }) {
   const cast = (answer: number, moment: number | null) =>
     castVote(vote.id, answer, moment).then(() => announce(`Your answer: ${nameOf(answers[answer])}`), showError);
   return (
-    <section className={`column ${styles.card}`} aria-label="Vote">
+    <Stack component="section" flex="none" gap={6} p="8px 14px" bg="var(--raised)" style={LINE} aria-label="Vote">
       <h2>{question.text}</h2>
-      <div className={styles.answers}>
+      <Group gap={6}>
         {answers.map((answer, i) => (
           <Button
             key={answer}
@@ -61,9 +61,9 @@ function Card({ vote }: { vote: OpenVote }) {
             {results && `, ${formatCount(results[i].count, "vote")}`}
           </Button>
         ))}
-      </div>
+      </Group>
       {when && open && at !== null && (
-        <div className={styles.when}>
+        <Stack gap={2} maw={480} pb={6} fz="sm">
           <span>When? {formatIn(at, "ms", 1)}</span>
           <Slider
             thumbLabel="When"
@@ -75,9 +75,9 @@ function Card({ vote }: { vote: OpenVote }) {
             onChange={setAt}
             onChangeEnd={(value) => mine && cast(mine.answer, value)}
           />
-        </div>
+        </Stack>
       )}
-      <p role="status">
+      <p className="note" role="status">
         {results
           ? right
             ? `The right answer: ${nameOf(right)}.`
@@ -88,6 +88,6 @@ function Card({ vote }: { vote: OpenVote }) {
               ? "Your answer is in. You can change it until the vote is closed."
               : "Tap to vote; votes are anonymous."}
       </p>
-    </section>
+    </Stack>
   );
 }

@@ -8,7 +8,7 @@ import {
   type IDockviewPanelHeaderProps,
   type IDockviewPanelProps,
 } from "dockview-react";
-import { type FunctionComponent, type KeyboardEvent, useEffect, useState } from "react";
+import { type FunctionComponent, type KeyboardEvent, useEffect } from "react";
 import { hasAxes } from "../api/fits";
 import { PanelVisible } from "../api/panel-visible";
 import { closePanel, DOCK_GAP, dockNow } from "../bench/dock";
@@ -19,11 +19,12 @@ import { attachDock, keepLayout, layOutFor } from "./layouts";
 import { PanelBody } from "./panel-body";
 import { PanelMenu } from "./panel-menu";
 import { viewShown } from "./panels";
+import { useDockValue } from "./use-dock-value";
 import { ViewChoice } from "./view-choice";
 
 const THEME = { name: "combbench", className: "dockview-theme-combbench", gap: DOCK_GAP };
 
-/** What a tab takes beside the letters of its title, a letter, and the two buttons of a group, px. */
+/** The widths of an empty tab, of a letter of its title, and of the two buttons of a group, px. */
 const TAB_PX = 36;
 const LETTER_PX = 7.5;
 const BUTTONS_PX = 64;
@@ -52,12 +53,8 @@ export function Workspace() {
 
 function dockPanel(name: PanelName): FunctionComponent<IDockviewPanelProps> {
   return function DockPanel({ api, params }: IDockviewPanelProps) {
-    const [shown, setShown] = useState(api.isVisible);
+    const shown = useDockValue(api.onDidVisibilityChange, () => api.isVisible);
     const page = usePageVisible();
-    useEffect(() => {
-      const subscription = api.onDidVisibilityChange((event) => setShown(event.isVisible));
-      return () => subscription.dispose();
-    }, [api]);
     return (
       <PanelVisible value={shown && page}>
         <PanelBody
@@ -75,7 +72,6 @@ function dockPanel(name: PanelName): FunctionComponent<IDockviewPanelProps> {
 
 /** A tab is one control, so its cross is for the pointer alone; the keyboard closes by Delete, or in the menu. */
 function Tab(props: IDockviewPanelHeaderProps) {
-  const panel = () => props.containerApi.getPanel(props.api.id);
   return (
     <>
       <DockviewDefaultTab hideClose {...props} />
@@ -85,8 +81,8 @@ function Tab(props: IDockviewPanelHeaderProps) {
         title="Close"
         onPointerDown={(event) => event.stopPropagation()}
         onClick={() => {
-          const closing = panel();
-          if (closing) closePanel(closing);
+          const panel = props.containerApi.getPanel(props.api.id);
+          if (panel) closePanel(panel);
         }}
       >
         <IconX size={12} />
@@ -109,25 +105,18 @@ function closeByKey(event: KeyboardEvent<HTMLElement>): void {
 }
 
 function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActionsProps) {
-  const [maximised, setMaximised] = useState(false);
-  useEffect(() => {
-    const subscription = containerApi.onDidMaximizedGroupChange(() => setMaximised(containerApi.hasMaximizedGroup()));
-    return () => subscription.dispose();
-  }, [containerApi]);
-  const [width, setWidth] = useState(group.api.width);
-  useEffect(() => {
-    const subscription = group.api.onDidDimensionsChange(() => setWidth(group.api.width));
-    return () => subscription.dispose();
-  }, [group]);
+  const maximised = useDockValue(containerApi.onDidMaximizedGroupChange, () => containerApi.hasMaximizedGroup());
+  const width = useDockValue(group.api.onDidDimensionsChange, () => group.api.width);
   const tabs = group.panels.reduce((sum, panel) => sum + TAB_PX + LETTER_PX * (panel.title?.length ?? 0), 0);
+  const fill = maximised ? "Back to all panels" : "Fill the page with this panel";
   return (
     <div className="dock-actions">
       {activePanel && <ViewChoice panel={activePanel} room={width - tabs - BUTTONS_PX} />}
       <PanelMenu group={group} activePanel={activePanel} />
       <button
         type="button"
-        aria-label={maximised ? "Back to all panels" : "Fill the page with this panel"}
-        title={maximised ? "Back to all panels" : "Fill the page with this panel"}
+        aria-label={fill}
+        title={fill}
         onClick={() =>
           maximised ? containerApi.exitMaximizedGroup() : activePanel && containerApi.maximizeGroup(activePanel)
         }

@@ -9,14 +9,14 @@ import { layoutNow } from "./dock";
 import { openOwn } from "./open-bench";
 import { forkBeforeTrip } from "./past";
 import type { PageName } from "./places";
-import { send, showing } from "./send";
+import { onBench, send } from "./send";
 import { sendAndTell } from "./tell";
 import { stepTimeScale } from "./time-scale";
 import { setPage, useView } from "./view-store";
 
 const bench = () => useBench.getState().bench;
 
-/** What can be done to the bench from buttons and keys alike. */
+/** The actions on the bench that buttons and keys share. */
 export const actions = {
   toggle: () =>
     void (bench()?.state === "running" ? send({ kind: "pause" }, "Paused") : send({ kind: "start" }, "Running")),
@@ -69,18 +69,14 @@ async function replay(before_tick: number | undefined): Promise<void> {
   if (began && bench()?.state === "paused") void send({ kind: "start" });
 }
 
-const fork = showing(async () => {
-  const from = bench();
-  if (!from) return;
+const fork = onBench(async (from) => {
   const made = await api.fork(from.id);
   openOwn(made.id);
   notifications.show({ title: "Forked", message: `This is a copy of ${from.title}; the original is untouched.` });
 });
 
-/** Begin to record with the last moments, or end what is recorded. */
-const record = showing(async () => {
-  const from = bench();
-  if (!from) return;
+/** Start a recording that includes the last moments, or stop it. */
+const record = onBench(async (from) => {
   if (from.recording.length > 0) {
     for (const id of from.recording) await api.stopRecording(from.id, id);
     notifications.show({
@@ -92,17 +88,13 @@ const record = showing(async () => {
   }
 });
 
-/** Keep this moment: it stands on the timeline. */
-const keep = showing(async () => {
-  const from = bench();
-  if (!from) return;
+/** Keep this moment as a mark on the timeline. */
+const keep = onBench(async (from) => {
   const kept = await api.keep(from.id);
   notifications.show({ title: "Moment kept", message: `Tick ${kept.tick} stands on the timeline.` });
 });
 
-const saveScenario = showing(async () => {
-  const from = bench();
-  if (!from) return;
+const saveScenario = onBench(async (from) => {
   const toml = await api.scenarioToml(from.id);
   const name = `${from.scenario_id || "bench"}-${from.tick}.toml`;
   saveFile(name, new Blob([toml], { type: "application/toml" }));

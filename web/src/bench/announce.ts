@@ -1,6 +1,6 @@
 import { create } from "zustand";
 
-/** What screen readers are told: news politely, alarms at once. */
+/** The texts for screen readers: news politely, alarms at once. */
 export const useAnnouncements = create<{ polite: string; alarm: string }>(() => ({ polite: "", alarm: "" }));
 
 export function announce(text: string): void {

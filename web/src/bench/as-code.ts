@@ -16,7 +16,7 @@ export const LANGUAGES = { rest: "REST, with curl", cli: "Command line, headless
 
 export type Language = keyof typeof LANGUAGES;
 
-/** What a headless run has of a scenario without a length. */
+/** The samples of a headless run of a scenario without a length. */
 const HEADLESS_SAMPLES = 10_000;
 const MOMENT = ["at_sample", "at_ms", "when"];
 
@@ -34,7 +34,7 @@ function asCurl(command: Command, { address, bench }: Source): string {
   return `curl ${headers} -d ${quoted(JSON.stringify(command))} ${quoted(url)}`;
 }
 
-/** A run with this event alone, long enough to see what it does. */
+/** A run with this event alone, long enough to show its effect. */
 function asRun(command: Command, tick: number, { scenario, samples: own }: Source): string {
   const samples = own ?? HEADLESS_SAMPLES;
   const event = MOMENT.some((name) => name in command) ? command : { at_sample: tick, ...command };

@@ -1,10 +1,10 @@
-import { lectures } from "../api/lectures";
+import { api } from "../api/api";
 import { useBench } from "../stream/bench-store";
 import { openBench } from "./open-bench";
 import type { Place } from "./places";
 import { openPlace, useView } from "./view-store";
 
-/** What a page goes back to after a lecture or a tour. */
+/** The state to which a page returns after a lecture or a tour. */
 export interface Before {
   bench: string | undefined;
   layout: string;
@@ -12,11 +12,11 @@ export interface Before {
   ran: boolean;
 }
 
-/** Leave the bench for a while; it is paused if nobody else watches it. */
+/** Leave the bench for a while; it pauses if no other page watches it. */
 export async function stepAside(): Promise<Before> {
   const { bench } = useBench.getState();
   const ran = bench?.state === "running" && (bench.watchers ?? 0) <= 1;
-  if (bench && ran) await lectures.command(bench.id, { kind: "pause" });
+  if (bench && ran) await api.command(bench.id, { kind: "pause" });
   const { layout, page, item } = useView.getState();
   return { bench: bench?.id, layout, place: { page, item }, ran };
 }
@@ -26,5 +26,5 @@ export async function stepBack({ bench, place, ran }: Before): Promise<void> {
   openPlace(place.page, place.item);
   if (!bench) return;
   openBench(bench, true);
-  if (ran) await lectures.command(bench, { kind: "start" });
+  if (ran) await api.command(bench, { kind: "start" });
 }

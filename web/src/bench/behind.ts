@@ -9,15 +9,15 @@ import { showError, showing } from "./send";
 /** As many as the server sends. */
 export const MOST_BEHIND = 8;
 
-/** A bench whose traces lie behind those of the bench on the page. */
+/** A bench whose traces are drawn behind the traces of the bench on the page. */
 export interface Behind {
   bench: string;
   words: string;
-  /** Its tick minus that of the bench on the page. */
+  /** Its tick minus the tick of the bench on the page. */
   shift: number;
 }
 
-/** What stands at the same place: the same time, or the last event of a kind on each bench. */
+/** The common point of the traces: the same time, or the last event of a kind on each bench. */
 export type Alignment = "time" | "inject" | "heal" | "switch" | "tripped";
 
 interface BehindStore {
@@ -35,10 +35,10 @@ export const useBehind = create<BehindStore>(() => ({
   difference: false,
 }));
 
-/** What a bench is called in a list of several. */
+/** The name of a bench in a list. */
 export const wordsOf = (bench: Pick<Bench, "title" | "name" | "origin" | "dt_ms">): string => bench.name || bench.title;
 
-/** What is seen behind the traces, in words. */
+/** The benches behind the traces, in words. */
 export function behindText(behind: readonly Behind[], difference: boolean): string {
   const names = behind.map(({ words }) => words).join("; ");
   const dotted = `Dotted, on the axis Δ: the difference from ${behind[0]?.words}, where the window shows each sample.`;
@@ -89,7 +89,7 @@ export const align = showing(async (alignment: Alignment) => {
 });
 
 /** Forget benches that are gone, or that have another rate than the bench on the page: the server draws nothing of them. */
-export async function forgetGone(): Promise<void> {
+async function forgetGone(): Promise<void> {
   const rate = rateHere();
   if (rate === undefined || useBehind.getState().behind.length === 0) return;
   const there = new Set((await api.benches()).flatMap((one) => (one.sample_rate_khz === rate ? [one.id] : [])));
@@ -104,10 +104,10 @@ async function shiftOf(id: string, alignment: Alignment): Promise<number | undef
   return here === undefined || there === undefined ? undefined : there - here;
 }
 
-export const lastOf = (events: readonly LogEntry[], kind: Alignment): number | undefined =>
+const lastOf = (events: readonly LogEntry[], kind: Alignment): number | undefined =>
   currentEvents([...events]).findLast((event) => event.kind === kind)?.tick;
 
-/** What is behind another bench that the page shows now. */
+/** The benches behind the traces of another bench that the page shows now. */
 export function behindOf(
   behind: readonly Behind[],
   before: Pick<Bench, "id" | "title" | "name" | "origin" | "dt_ms"> | undefined,
@@ -132,7 +132,7 @@ useBench.subscribe(({ behindRefused }, before) => {
   if (behindRefused !== before.behindRefused) forgetGone().catch(showError);
 });
 
-// what is aligned at the last event of the bench on the page follows it
+// benches that are aligned at the last event of the bench on the page follow it
 useBench.subscribe(({ events }, before) => {
   const { alignment, behind } = useBehind.getState();
   if (alignment === "time" || behind.length === 0 || events === before.events) return;
@@ -147,7 +147,7 @@ useBench.subscribe(({ bench }) => {
   const before = last;
   last = bench;
   if (before?.id !== bench.id) useBehind.setState(({ behind }) => ({ behind: behindOf(behind, before, bench) }));
-  // the other future of a branch is what it is looked at for, unless it is gone
+  // a branch is compared with its origin, unless the origin is gone
   const { origin } = bench;
   if (origin && !origin.is_past)
     void api

@@ -38,7 +38,7 @@ const isChange = ({ kind, command, old }: LogEntry): boolean =>
   (kind === "set" && Boolean(command)) ||
   (kind === "heal" && Object.keys((old as object | null) ?? {}).length > 0);
 
-/** The last change within some ticks; nothing lies before tick 0. */
+/** The last change within some ticks; a change at tick 0 has no state before it. */
 export function lastChange(events: readonly LogEntry[], from: number, until: number): Change | undefined {
   const changes = events.filter((e) => isChange(e) && e.tick > 0 && e.tick >= from && e.tick <= until);
   const last = changes.at(-1);

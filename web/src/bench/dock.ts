@@ -36,7 +36,7 @@ export const useDock = create<{ dock: DockviewApi | undefined; closed: Closed[] 
 /** The dock, once the page has one. */
 export const dockNow = (): DockviewApi | undefined => useDock.getState().dock;
 
-/** How the panels stand now, to be kept with a recording. */
+/** The present layout, to be stored with a recording. */
 export const layoutNow = () => dockNow()?.toJSON() as Document | undefined;
 
 /** Put the panels as they stood; returns whether this version knows them all. */
@@ -74,7 +74,7 @@ const undoButton = () =>
     "Undo",
   );
 
-/** Another layout is about to stand: what was closed in this one does not belong there. */
+/** Forget the closed panels before another layout replaces this one. */
 export function forgetClosed(): void {
   useDock.setState({ closed: [] });
   notifications.hide(CLOSED_NOTICE);
@@ -202,7 +202,7 @@ export function showBeside(view: string, anchor: string): void {
   revealActiveTabs();
 }
 
-/** The tabs of a narrow group scroll; the one whose panel is shown must be among those seen. */
+/** The tabs of a narrow group scroll; the active tab must be visible. */
 function revealActiveTabs(): void {
   for (const group of dockNow()?.groups ?? [])
     group.element

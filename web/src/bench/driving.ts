@@ -7,13 +7,13 @@ import { showing } from "./send";
 
 type Somebody = Company["drivers"][number];
 
-/** Who is at the bench on the page; nothing while it is one person. */
+/** The people at the bench on the page; undefined while there is only one. */
 export const useCompany = (): Company | undefined => useBench((s) => s.bench?.company ?? undefined);
 
-/** The name of somebody, as others are told. */
+/** The name of a person for the others. */
 export const nameOf = ({ id, name }: Somebody): string => (id === "teacher" ? "The teacher" : name);
 
-/** Who drives, in words; or how many look on where nobody else may drive. */
+/** The driver in words; or the number of onlookers where no one else may drive. */
 export function drivingWords(company: Company, me: string | undefined): string {
   const { is_leased, driver, watching, more_watching, links } = company;
   if (!is_leased) {

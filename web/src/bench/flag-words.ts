@@ -6,7 +6,7 @@ import { severityScale, severityText } from "./severity";
 
 const RATE = "rate.deg_per_s";
 
-/** What an event says on its flag: a few words. */
+/** The few words on the flag of an event. */
 export function flagWords({ kind, command, new: value }: LogEntry): string {
   if (kind === "recognised") return `found ${hypothesisWords(String(value))}`;
   if (kind === "truth_changed") return `truth: ${hypothesisWords(String(value))}`;
@@ -40,27 +40,18 @@ export const titleOf = (family: string, name: string) => cardOf(family, name)?.t
 
 const leaf = (path: string) => path.slice(path.lastIndexOf(".") + 1).replaceAll("_", " ");
 
-/** How loudly an event speaks: faults and trips are alarms, what a diagnoser found is news, run control is quiet. */
-export type EventTone = "alarm" | "found" | "change" | "quiet";
+/** How loudly an event speaks: faults and trips are alarms, findings of diagnosers are news, run control is quiet. */
+type EventTone = "alarm" | "found" | "change" | "quiet";
 
-const TONES: Record<string, EventTone> = {
-  inject: "alarm",
-  tripped: "alarm",
-  make_safe: "alarm",
-  recognised: "found",
-  heal: "change",
-  set: "change",
-  switch: "change",
-  truth_changed: "change",
-  reset_trip: "change",
-  failed: "alarm",
-  refused: "alarm",
-  scheduled: "change",
-  reset: "change",
-  restored: "change",
-  snapshot_taken: "change",
+const TONES = {
+  alarm: ["inject", "tripped", "make_safe", "failed", "refused"],
+  found: ["recognised"],
+  change: ["heal", "set", "switch", "truth_changed", "reset_trip", "scheduled", "reset", "restored", "snapshot_taken"],
 };
 
-export function eventTone(event: Pick<LogEntry, "kind">): EventTone {
-  return TONES[event.kind] ?? "quiet";
-}
+/** By kind, for it is asked for each event in each frame. */
+const TONE_OF = new Map(
+  Object.entries(TONES).flatMap(([tone, kinds]) => kinds.map((kind) => [kind, tone as EventTone] as const)),
+);
+
+export const eventTone = ({ kind }: Pick<LogEntry, "kind">): EventTone => TONE_OF.get(kind) ?? "quiet";

@@ -5,14 +5,14 @@ interface Game {
   /** Id of the game chosen. */
   game: string;
   seed: number;
-  /** What is to be handed in, as far as it differs from the defaults. */
+  /** The values to hand in that differ from the defaults. */
   values: HandedIn;
 }
 
 /** The game chosen in this page; it outlives the panel, which a phone opens and closes. */
 export const useGame = create<Game>(() => ({ game: "be-the-filter", seed: 1, values: {} }));
 
-/** Choose another game or seed; what was set for the one before does not belong to it. */
+/** Choose another game or seed; the values set for the previous one are dropped. */
 export function chooseGame(game: string, seed: number): void {
   const now = useGame.getState();
   if (now.game !== game || now.seed !== seed) useGame.setState({ game, seed, values: {} });

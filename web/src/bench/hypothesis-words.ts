@@ -16,10 +16,10 @@ const LETTERS: Record<string, string> = { m: "mass", k: "stiffness", b: "damping
 
 let known: { diagnosers: Diagnosers; words: Map<string, string> } | undefined;
 
-/** Abbreviations have a number in them; a name of words is somebody's choice, and stays. */
+/** Abbreviations contain a number; a name of words was chosen by its author, and is kept. */
 const ABBREVIATION = /\d/;
 
-/** A hypothesis in words: "m+5" reads "mass +5 %"; one that says nothing of the device keeps its name. */
+/** A hypothesis in words: "m+5" reads "mass +5 %"; a hypothesis without factors keeps its name. */
 export function hypothesisWords(name: string, diagnosers = useBench.getState().bench?.diagnosers): string {
   if (!diagnosers) return spelledOut(name);
   if (known?.diagnosers !== diagnosers) known = { diagnosers, words: wordsOf(diagnosers) };
@@ -58,7 +58,7 @@ function wordsOf(diagnosers: Diagnosers): Map<string, string> {
   return words;
 }
 
-/** A factor on the nominal device in percent, or what is added to it in its unit. */
+/** A factor on the nominal device in percent, or an offset in its unit. */
 function factorWords(factor: string, value: number): string {
   if (factor.endsWith("_dps")) return `${factor.slice(0, -4).replaceAll("_", " ")} ${formatChange(value, "deg/s", 0)}`;
   const percent = (value - 1) * 100;

@@ -42,7 +42,7 @@ export const cueNow = (): Cue | undefined => {
   return lecture?.script[at];
 };
 
-/** The layout a cue stands in: its own, else that of the cue before. */
+/** The layout of a cue: its own, else the layout of the cue before. */
 export function layoutAt(script: readonly Pick<Cue, "layout">[], at: number): "lecture" | "lab" | "research" {
   const found = script.slice(0, at + 1).findLast(({ layout }) => layout)?.layout;
   return (found ?? "lecture") as "lecture" | "lab" | "research";
@@ -52,7 +52,7 @@ export function layoutAt(script: readonly Pick<Cue, "layout">[], at: number): "l
 export const plannedTo = (script: readonly Pick<Cue, "minutes">[], at: number): number =>
   script.slice(0, at + 1).reduce((sum, { minutes }) => sum + minutes, 0);
 
-/** Begin a lecture at its first cue. The bench on the page is paused if nobody else watches it. */
+/** Begin a lecture at its first cue. The bench on the page pauses if no other page watches it. */
 export const startLecture = showing(async (id: string) => {
   if (lectureRuns()) await leaveLecture();
   const lecture = await lectures.get(id);
@@ -87,7 +87,7 @@ export async function goTo(cue: number): Promise<void> {
 async function put(lecture: Lecture, at: number): Promise<void> {
   const { stage } = useLecture.getState();
   const { bench, tick } = await lectures.put(lecture.id, at + 1, stage ?? null).catch((error: unknown) => {
-    // a stage that somebody has closed is made anew
+    // a stage that was closed elsewhere is made anew
     if (stage && error instanceof ApiError && error.status === 404) return lectures.put(lecture.id, at + 1, null);
     throw error;
   });
@@ -105,7 +105,7 @@ const from = () => (useLecture.getState().busy ? wanted : useLecture.getState().
 export const nextCue = () => void goTo(from() + 1);
 export const cueBefore = () => void goTo(from() - 1);
 
-/** End the lecture; returns what the page goes back to. */
+/** End the lecture; returns the state to which the page goes back. */
 export async function leaveLecture(): Promise<Before | undefined> {
   const { lecture, before, stage } = useLecture.getState();
   if (!lecture) return undefined;

@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import type { ActiveFault, LogEntry } from "../api/types";
-import { logEntry } from "../stream/log-entry.fixture";
+import { logEntry } from "../testing/log-entry";
 import { faultSpans } from "./marks";
 
 let seq = 0;

@@ -20,7 +20,7 @@ export function marksNow(): Marks {
   return known.marks;
 }
 
-export interface FaultSpan {
+interface FaultSpan {
   name: string;
   severity: number;
   start: number;

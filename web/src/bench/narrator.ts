@@ -27,7 +27,7 @@ export function toggleNarrator(): void {
   useNarrator.setState({ on });
 }
 
-/** Take the scopes to what a sentence speaks of; a replay that has not come there goes there first. */
+/** Move the scopes to the moment of a sentence; a replay that has not reached it seeks to it first. */
 export function showSentence(sentence: Sentence): void {
   useNarrator.setState({ chosen: sentence });
   const { bench } = useBench.getState();
@@ -42,7 +42,7 @@ export function useVoting(): boolean {
   return (asked ?? mine) === "open";
 }
 
-/** How many of the sentences speak of what lies before now; a replay knows those to come as well. */
+/** The number of sentences about the past; a replay also has sentences about its future. */
 export function useSaid(): number {
   const tick = useBench((s) => s.bench?.tick ?? 0);
   const replay = useBench((s) => Boolean(s.bench?.replay_of));

@@ -10,7 +10,7 @@ const PARAMETER = "bench";
 const OWN = "combbench.own";
 const MINE = "combbench.mine";
 
-/** What the address names, if it does. */
+/** The bench, link or layout that the address names. */
 export function inAddress(name: "bench" | "link" | "layout"): string | undefined {
   const hash = new URLSearchParams(window.location.hash.replace(/^#/, ""));
   const query = new URLSearchParams(window.location.search);
@@ -29,7 +29,7 @@ export const ownLinks = (): string[] => JSON.parse(localStorage.getItem(MINE) ??
 /** Remember a link as made here. */
 export const noteOwnLink = (id: string): void => localStorage.setItem(MINE, JSON.stringify([...ownLinks(), id]));
 
-/** Show a bench made from this page, and come back to it from now on; that of a student took the place of the one before. */
+/** Show a bench made from this page, and come back to it from now on; the new bench of a student replaces the old one. */
 export function openOwn(id: string, replace = false): void {
   const teaches = may("teach");
   if (teaches) localStorage.setItem(OWN, id);
@@ -47,7 +47,7 @@ export function openBench(id: string, replace = false, keep = false): void {
   showBench(id, keep);
 }
 
-/** Show a bench; what was chosen and said about the one before does not concern it. */
+/** Show a bench; the selection and the alarm of the previous bench are cleared. */
 export function showBench(id: string, keep = false): void {
   useView.setState({ sample: undefined });
   alarm("");
@@ -74,7 +74,8 @@ export async function openReplay(recording: string): Promise<void> {
  */
 export async function openInstead(id: string): Promise<void> {
   const { bench } = useBench.getState();
-  if (bench?.state === "running" && (bench.watchers ?? 0) <= 1) await send({ kind: "pause" });
+  // the previous bench of a student is gone
+  if (may("teach") && bench?.state === "running" && (bench.watchers ?? 0) <= 1) await send({ kind: "pause" });
   openOwn(id);
 }
 

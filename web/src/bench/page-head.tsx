@@ -1,10 +1,9 @@
-import { ActionIcon, Tooltip } from "@mantine/core";
+import { ActionIcon, Anchor, Box, Tooltip } from "@mantine/core";
 import { IconCheck, IconLink } from "@tabler/icons-react";
 import { type MouseEvent, type ReactNode, useState } from "react";
 import { copyText } from "../ui/copy-text";
 import { useTitle } from "../ui/use-title";
 import { announce } from "./announce";
-import styles from "./page-head.module.css";
 import { addressOf, type Place } from "./places";
 import { openPlace, useView } from "./view-store";
 
@@ -28,8 +27,10 @@ export function PageHead({ name, item, heading = name }: PageHeadProps) {
   };
   const label = copied === address ? "Link copied" : "Copy link";
   return (
-    <div className={`line ${styles.head}`}>
-      <h1>{heading}</h1>
+    <div className="line">
+      <Box component="h1" fz="lg" style={{ overflowWrap: "anywhere" }}>
+        {heading}
+      </Box>
       <Tooltip label={label}>
         <ActionIcon size="md" aria-label={label} onClick={() => void copy()}>
           {copied === address ? <IconCheck size={16} /> : <IconLink size={16} />}
@@ -47,8 +48,8 @@ export function PlaceLink({ place, children }: { place: Place; children: ReactNo
     openPlace(place.page, place.item);
   };
   return (
-    <a href={addressOf(place)} onClick={open}>
+    <Anchor href={addressOf(place)} c="inherit" underline="hover" inherit onClick={open}>
       {children}
-    </a>
+    </Anchor>
   );
 }

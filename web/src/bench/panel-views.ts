@@ -26,7 +26,7 @@ export const VIEWS = {
 export type PanelName = keyof typeof VIEWS;
 export type ViewName = (typeof VIEWS)[PanelName][number];
 
-/** Panels of which several stand side by side, each with its own contents. */
+/** Panels that can be open several times, each with its own contents. */
 const SEVERAL: PanelName[] = ["scope"];
 
 /** The panel that has a view. */

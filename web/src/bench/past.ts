@@ -3,7 +3,8 @@ import { useBench } from "../stream/bench-store";
 import { announce } from "./announce";
 import { addBehind } from "./behind";
 import { openBench, openOwn } from "./open-bench";
-import { send, showError, showing } from "./send";
+import { onBench, send, showError, showing } from "./send";
+import { untilBench } from "./until-bench";
 
 /** Ticks before a moment of the past that its panels can show. */
 const WINDOW_TICKS = 20_000;
@@ -63,38 +64,25 @@ async function seek(id: string, tick: number): Promise<void> {
 const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
 /** Wait until the page shows a bench. */
-function helloOf(id: string): Promise<void> {
-  return new Promise((resolve) => {
-    const done = () => {
-      clearTimeout(timer);
-      stop();
-      resolve();
-    };
-    const timer = setTimeout(done, HELLO_MS);
-    const stop = useBench.subscribe(({ bench, connection }) => {
-      if (bench?.id === id && connection.phase === "open") done();
-    });
-  });
-}
+const helloOf = (id: string): Promise<void> =>
+  untilBench(({ bench, connection }) => bench?.id === id && connection.phase === "open", HELLO_MS);
 
 /** Go back from the past to the bench it is of; a bench that only showed the past is closed. */
-export const backToNow = showing(async () => {
-  const bench = useBench.getState().bench;
-  if (!bench?.origin) return;
-  const { id, origin } = bench;
-  await api.reopenBench(origin.bench); // it may have been let go
+export const backToNow = onBench(async ({ id, origin }) => {
+  if (!origin) return;
+  await api.reopenBench(origin.bench); // the server may have closed it
   openBench(origin.bench, true, true);
   if (origin.is_past) await api.removeBench(id);
 });
 
-/** Show a bench that stands at the moment that is shown, for a branch to begin there. */
+/** Show a bench at the moment shown, as the start of a branch. */
 async function standHere(): Promise<string | undefined> {
   const bench = useBench.getState().bench;
   if (!bench || bench.origin?.is_past) return bench?.id;
   return standAt(bench.id, bench.tick);
 }
 
-/** Show a bench made of another that stands at a tick of it. */
+/** Fork a bench at a tick and show the fork. */
 async function standAt(of: string, tick: number): Promise<string> {
   const made = await api.fork(of, { tick, paused: true, window_ticks: WINDOW_TICKS });
   openBench(made.id, false, true);
@@ -110,10 +98,8 @@ export const goOn = showing(async (name: string, change?: () => Promise<boolean>
   if (await send({ kind: "start" }, "A branch starts here")) openOwn(id, true);
 });
 
-/** Go on from the moment that is shown as if other values had been there from tick 0; what was done is done again. */
-export const goOnHaving = showing(async (name: string, set: Record<string, unknown>) => {
-  const bench = useBench.getState().bench;
-  if (!bench) return;
+/** Start a branch at the moment shown with other values from tick 0 on; all commands are repeated. */
+export const goOnHaving = onBench(async (bench, name: string, set: Record<string, unknown>) => {
   const made = await api.variant(bench.id, set, true);
   await api.nameBench(made.id, name.slice(0, LONGEST_NAME));
   const isPast = bench.origin?.is_past ?? false;
@@ -124,10 +110,8 @@ export const goOnHaving = showing(async (name: string, set: Record<string, unkno
   await send({ kind: "start" }, "A branch starts here; all commands were replayed");
 });
 
-/** Fork the bench before what was done at a tick, and let it go on without that. */
-export const goOnWithout = showing(async (tick: number, words: string) => {
-  const bench = useBench.getState().bench;
-  if (!bench) return;
+/** Fork the bench before the commands of a tick, and run it without them. */
+export const goOnWithout = onBench(async (bench, tick: number, words: string) => {
   const made = await api.fork(bench.id, {
     tick,
     before: true,
@@ -142,9 +126,8 @@ export const goOnWithout = showing(async (tick: number, words: string) => {
 });
 
 /** Fork a bench that has tripped from shortly before. */
-export const forkBeforeTrip = showing(async () => {
-  const bench = useBench.getState().bench;
-  if (!bench?.trip) return;
+export const forkBeforeTrip = onBench(async (bench) => {
+  if (!bench.trip) return;
   const before = Math.round(BEFORE_TRIP_PERIODS * (bench.drive_period_ticks ?? BEFORE_TRIP_TICKS));
   const tick = Math.max(bench.trip.tick - before, bench.earliest_tick ?? 0);
   const made = await api.fork(bench.id, { tick, paused: true, window_ticks: WINDOW_TICKS });

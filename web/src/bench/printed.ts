@@ -8,7 +8,7 @@ import { useBench } from "../stream/bench-store";
 const KEPT = "combbench.printed";
 
 interface PrintedStore {
-  /** What is printed of the figure of the bench on the page. */
+  /** The printed marks of the figure of the bench on the page. */
   marks: PrintedMark[];
   /** Whether scopes draw it. */
   isShown: boolean;
@@ -16,7 +16,7 @@ interface PrintedStore {
 
 export const usePrinted = create<PrintedStore>(() => ({ marks: [], isShown: localStorage.getItem(KEPT) !== "off" }));
 
-/** Draw what is printed under the traces, or leave it out; kept for the next visit. */
+/** Draw the printed marks under the traces, or leave them out; the choice is kept for the next visit. */
 export function showPrinted(isShown: boolean): void {
   localStorage.setItem(KEPT, isShown ? "on" : "off");
   usePrinted.setState({ isShown });
@@ -33,7 +33,7 @@ export const useRun = (): readonly unknown[] | undefined => {
   return id === undefined || isBlind ? undefined : [id, began];
 };
 
-/** Ask what is printed of the figure of the bench on the page; one answer for all scopes. */
+/** Ask for the printed marks of the figure of the bench on the page; one answer for all scopes. */
 export function useMarks(): PrintedMark[] {
   const run = useRun();
   const id = useBench((s) => s.bench?.id) ?? "";
@@ -45,7 +45,7 @@ export function useMarks(): PrintedMark[] {
 
 const NONE: PrintedMark[] = [];
 
-/** Those of some marks that can be drawn over some signals. */
+/** The marks that can be drawn over some signals. */
 export const marksOver = (marks: readonly PrintedMark[], signals: readonly string[]): PrintedMark[] =>
   marks.filter(({ signal, problem }) => problem === "" && signals.includes(signal));
 

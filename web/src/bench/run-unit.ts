@@ -6,6 +6,7 @@ import { announce } from "./announce";
 import { openOwn } from "./open-bench";
 import { send } from "./send";
 import { sourceOnBench, valuesOf } from "./unit-values";
+import { untilBench } from "./until-bench";
 
 /** The bench that was made last for a unit; the next one takes its place. */
 let made: string | undefined;
@@ -39,27 +40,12 @@ export async function runUnit(card: BlockCard, source: string): Promise<void> {
     if (next.state !== "running") await api.start(next.id);
     made = next.id;
     openOwn(next.id, isOurs);
-    if (isOurs) await api.removeBench(id).catch(() => undefined); // somebody else has closed it
+    if (isOurs) await api.removeBench(id).catch(() => undefined); // it was closed elsewhere
     await shown(card.name, source);
   }
   announce(`${card.title} runs from tick 0.`);
 }
 
 /** Wait until the page has the bench with a text, or shows another. */
-function shown(name: string, source: string): Promise<void> {
-  const has = () => sourceOnBench(useBench.getState().bench?.parameters, name) === source;
-  return new Promise((resolve) => {
-    const settle = () => {
-      if (!has()) return;
-      stop();
-      clearTimeout(timer);
-      resolve();
-    };
-    const stop = useBench.subscribe(settle);
-    const timer = setTimeout(() => {
-      stop();
-      resolve();
-    }, MOST_WAIT_MS);
-    settle();
-  });
-}
+const shown = (name: string, source: string): Promise<void> =>
+  untilBench(({ bench }) => sourceOnBench(bench?.parameters, name) === source, MOST_WAIT_MS);

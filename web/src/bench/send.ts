@@ -1,7 +1,8 @@
 import { notifications } from "@mantine/notifications";
 import { ApiError } from "../api/client";
 import { may } from "../api/me";
-import type { Command } from "../api/types";
+import type { Bench, Command } from "../api/types";
+import { useBench } from "../stream/bench-store";
 import { stream } from "../stream/stream";
 import { announce } from "./announce";
 
@@ -11,7 +12,7 @@ export const WATCHING = "You watch this bench and cannot change it.";
 /**
  * Send a command to the bench; a refusal is shown where it happened, with what to do.
  *
- * Resolves to whether it took effect. The status comes before the answer, so `useBench` has what the command changed.
+ * Resolves to whether it took effect. The status comes before the answer, so `useBench` has the changes of the command.
  */
 export async function send(command: Command, said?: string): Promise<boolean> {
   if (!may("drive")) {
@@ -44,3 +45,10 @@ export const showing =
   <A extends unknown[]>(deed: (...args: A) => Promise<unknown>) =>
   (...args: A): Promise<void> =>
     deed(...args).then(() => undefined, showError);
+
+/** A deed on the bench of the page; without a bench nothing happens. */
+export const onBench = <A extends unknown[]>(deed: (bench: Bench, ...args: A) => Promise<unknown>) =>
+  showing(async (...args: A) => {
+    const { bench } = useBench.getState();
+    if (bench) await deed(bench, ...args);
+  });

@@ -9,14 +9,14 @@ export interface SeverityScale {
   high: number;
   minimum: number;
   maximum: number;
-  /** What the slider and the box go up and down by. */
+  /** The step of the slider and of the box. */
   step: number;
 }
 
-/** Units of which there are whole numbers alone. */
+/** Units that are counted in whole numbers. */
 const WHOLE = ["pair"];
 
-/** How a fault's severity is shown: a share as percent, on a slider that spans what is usual rather than all that is allowed. */
+/** How a fault's severity is shown: a share as percent, on a slider over the usual range rather than the allowed one. */
 export function severityScale(parameter: Parameter | undefined, suggested: number): SeverityScale {
   const minimum = parameter?.minimum ?? -1;
   const maximum = parameter?.maximum ?? 1;

@@ -5,7 +5,7 @@ import { useBench } from "../stream/bench-store";
 import { currentEvents } from "../stream/event-log";
 import { flagWords, titleOf } from "./flag-words";
 
-/** What is done to a bench at one moment of its scenario. */
+/** The commands to a bench at one moment of its scenario. */
 export interface BenchStep {
   words: string;
   /** Where it took effect, or will; unknown while a condition is awaited. */
@@ -32,12 +32,12 @@ const START: BenchStep = { words: "start", tick: 0, when: undefined, done: true,
 
 const NONE: never[] = [];
 
-/** The steps of the bench on the page; none on one that plays a recording or hides a fault. */
+/** The steps of the bench on the page; none while it plays a recording or hides a fault. */
 export function useSteps(): BenchStep[] {
   const events = useBench((s) => s.events);
   const pending = useBench((s) => s.bench?.pending);
   const shown = useBench((s) => !s.blind && s.bench?.replay_of === null);
-  // the words of a step are those of the catalogue
+  // the words of a step come from the catalogue
   const known = useCatalog().blocks.length > 0;
   return useMemo(
     () => (known && shown && pending ? stepsOf(currentEvents(events), pending) : NONE),
@@ -58,7 +58,7 @@ export function longestStep(steps: readonly BenchStep[], end: number | null | un
   return longest > 0 ? longest : undefined;
 }
 
-/** The steps of a bench, what it begins with first; none where nothing waits and nothing of a scenario was done. */
+/** The steps of a bench, its start first; none where no command waits and the scenario has given none. */
 export function stepsOf(events: readonly LogEntry[], pending: Bench["pending"]): BenchStep[] {
   const planned = new Set(events.filter((e) => e.kind === "scheduled").map(planOf));
   const acts: Act[] = [];

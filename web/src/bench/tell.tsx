@@ -4,14 +4,14 @@ import type { Command } from "../api/types";
 import { useBench } from "../stream/bench-store";
 import { send } from "./send";
 
-/** Send a command that takes something away, and say so with the way back beside it. */
+/** Send a command that removes something, and offer to undo it. */
 export async function sendAndTell(command: Command, said: string): Promise<void> {
   if (await send(command, said)) tellUndoable(said, () => send({ kind: "undo" }, `Undone: ${said}`));
 }
 
-/** Say what was done, with a button that takes it back if there is a way; the newest such notice takes the place of the one before. */
+/** Show a notice of an action, with an Undo button if it can be undone; it replaces the previous such notice. */
 export function tellUndoable(said: string, undo?: () => unknown): void {
-  if (useBench.getState().blind) return; // the way back would tell what acts
+  if (useBench.getState().blind) return; // Undo would tell the hidden fault
   const id = "undoable";
   notifications.hide(id);
   notifications.show({

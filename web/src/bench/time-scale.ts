@@ -1,10 +1,10 @@
 import { formatShort, formatSi } from "../ui/format";
 import { roundTo } from "../ui/unit-scale";
 
-export const SLOWEST = 1e-6;
-export const FASTEST = 1;
+const SLOWEST = 1e-6;
+const FASTEST = 1;
 
-/** What the menu of time scales offers at a press. */
+/** The buttons of the menu of time scales. */
 export const PRESETS: readonly (number | null)[] = [0.002, FASTEST, null];
 
 /** Multiples of the pace a recording was made at. */

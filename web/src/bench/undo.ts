@@ -4,11 +4,11 @@ import { send } from "./send";
 
 export type Way = "undo" | "redo";
 
-/** When this page first saw a change of the bench, by the number of its event; changes of the layout lie between. */
+/** When this page first saw a change of the bench, by the number of its event; undo orders it among the changes of the layout. */
 const seen = new Map<number, number>();
 
 /** A change of the bench that can be taken back or made again. */
-export interface BenchChange {
+interface BenchChange {
   text: string;
   at: number;
 }

@@ -83,7 +83,7 @@ export function beginWith(name: string, source: string): void {
   useDraft.setState({ name, source });
 }
 
-/** What a unit is called when nobody says: as its class. */
+/** The default name of a unit: the name of its class. */
 export const nameOfClass = (source: string): string =>
   /^class\s+([A-Za-z]\w*)/m
     .exec(source)?.[1]

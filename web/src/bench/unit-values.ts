@@ -1,13 +1,13 @@
 import type { BlockCard, Document } from "../api/types";
 
-/** The text of a unit on the bench, if it is there. */
+/** The text of a unit on the bench; undefined without one. */
 export const sourceOnBench = (parameters: Document | undefined, name: string): string | undefined =>
   (parameters?.units as Record<string, { source: string }> | undefined)?.[name]?.source;
 
-/** Tables in which a unit of a family must be named to be on a bench; the others are there by themselves. */
+/** Tables that must name a unit of a family to put it on a bench; units of other families need no entry. */
 const NAMED: Record<string, string> = { diagnose: "diagnosers", identify: "identifiers" };
 
-/** Values over a scenario that bring a unit into it; one that controls may drive from the first tick. */
+/** Values over a scenario that add a unit to it; a controller may drive from the first tick. */
 export function valuesOf(card: BlockCard, source: string, drives: boolean, parameters?: Document): Document {
   const table = NAMED[card.family];
   const there = table && (parameters?.[table] as Document | undefined)?.[card.name];

@@ -8,8 +8,8 @@ export type LayoutName = (typeof LAYOUT_NAMES)[number];
 
 const CHOSEN = "combbench.layout.chosen";
 
-/** What the block card shows: an instance on the bench, such as "plant" or "diagnosers.kalman". */
-export type CardId = string;
+/** The instance on the bench that the block card shows, such as "plant" or "diagnosers.kalman". */
+type CardId = string;
 
 interface ViewStore {
   page: PageName;
@@ -17,7 +17,7 @@ interface ViewStore {
   item: string;
   /** The address names no place. */
   lost: boolean;
-  /** A built-in one, or the name of one of one's own. */
+  /** A built-in layout, or the name of a user's own. */
   layout: string;
   card: CardId;
   /** The sample of a diagnoser that was clicked, to be explained. */
@@ -29,13 +29,13 @@ interface ViewStore {
   large: boolean;
   /** Size of the letters on canvases, px: lectures are read from the last row. */
   fontPx: number;
-  /** Only what an audience looks at. */
+  /** Whether the page shows the panels alone, for an audience. */
   present: boolean;
 }
 
 /** Letters on canvases, px, but in a lecture. */
 export const NORMAL_PX = 12;
-/** Those of a lecture, in the smallest window it is made for. */
+/** Letters of a lecture in its smallest window, px. */
 export const LECTURE_PX = 15;
 
 /** How this page looks at the bench; says nothing about the bench itself. */

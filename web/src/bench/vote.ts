@@ -33,7 +33,7 @@ export const askCue = showing(async () => {
   announce(`The vote is open: ${text}`);
 });
 
-/** Show the answers of the vote that the page has, with those that are right. */
+/** Show the answers to the vote on the page, with the right ones. */
 export const revealVote = showing(async () => {
   const { vote } = useVote.getState();
   if (!vote || vote.results) return;

@@ -1,4 +1,4 @@
-import { MultiSelect, NativeSelect } from "@mantine/core";
+import { Box, MultiSelect, NativeSelect } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../api/api";
 import { useAnswer } from "../api/queries";
@@ -9,7 +9,6 @@ import { LineChart } from "../picture/line-chart";
 import { EmptyState } from "../ui/empty-state";
 import { formatNumber } from "../ui/format";
 import { Stale } from "../ui/stale";
-import styles from "./benchmark.module.css";
 import { delayLines, reliabilityLines } from "./curves";
 import { ResultsTable } from "./results-table";
 
@@ -18,14 +17,14 @@ const SHARE: [number, number] = [0, 1];
 const DRAWN = 4;
 const ID = "mems-diag-1";
 
-/** How soon diagnosers notice a fault, what they take for its cause, and whether their probabilities can be believed. */
+/** The speed of the diagnosers, the causes they name, and the calibration of their probabilities. */
 export function BenchmarkPage() {
   const { value, error, since, again } = useAnswer(["benchmark"], () => api.benchmark(ID));
   const [track, setTrack] = useState("known");
   const chosen = value?.results.find((one) => one.id === track);
   return (
-    <div className={`column ${styles.page}`}>
-      <header className={`row ${styles.top}`}>
+    <div className="paper">
+      <header className="card page-top">
         <PageHead name="Scores" heading="Benchmark" />
         {value && (
           <NativeSelect
@@ -56,20 +55,22 @@ function Track({ track, benchmark }: { track: Benchmark["results"][number]; benc
   const out = benchmark.left_out.filter((one) => one.track === track.id);
   return (
     <>
-      <section className={styles.card} aria-label={track.title}>
+      <section className="card essay" aria-label={track.title}>
         <h2>{track.question}</h2>
-        <p>{track.note}</p>
+        <Box component="p" className="note" maw="100ch">
+          {track.note}
+        </Box>
         <ResultsTable named={named} rows={track.rows} costs={benchmark.costs} label={`Results of ${track.title}`} />
-        <p>
+        <Box component="p" className="note" maw="100ch">
           {formatNumber(benchmark.cases, 0)} cases from public seeds; thresholds give one false alarm in{" "}
           {formatNumber(benchmark.false_alarm_samples, 0)} healthy samples on average. Ranked by log score, then by
           Brier score. Diagnosers without probabilities have no rank.
           {out.map((one) => ` ${named(one.unit)} is not scored: it ${one.reason}.`)} <code>{benchmark.command}</code>{" "}
           computes the table again, to the bit; the times are those of the machine that computed it, with their ratio to
           the Kalman bank.
-        </p>
+        </Box>
       </section>
-      <section className={styles.card} aria-label="Curves">
+      <section className="card essay" aria-label="Curves">
         <MultiSelect
           size="xs"
           label="Diagnosers drawn"
@@ -78,7 +79,7 @@ function Track({ track, benchmark }: { track: Benchmark["results"][number]; benc
           onChange={setUnits}
           maw={640}
         />
-        <div className={styles.charts}>
+        <Box className="plots" mt={12}>
           <LineChart
             title="Reliability: below the diagonal, a diagnoser is surer than right"
             xLabel="probability said"
@@ -94,7 +95,7 @@ function Track({ track, benchmark }: { track: Benchmark["results"][number]; benc
             yRange={SHARE}
             lines={delayLines(drawn, benchmark.within_samples, named)}
           />
-        </div>
+        </Box>
       </section>
     </>
   );

@@ -6,10 +6,10 @@ type Named = (unit: string) => string;
 
 /** A bin with fewer samples says little of how often it is right. */
 const LEAST_SAMPLES = 100;
-/** What a calibrated diagnoser would draw. */
+/** The line of a calibrated diagnoser. */
 const DIAGONAL: ChartLine = { name: "as often right as said", x: [0, 1], y: [0, 1] };
 
-/** How often diagnosers are right, over the probability they say; those that say none have no line. */
+/** How often diagnosers are right, over their stated probability; a diagnoser without probabilities has no line. */
 export function reliabilityLines(rows: readonly BenchmarkRow[], named: Named): ChartLine[] {
   const lines = rows.flatMap((row) => {
     const bins = row.reliability.filter((bin) => bin.samples >= LEAST_SAMPLES);

@@ -71,7 +71,7 @@ interface Results {
 export function ResultsTable({ named, rows, costs, label }: Results) {
   return (
     // biome-ignore lint/a11y/noNoninteractiveTabindex: a region that scrolls is reached by the keyboard
-    <section className={styles.scroll} aria-label={label} tabIndex={0}>
+    <section className="wide" aria-label={label} tabIndex={0}>
       <table className={styles.table}>
         <TableHead
           names={[

@@ -149,7 +149,7 @@ it("says what became of it, who refused included, and what the server says", asy
 it("does nothing for all while nobody is there, and says so", async () => {
   server.on("GET", "/classes/:id/members", { members: [] });
   const { all } = await mountClass();
-  expect(screen.getByText("Nobody has joined yet")).toBeVisible();
+  expect(screen.getByText("No student has joined yet")).toBeVisible();
   for (const name of [
     "Freeze",
     "Release",
@@ -184,10 +184,8 @@ it("shows who did what, newest first", async () => {
     ],
   });
   const { user } = await mountClass();
-  await user.click(screen.getByRole("button", { name: "What was done" }));
-  const rows = within(await screen.findByRole("list", { name: "What was done, newest first" })).getAllByRole(
-    "listitem",
-  );
+  await user.click(screen.getByRole("button", { name: "Activity" }));
+  const rows = within(await screen.findByRole("list", { name: "Activity, newest first" })).getAllByRole("listitem");
   expect(rows.map((row) => row.querySelector("p")?.textContent?.replace(/\s/g, " "))).toEqual([
     "Ada: injected <b>mass</b> tick 7",
     "The teacher on the bench of Ben: paused",

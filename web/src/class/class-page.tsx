@@ -4,13 +4,12 @@ import { classes } from "../api/classes";
 import { useAnswer } from "../api/queries";
 import { EmptyState } from "../ui/empty-state";
 import { Stale } from "../ui/stale";
-import styles from "./class.module.css";
 import { ClassView } from "./class-view";
 import { OpenClass } from "./open-class";
 
 const EVERY_MS = 5000;
 
-/** The classes of this server, one at a time; without any, what it takes to open one. */
+/** The classes of this server, one at a time; without a class, the form that opens one. */
 export function ClassPage() {
   const { value: all, error, since, again } = useAnswer(["classes"], classes.all, () => EVERY_MS);
   const [wanted, setWanted] = useState<string | undefined>(undefined);
@@ -22,7 +21,7 @@ export function ClassPage() {
     again();
   };
   return (
-    <main className={`column ${styles.page}`}>
+    <main className="paper">
       <Stale error={error} since={since} onRetry={again} />
       {!all ? (
         !error && <EmptyState title="Asking the server">A class and its students appear here.</EmptyState>

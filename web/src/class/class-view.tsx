@@ -1,4 +1,4 @@
-import { Box, Button, NativeSelect, TextInput } from "@mantine/core";
+import { Box, Button, Group, NativeSelect, Stack, TextInput } from "@mantine/core";
 import { type ReactNode, useCallback, useMemo, useState } from "react";
 import { classes } from "../api/classes";
 import { useAnswer } from "../api/queries";
@@ -29,7 +29,7 @@ interface ClassViewProps {
   children: ReactNode;
 }
 
-/** A class: how to join, what is done for all, and a tile for each student. */
+/** A class: its join code, the commands for all, and a tile for each student. */
 export function ClassView({ group, onChanged, children }: ClassViewProps) {
   const { id, name, until, shown } = group;
   const here = useBench((s) => s.bench);
@@ -90,9 +90,9 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
   const tripped = members.filter((tile) => tile.state === "tripped").map((tile) => tile.id);
   return (
     <>
-      <header className={`row ${styles.top}`}>
+      <Group component="header" className="card" gap="4px 16px" p="8px 12px">
         <PageHead name="Class" item={name} heading={name} />
-        <p>
+        <Box component="p" flex={1} miw={180} c="dimmed">
           {formatCount(members.length, "student")}
           {hands > 0 && (
             <Box component="b" c="var(--accent)">
@@ -107,8 +107,8 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
             </Box>
           )}{" "}
           · ends {clock(until)}
-        </p>
-        <div className={`row ${styles.buttons}`}>
+        </Box>
+        <Group gap={8}>
           {children}
           {here && shown !== here.id && (
             <Button
@@ -120,20 +120,23 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
             </Button>
           )}
           <Button size="xs" onClick={() => setLog(true)}>
-            What was done
+            Activity
           </Button>
           <Button size="xs" onClick={end}>
             End the class…
           </Button>
-        </div>
-      </header>
+        </Group>
+      </Group>
       {shown && (
-        <p className={`row ${styles.shown}`}>
-          <b>All see one bench{shown === here?.id ? `: ${here.title}` : ""}.</b> Their own benches keep running.
+        <Group component="p" className="card" gap="4px 12px" p="6px 12px">
+          <Box component="b" c="var(--accent)">
+            All see one bench{shown === here?.id ? `: ${here.title}` : ""}.
+          </Box>{" "}
+          Their own benches keep running.
           <Button variant="filled" size="xs" onClick={() => void classes.endShowing(id).then(onChanged, showError)}>
             End showing
           </Button>
-        </p>
+        </Group>
       )}
       <Joining group={group} isBrief={members.length > 0} onChanged={onChanged} />
       <ForAll
@@ -147,13 +150,13 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
       <Stale error={error} since={since} onRetry={again} />
       {members.length === 0 ? (
         <section aria-label="Students">
-          <EmptyState title="Nobody has joined yet">
+          <EmptyState title="No student has joined yet">
             Show the code on the wall. Students appear here when they join.
           </EmptyState>
         </section>
       ) : (
-        <section className={`column ${styles.students}`} aria-label="Students">
-          <div className={`row ${styles.row}`}>
+        <Stack component="section" flex="none" gap={6} aria-label="Students">
+          <Group gap={8}>
             <TextInput
               type="search"
               aria-label="Search students"
@@ -167,7 +170,7 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
               data={Object.entries(ORDERS).map(([value, label]) => ({ value, label }))}
               onChange={(e) => setOrder(e.currentTarget.value as Order)}
             />
-          </div>
+          </Group>
           <ul className={styles.grid} data-stale={error !== undefined}>
             {tiles.map((tile) => (
               <TileView
@@ -180,7 +183,7 @@ export function ClassView({ group, onChanged, children }: ClassViewProps) {
             ))}
           </ul>
           {tiles.length === 0 && <EmptyState title="No student of this name">Search for fewer letters.</EmptyState>}
-        </section>
+        </Stack>
       )}
       <DoneSheet opened={log} group={id} owners={owners} onClose={() => setLog(false)} />
     </>

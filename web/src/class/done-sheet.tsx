@@ -1,12 +1,13 @@
+import { Box, Group } from "@mantine/core";
 import { classes } from "../api/classes";
 import { useAnswer } from "../api/queries";
 import { EmptyState } from "../ui/empty-state";
 import { formatTick } from "../ui/format";
 import { Sheet } from "../ui/sheet";
 import { Stale } from "../ui/stale";
-import styles from "./class.module.css";
 
 const EVERY_MS = 3000;
+const LINE = { borderBottom: "1px solid var(--line)" };
 
 interface DoneSheetProps {
   opened: boolean;
@@ -19,7 +20,7 @@ interface DoneSheetProps {
 /** Who did what in a class, and when; newest first. */
 export function DoneSheet({ opened, onClose, ...rest }: DoneSheetProps) {
   return (
-    <Sheet opened={opened} title="What was done" size={480} onClose={onClose}>
+    <Sheet opened={opened} title="Activity" size={480} onClose={onClose}>
       {opened && <Done {...rest} />}
     </Sheet>
   );
@@ -35,20 +36,33 @@ function Done({ group, owners }: Pick<DoneSheetProps, "group" | "owners">) {
     <>
       <Stale error={error} since={since} onRetry={again} />
       {value?.length === 0 && (
-        <EmptyState title="Nothing yet">This list will show who joins, and what they do on their benches.</EmptyState>
+        <EmptyState title="Nothing yet">
+          This list will show new students and their actions on their benches.
+        </EmptyState>
       )}
-      <ol className={styles.done} aria-label="What was done, newest first">
+      <ol aria-label="Activity, newest first">
         {value?.map(({ at, actor, text, tick, bench_id }) => {
           const owner = owners.get(bench_id ?? "");
           return (
-            <li key={`${at} ${actor} ${text}`}>
-              <time dateTime={at}>{new Date(at).toLocaleTimeString()}</time>
-              <p>
+            <Group
+              component="li"
+              key={`${at} ${actor} ${text}`}
+              gap={12}
+              py={6}
+              fz="sm"
+              wrap="nowrap"
+              align="start"
+              style={LINE}
+            >
+              <Box component="time" flex="none" miw="9ch" c="dimmed" dateTime={at}>
+                {new Date(at).toLocaleTimeString()}
+              </Box>
+              <p style={{ overflowWrap: "anywhere" }}>
                 <b>{actor}</b>
                 {owner && owner !== actor && ` on the bench of ${owner}`}: {text}
                 {tick !== null && <small> {formatTick(tick)}</small>}
               </p>
-            </li>
+            </Group>
           );
         })}
       </ol>

@@ -4,13 +4,13 @@ import type { Command } from "../api/types";
 import { useCatalog } from "../api/use-catalog";
 import { severityScale, severityText } from "../bench/severity";
 import { roundTo, unitText } from "../ui/unit-scale";
-import styles from "./class.module.css";
+import { CHOICE, GroupForAll } from "./group-for-all";
 
 const USUAL = 0.05;
 
 interface FaultForAllProps {
   count: number;
-  /** What is being carried out. */
+  /** The command under way. */
   busy: string | undefined;
   command(what: string, order: Command): void;
 }
@@ -33,10 +33,9 @@ export function FaultForAll({ count, busy, command }: FaultForAllProps) {
   const unit = scale.percent ? "%" : unitText(parameter?.unit ?? "");
 
   return (
-    <fieldset className={`row ${styles.group}`} aria-label="A fault for all">
-      <span className={styles.what}>Fault</span>
+    <GroupForAll name="Fault" label="A fault for all">
       <NativeSelect
-        className={styles.choice}
+        {...CHOICE}
         aria-label="Fault"
         value={fault?.name ?? ""}
         data={faults.map(({ name, title }) => ({ value: name, label: title }))}
@@ -71,6 +70,6 @@ export function FaultForAll({ count, busy, command }: FaultForAllProps) {
       >
         Heal all
       </Button>
-    </fieldset>
+    </GroupForAll>
   );
 }

@@ -1,4 +1,4 @@
-import { Box, Button } from "@mantine/core";
+import { Box, Button, type ButtonProps, Group } from "@mantine/core";
 import { IconPlayerPauseFilled, IconPlayerPlayFilled } from "@tabler/icons-react";
 import { useState } from "react";
 import { classes } from "../api/classes";
@@ -7,6 +7,7 @@ import { useBusy } from "../bench/use-busy";
 import { formatCount } from "../ui/format";
 import styles from "./class.module.css";
 import { FaultForAll } from "./fault-for-all";
+import { CHOICE, GroupForAll } from "./group-for-all";
 import { HideForAll } from "./hide-for-all";
 import { outcomeLine } from "./members";
 import { ScenarioSelect, useLibrary } from "./scenario-select";
@@ -16,28 +17,28 @@ interface ForAllProps {
   group: string;
   /** How many students there are. */
   count: number;
-  /** Ids of those chosen; nobody chosen means all. */
+  /** Ids of the chosen students; an empty list means all. */
   chosen: readonly string[];
-  /** Ids of those whose bench has tripped. */
+  /** Ids of the students whose bench has tripped. */
   tripped: readonly string[];
   onChooseNone(): void;
   onDone(): void;
 }
 
-/** What is done on all benches at once, or on those of the students chosen; what came of it stands below in a line. */
+/** The commands for all benches at once, or for the benches of the chosen students; the outcome is in a line below. */
 export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: ForAllProps) {
   const library = useLibrary();
   const [scenario, setScenario] = useState("first-look");
   const [busy, during] = useBusy<string>();
   const [said, setSaid] = useState("");
 
+  const some = chosen.length > 0 ? [...chosen] : null;
   const carryOut = (what: string, asked: () => Promise<Outcomes>) =>
     during(async () => {
       setSaid(outcomeLine(what, await asked()));
       onDone();
     }, what);
-  const command = (what: string, order: Command) =>
-    carryOut(what, () => classes.command(group, order, chosen.length > 0 ? [...chosen] : null));
+  const command = (what: string, order: Command) => carryOut(what, () => classes.command(group, order, some));
   const stopped = chosen.length > 0 ? tripped.filter((id) => chosen.includes(id)) : [...tripped];
   const begin = () => {
     const title = library.find(({ id }) => id === scenario)?.title ?? scenario;
@@ -45,9 +46,19 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
       void carryOut(title, () => classes.begin(group, { scenario, paused: false, quiet_lead: true }));
   };
 
+  const startTogether = (what: string) =>
+    window.confirm(
+      "Start all together? Every bench that is not at tick 0 is reset first: its present state is lost.",
+    ) && carryOut(what, () => classes.startTogether(group, some));
+  const button = (what: string, act: (what: string) => unknown, look: ButtonProps & { title?: string }) => (
+    <Button size="xs" loading={busy === what} disabled={count === 0} onClick={() => act(what)} {...look}>
+      {what}
+    </Button>
+  );
+
   return (
-    <section className={styles.all} aria-label="For all benches">
-      <div className={`row ${styles.row}`}>
+    <Box component="section" className="card" p="8px 12px" aria-label="For all benches">
+      <Group gap={8}>
         <Box component="b" miw="12ch" fw={600}>
           {chosen.length > 0 ? `For the ${chosen.length} chosen` : "For all benches"}
         </Box>
@@ -56,38 +67,15 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
             Choose none
           </Button>
         )}
-        <Button
-          size="xs"
-          leftSection={<IconPlayerPauseFilled size={15} />}
-          loading={busy === "Freeze"}
-          disabled={count === 0}
-          onClick={() => command("Freeze", { kind: "pause" })}
-        >
-          Freeze
-        </Button>
-        <Button
-          size="xs"
-          leftSection={<IconPlayerPlayFilled size={15} />}
-          loading={busy === "Release"}
-          disabled={count === 0}
-          onClick={() => command("Release", { kind: "start" })}
-        >
-          Release
-        </Button>
-        <Button
-          size="xs"
-          loading={busy === "Start all together"}
-          disabled={count === 0}
-          title="Every bench returns to tick 0, then all start at once. A bench at tick 0 keeps its settings."
-          onClick={() =>
-            window.confirm(
-              "Start all together? Every bench that is not at tick 0 is reset first: its present state is lost.",
-            ) &&
-            carryOut("Start all together", () => classes.startTogether(group, chosen.length > 0 ? [...chosen] : null))
-          }
-        >
-          Start all together
-        </Button>
+        {button("Freeze", (what) => command(what, { kind: "pause" }), {
+          leftSection: <IconPlayerPauseFilled size={15} />,
+        })}
+        {button("Release", (what) => command(what, { kind: "start" }), {
+          leftSection: <IconPlayerPlayFilled size={15} />,
+        })}
+        {button("Start all together", startTogether, {
+          title: "Every bench returns to tick 0, then all start at once. A bench at tick 0 keeps its settings.",
+        })}
         {stopped.length > 0 && (
           <Button
             variant="filled"
@@ -100,18 +88,11 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
             Reset {formatCount(stopped.length, "trip")}
           </Button>
         )}
-      </div>
+      </Group>
       <div className={styles.groups}>
         <FaultForAll count={count} busy={busy} command={command} />
-        <fieldset className={`row ${styles.group}`} aria-label="A scenario for all">
-          <span className={styles.what}>Scenario</span>
-          <ScenarioSelect
-            className={styles.choice}
-            size="xs"
-            aria-label="Scenario"
-            value={scenario}
-            onChange={setScenario}
-          />
+        <GroupForAll name="Scenario" label="A scenario for all">
+          <ScenarioSelect {...CHOICE} aria-label="Scenario" value={scenario} onChange={setScenario} />
           <Button
             size="xs"
             disabled={count === 0 || chosen.length > 0}
@@ -120,7 +101,7 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
           >
             Begin on all
           </Button>
-        </fieldset>
+        </GroupForAll>
         <HideForAll
           group={group}
           count={count}
@@ -135,7 +116,9 @@ export function ForAll({ group, count, chosen, tripped, onChooseNone, onDone }: 
           onBegin={(title, asked) => void carryOut(title, asked)}
         />
       </div>
-      <output className={styles.said}>{said}</output>
-    </section>
+      <Box component="output" display="block" fz="sm" pt={said ? 6 : 0}>
+        {said}
+      </Box>
+    </Box>
   );
 }

@@ -2,7 +2,7 @@ import { Button, Checkbox, NativeSelect } from "@mantine/core";
 import { useState } from "react";
 import { blind } from "../api/blind";
 import type { Outcomes } from "../api/types";
-import styles from "./class.module.css";
+import { CHOICE, GroupForAll } from "./group-for-all";
 import { useLibrary } from "./scenario-select";
 
 const USUAL = "ch5-seven-step";
@@ -10,12 +10,12 @@ const USUAL = "ch5-seven-step";
 interface HideForAllProps {
   group: string;
   count: number;
-  /** Ids of those chosen; nobody chosen means all. */
+  /** Ids of the chosen students; an empty list means all. */
   chosen: readonly string[];
   carryOut(what: string, asked: () => Promise<Outcomes>): void;
 }
 
-/** A fault hidden from each student, on a device of one's own; and what was hidden shown to all. */
+/** A hidden fault for each student, on a device of their own; and the answers for all. */
 export function HideForAll({ group, count, chosen, carryOut }: HideForAllProps) {
   const library = useLibrary().filter(({ can_hide }) => can_hide);
   const [scenario, setScenario] = useState(USUAL);
@@ -28,10 +28,9 @@ export function HideForAll({ group, count, chosen, carryOut }: HideForAllProps) 
       );
   };
   return (
-    <fieldset className={`row ${styles.group}`} aria-label="Hidden faults for all">
-      <span className={styles.what}>Hidden fault</span>
+    <GroupForAll name="Hidden fault" label="Hidden faults for all">
       <NativeSelect
-        className={styles.choice}
+        {...CHOICE}
         aria-label="Bench of the hidden fault"
         value={scenario}
         data={library.map(({ id, title }) => ({ value: id, label: title }))}
@@ -49,6 +48,6 @@ export function HideForAll({ group, count, chosen, carryOut }: HideForAllProps) 
       <Button size="xs" disabled={count === 0} onClick={() => carryOut("Reveal answers", () => blind.revealAll(group))}>
         Reveal answers
       </Button>
-    </fieldset>
+    </GroupForAll>
   );
 }

@@ -1,4 +1,4 @@
-import { Button, Menu } from "@mantine/core";
+import { Button, Group, Menu } from "@mantine/core";
 import { IconArrowsMaximize } from "@tabler/icons-react";
 import { useCallback, useState } from "react";
 import { classes, isLocal, joinAddress } from "../api/classes";
@@ -18,12 +18,12 @@ const PERIODS = [
 
 interface JoiningProps {
   group: Class;
-  /** Students are there: one line is enough, and the wall has the rest. */
+  /** Students have joined: one line is enough, and the wall has the rest. */
   isBrief: boolean;
   onChanged(): void;
 }
 
-/** How students get in: the code for the last row, the address, and until when; or that nobody can. */
+/** The code in large letters, the address and the end of joining; or that joining is closed. */
 export function Joining({ group, isBrief, onChanged }: JoiningProps) {
   const [onWall, setOnWall] = useState(false);
   const leaveWall = useCallback(() => setOnWall(false), []);
@@ -31,7 +31,7 @@ export function Joining({ group, isBrief, onChanged }: JoiningProps) {
   const change = (done: Promise<Class>) => done.then(onChanged, showError);
   const isAlone = address ? isLocal(address) : false;
   return (
-    <section className={`row ${styles.joining}`} data-brief={isBrief} aria-label="How to join">
+    <section className={`row card ${styles.joining}`} data-brief={isBrief} aria-label="How to join">
       {group.code && address ? (
         <>
           {!isBrief && <QrCode address={address} />}
@@ -54,7 +54,7 @@ export function Joining({ group, isBrief, onChanged }: JoiningProps) {
       ) : (
         <p className={styles.note}>Joining is closed. Students who have joined stay.</p>
       )}
-      <div className={`row ${styles.buttons}`}>
+      <Group gap={8} className={styles.buttons}>
         {address && (
           <Button
             variant="filled"
@@ -83,7 +83,7 @@ export function Joining({ group, isBrief, onChanged }: JoiningProps) {
             Close joining
           </Button>
         )}
-      </div>
+      </Group>
       {group.code && address && (
         <Wall opened={onWall} name={group.name} code={group.code} address={address} onClose={leaveWall} />
       )}

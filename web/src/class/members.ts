@@ -21,7 +21,7 @@ export function arranged(tiles: readonly Tile[], order: Order, words: string): T
     .sort((a, b) => Number(first(b)) - Number(first(a)) || byName(a.name, b.name));
 }
 
-/** Whether a diagnoser is right; nothing as long as it says nothing, unless nothing is what it should say. */
+/** Whether a diagnoser is right; undefined while it has no verdict but should have one. */
 export function isRight({ says, truth }: Verdict): boolean | undefined {
   if (says === truth) return true;
   return says === null ? undefined : false;

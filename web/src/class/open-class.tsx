@@ -1,14 +1,13 @@
-import { Button, NumberInput, TextInput } from "@mantine/core";
+import { Box, Button, Group, NumberInput, Stack, TextInput } from "@mantine/core";
 import { type FormEvent, useState } from "react";
 import { classes } from "../api/classes";
 import type { Class } from "../api/types";
 import { PageHead } from "../bench/page-head";
 import { useBusy } from "../bench/use-busy";
-import styles from "./class.module.css";
 import { ScenarioSelect } from "./scenario-select";
 
 const LONGEST_H = 24 * 14;
-/** What is said of a field stands below it. */
+/** The description of a field is below it. */
 const BELOW: ("label" | "input" | "description" | "error")[] = ["label", "input", "description", "error"];
 
 interface OpenClassProps {
@@ -16,7 +15,7 @@ interface OpenClassProps {
   onCancel?(): void;
 }
 
-/** What a class is, and what it takes to open one. */
+/** The form that opens a class. */
 export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
   const [name, setName] = useState("");
   const [scenario, setScenario] = useState("first-look");
@@ -34,13 +33,20 @@ export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
     void during(() => classes.open(wanted).then(onOpened));
   };
   return (
-    <section className={styles.form} aria-label="Open a class">
+    <Box
+      component="section"
+      className="card"
+      w="min(460px, 100%)"
+      m="4vh auto auto"
+      p="20px 24px 24px"
+      aria-label="Open a class"
+    >
       <PageHead name="Class" />
-      <p>
+      <Box component="p" m="8px 0 16px" c="dimmed">
         Students join a class with a code from the wall, without an account. Each has a bench of their own, and you see
         all of them here.
-      </p>
-      <form onSubmit={open}>
+      </Box>
+      <Stack component="form" gap={14} onSubmit={open}>
         <TextInput
           size="sm"
           label="Name of the class"
@@ -73,7 +79,7 @@ export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
           error={wrong.minutes}
           onChange={setMinutes}
         />
-        <div className={`row ${styles.buttons}`}>
+        <Group gap={8}>
           <Button
             variant="filled"
             size="sm"
@@ -88,8 +94,8 @@ export function OpenClass({ onOpened, onCancel }: OpenClassProps) {
               Back
             </Button>
           )}
-        </div>
-      </form>
-    </section>
+        </Group>
+      </Stack>
+    </Box>
   );
 }

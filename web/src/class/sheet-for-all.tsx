@@ -3,18 +3,18 @@ import { useState } from "react";
 import { useAnswer } from "../api/queries";
 import { sheets } from "../api/sheets";
 import type { Outcomes } from "../api/types";
-import styles from "./class.module.css";
+import { CHOICE, GroupForAll } from "./group-for-all";
 
 interface SheetForAllProps {
   group: string;
   count: number;
-  /** Ids of the students chosen; nobody chosen means all. */
+  /** Ids of the chosen students; an empty list means all. */
   chosen: readonly string[];
   busy: boolean;
   onBegin(title: string, asked: () => Promise<Outcomes>): void;
 }
 
-/** A lab sheet for all students or for those chosen, and what they have earned, to take away. */
+/** A lab sheet for all students or for the chosen ones, and their points as files. */
 export function SheetForAll({ group, count, chosen, busy, onBegin }: SheetForAllProps) {
   const { value } = useAnswer(["sheets"], sheets.all);
   const [wanted, setWanted] = useState<string | undefined>(undefined);
@@ -29,10 +29,9 @@ export function SheetForAll({ group, count, chosen, busy, onBegin }: SheetForAll
     onBegin(card.title, () => sheets.forAll(group, card.id, chosen.length > 0 ? [...chosen] : null));
   };
   return (
-    <fieldset className={`row ${styles.group}`} aria-label="A lab sheet for all">
-      <span className={styles.what}>Lab sheet</span>
+    <GroupForAll name="Lab sheet" label="A lab sheet for all">
       <NativeSelect
-        className={styles.choice}
+        {...CHOICE}
         aria-label="Lab sheet"
         value={card.id}
         data={cards.map(({ id, title }) => ({ value: id, label: title }))}
@@ -47,6 +46,6 @@ export function SheetForAll({ group, count, chosen, busy, onBegin }: SheetForAll
       <Button component="a" size="xs" variant="subtle" href={sheets.grades(group, "json")} download="points.json">
         JSON
       </Button>
-    </fieldset>
+    </GroupForAll>
   );
 }

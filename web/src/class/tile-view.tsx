@@ -1,14 +1,16 @@
-import { ActionIcon, Box, Checkbox, Menu } from "@mantine/core";
+import { ActionIcon, Box, Checkbox, Group, Menu } from "@mantine/core";
 import { IconCheck, IconDots, IconHandStop, IconX } from "@tabler/icons-react";
-import { memo } from "react";
+import { memo, type ReactNode } from "react";
 import { answersOf } from "../api/blind";
 import type { BlockCard, HiddenAnswer, Tile, Verdict } from "../api/types";
 import { cardOf } from "../api/use-catalog";
+import { titleOf } from "../bench/flag-words";
 import { hypothesisWords } from "../bench/hypothesis-words";
 import { severityScale, severityText } from "../bench/severity";
 import { sheetWords } from "../bench/sheet-words";
 import { formatCount, formatPercent, formatShort } from "../ui/format";
 import { SIGNALS, TRACE_COLOURS } from "../ui/palette";
+import { StateDot } from "../ui/state-dot";
 import { useScheme } from "../ui/use-canvas";
 import { isRight, outline } from "./members";
 import styles from "./tile.module.css";
@@ -17,7 +19,7 @@ import styles from "./tile.module.css";
 const LEAST_UM = 0.5;
 const COLOUR = SIGNALS["plant.displacement"]?.[0] ?? 1;
 
-export interface TileActions {
+interface TileActions {
   open(tile: Tile): void;
   choose(id: string, chosen: boolean): void;
   run(tile: Tile, start: boolean): void;
@@ -47,11 +49,16 @@ export const TileView = memo(function TileView({ tile, isChosen, actions }: Tile
           onChange={(e) => actions.choose(id, e.currentTarget.checked)}
         />
         {bench ? (
-          <button type="button" className={styles.open} title="Open this bench" onClick={() => actions.open(tile)}>
+          <button
+            type="button"
+            className={`cut ${styles.open}`}
+            title="Open this bench"
+            onClick={() => actions.open(tile)}
+          >
             {name}
           </button>
         ) : (
-          <b>{name}</b>
+          <b className="cut">{name}</b>
         )}
         {hand && (
           <button
@@ -88,27 +95,25 @@ export const TileView = memo(function TileView({ tile, isChosen, actions }: Tile
           </Menu.Dropdown>
         </Menu>
       </div>
-      <p className={styles.line}>
-        <span className={styles.state} data-state={state ?? "none"}>
-          <i aria-hidden="true" />
-          {state ?? "no bench yet"}
-        </span>
-        <span data-off={watchers === 0}>{watchers === 0 ? "offline" : formatCount(watchers, "page")}</span>
-      </p>
+      <Group component="p" justify="space-between" gap={8} c="dimmed">
+        <StateDot state={state ?? "none"}>{state ?? "no bench yet"}</StateDot>
+        <Box component="span" c={watchers === 0 ? "var(--paused)" : undefined}>
+          {watchers === 0 ? "offline" : formatCount(watchers, "page")}
+        </Box>
+      </Group>
       {bench && (
         <>
           <Trace trace={tile.trace ?? []} name={name} />
-          <p className={styles.what} title={scenario}>
+          <p className="note cut" title={scenario}>
             {scenario}
           </p>
-          <p className={styles.what}>
-            {cardOf("control", controller)?.title ?? controller.replaceAll("_", " ")} ·{" "}
-            <Faults faults={tile.faults ?? []} />
+          <p className="note">
+            {titleOf("control", controller)} · <Faults faults={tile.faults ?? []} />
           </p>
           {tile.blind && tile.blind.bench === bench && <Hidden answer={tile.blind} />}
           {tile.sheet && (
             <>
-              <p className={styles.what} title={tile.sheet.title}>
+              <p className="note cut" title={tile.sheet.title}>
                 Sheet: {tile.sheet.title}
               </p>
               <p>{sheetWords(tile.sheet)}</p>
@@ -147,65 +152,81 @@ function Trace({ trace, name }: { trace: [number, number][]; name: string }) {
   );
 }
 
-/** The truth: what acts on the device. */
+/** The faults that act on the device. */
 function Faults({ faults }: { faults: NonNullable<Tile["faults"]> }) {
   const acting = faults.filter(({ severity }) => severity !== 0);
   if (acting.length === 0) return <span>no fault</span>;
   return (
     <Box component="b" c="var(--alarm)" fw={560}>
-      {acting.map(({ name, severity }) => `${titleOf(name)} ${strength(cardOf("faults", name), severity)}`).join(", ")}
+      {acting
+        .map(({ name, severity }) => `${titleOf("faults", name)} ${strength(cardOf("faults", name), severity)}`)
+        .join(", ")}
     </Box>
   );
 }
-
-const titleOf = (fault: string) => cardOf("faults", fault)?.title ?? fault.replaceAll("_", " ");
 
 function strength(fault: BlockCard | undefined, severity: number): string {
   const parameter = fault?.parameters.find((p) => p.name === "severity");
   return severityText(severity, severityScale(parameter, fault?.suggested || 0.05), parameter?.unit ?? "");
 }
 
-/** What was hidden from the student, what was answered, and the points. */
+/** The hidden fault, the student's answer, and the points. */
 function Hidden({ answer }: { answer: HiddenAnswer }) {
   const { state, said, confidence, truth, points = 0 } = answer;
   const words = (name: string) => hypothesisWords(name, answersOf(answer));
-  const right = said === truth;
+  const isHidden = state === "hidden";
+  const open = isHidden ? `hidden: ${words(truth)}` : "no answer";
   return (
-    <p className={styles.verdict} data-right={said ? right : undefined}>
-      {said && (right ? <IconCheck size={14} aria-label="right" /> : <IconX size={14} aria-label="wrong" />)}
-      <span>
-        {said
-          ? `says ${words(said)}, ${formatPercent(confidence ?? 0, 0)} sure`
-          : state === "hidden"
-            ? `hidden: ${words(truth)}`
-            : "no answer"}
-        {state !== "hidden" && !right && <span className={styles.truth}> · true: {words(truth)}</span>}
-      </span>
-      {state !== "hidden" && <small>{formatCount(Math.round(points), "point")}</small>}
-    </p>
+    <Judged
+      right={said ? said === truth : undefined}
+      says={said ? `says ${words(said)}, ${formatPercent(confidence ?? 0, 0)} sure` : open}
+      truth={!isHidden && said !== truth && words(truth)}
+    >
+      {!isHidden && <small>{formatCount(Math.round(points), "point")}</small>}
+    </Judged>
   );
 }
 
-/** What a diagnoser says beside what is true, whether that agrees, and how often it did. */
+/** The verdict of a diagnoser, the truth if the two differ, and how often it was right. */
 function VerdictLine({ verdict }: { verdict: Verdict }) {
   const right = isRight(verdict);
   const { diagnoser, says, truth, correct_fraction, factors } = verdict;
   const known = { [diagnoser]: { kind: diagnoser, names: Object.keys(factors), factors: Object.values(factors) } };
   const words = (name: string) => hypothesisWords(name, known);
   return (
+    <Judged
+      right={right}
+      says={`${diagnoser.replaceAll("_", " ")}: ${says === null ? "no verdict" : words(says)}`}
+      truth={right !== true && (truth === null ? "none of its hypotheses" : words(truth))}
+    >
+      <small title="Share of samples at which the verdict was right">{formatPercent(correct_fraction, 0)}</small>
+    </Judged>
+  );
+}
+
+interface JudgedProps {
+  right: boolean | undefined;
+  says: string;
+  truth: string | false;
+  children: ReactNode;
+}
+
+/** An answer with a mark for right or wrong, and the truth after it. */
+function Judged({ right, says, truth, children }: JudgedProps) {
+  const Mark = right ? IconCheck : IconX;
+  return (
     <p className={styles.verdict} data-right={right}>
-      {right === undefined ? null : right ? (
-        <IconCheck size={14} stroke={2.6} aria-label="right" />
-      ) : (
-        <IconX size={14} stroke={2.6} aria-label="wrong" />
-      )}
+      {right !== undefined && <Mark size={14} stroke={2.6} aria-label={right ? "right" : "wrong"} />}
       <span>
-        {diagnoser.replaceAll("_", " ")}: {says === null ? "no verdict" : words(says)}
-        {right !== true && (
-          <span className={styles.truth}> · true: {truth === null ? "none of its hypotheses" : words(truth)}</span>
+        {says}
+        {truth !== false && (
+          <Box component="span" c="dimmed">
+            {" "}
+            · true: {truth}
+          </Box>
         )}
       </span>
-      <small title="Share of samples at which the verdict was right">{formatPercent(correct_fraction, 0)}</small>
+      {children}
     </p>
   );
 }

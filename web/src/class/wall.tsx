@@ -1,4 +1,4 @@
-import { Modal } from "@mantine/core";
+import { Box, Modal } from "@mantine/core";
 import { useEffect } from "react";
 import { QrCode } from "../ui/qr-code";
 import styles from "./wall.module.css";
@@ -16,7 +16,7 @@ export function Wall({ opened, name, code, address, onClose }: WallProps) {
   useEffect(() => {
     if (!opened) return;
     document.documentElement.requestFullscreen?.().catch(() => undefined);
-    // Escape leaves the whole screen before the page hears of the key
+    // Escape leaves the full screen before the page receives the key
     const changed = () => !document.fullscreenElement && onClose();
     document.addEventListener("fullscreenchange", changed);
     return () => {
@@ -31,10 +31,13 @@ export function Wall({ opened, name, code, address, onClose }: WallProps) {
       onClose={onClose}
       title={name}
       closeButtonProps={{ "aria-label": "Leave the wall" }}
-      classNames={{ content: styles.wall, body: styles.body, title: styles.title }}
+      classNames={{ content: "column", body: styles.body }}
+      styles={{ title: { fontSize: "var(--size-4)", fontWeight: 650 } }}
       transitionProps={{ duration: 0 }}
     >
-      <p className={styles.code}>{code}</p>
+      <Box component="p" fz="min(12vw, 36vh)" fw={700} lh={1} style={{ whiteSpace: "nowrap" }}>
+        {code}
+      </Box>
       <div className={`row ${styles.foot}`}>
         <QrCode address={address} />
         <p>
@@ -45,5 +48,5 @@ export function Wall({ opened, name, code, address, onClose }: WallProps) {
   );
 }
 
-/** What somebody types: the address without the code, which the page asks for. */
+/** The address to type, without the code, which the page asks for. */
 export const brief = (address: string): string => address.replace(/^https?:\/\//, "").replace(/\?.*$/, "");

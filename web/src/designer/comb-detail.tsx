@@ -1,5 +1,6 @@
 import { formatNumber, formatSi } from "../ui/format";
 import styles from "./designer.module.css";
+import { COLOURS } from "./parts";
 
 /** Two fingers between three, enlarged: the gap and the overlap that make the force. */
 export function CombDetail({ geometry: g }: { geometry: Record<string, number> }) {
@@ -18,14 +19,15 @@ export function CombDetail({ geometry: g }: { geometry: Record<string, number> }
     );
   const text = whole / 24;
   return (
-    <figure className={styles.detail}>
+    <figure style={{ flex: "none" }}>
       <svg
+        width="100%"
         viewBox={`-1 ${-text * 1.6} ${whole + 2} ${y(tall) + text * 3.4}`}
         role="img"
         aria-label={`Comb: gap ${formatSi(gap, "um", 3)}, overlap ${formatSi(g.overlap_um, "um", 3)}`}
       >
-        <path d={bars(3, 0, whole - length)} fill="var(--strong-line)" />
-        <path d={bars(2, pitch / 2, 0)} fill="#56b4e9" />
+        <path d={bars(3, 0, whole - length)} fill={COLOURS.stator} />
+        <path d={bars(2, pitch / 2, 0)} fill={COLOURS.shuttle} />
         <path
           d={`M${whole - length} ${y(tall) + text * 0.5} H${length} M${whole - length} ${y(tall)} v${text} M${length} ${y(tall)} v${text}`}
           className={styles.scale}
@@ -34,7 +36,7 @@ export function CombDetail({ geometry: g }: { geometry: Record<string, number> }
           overlap {formatSi(g.overlap_um, "um", 3)}
         </text>
       </svg>
-      <figcaption>
+      <figcaption className="remark">
         Comb as etched: gap {formatSi(gap, "um", 3)}, fingers {formatSi(finger, "um", 3)} wide
         {stretch > 1 ? `; drawn ${formatNumber(stretch, 1)} times as large across as along` : ""}
       </figcaption>

@@ -1,13 +1,13 @@
 import type { Design, Device, NewBench } from "../api/types";
 import { roundTo } from "../ui/unit-scale";
 
-/** What has been changed about a device of the catalogue, and the air around it. */
+/** The changes of a device of the catalogue, and the air around it. */
 export interface DesignState {
   id: string;
   /** Values written over the catalogue's, by dotted path below `device`. */
   changes: Record<string, number>;
   environment: Record<string, number>;
-  /** What a draw from the process made of the drawing. */
+  /** The geometry of a device drawn from the process. */
   drawn: { seed: number; geometry: Record<string, number> } | undefined;
 }
 
@@ -31,7 +31,7 @@ export function designDocument({ id, changes, environment, drawn }: DesignState)
   return { device, environment };
 }
 
-/** One value changed; what the process drew of it gives way. */
+/** A design with one value changed, which replaces the value drawn from the process. */
 export function changed(state: DesignState, path: string, value: number, original: number): DesignState {
   const changes = { ...state.changes, [path]: value };
   if (value === original) delete changes[path];

@@ -1,4 +1,4 @@
-import { NativeSelect } from "@mantine/core";
+import { Box, NativeSelect } from "@mantine/core";
 import type { Device, DeviceCatalogue } from "../api/types";
 import { Knob } from "../ui/knob";
 import { AIR, AROUND_A_PACKAGE, ENVIRONMENT, type Knob as KnobOf } from "../ui/surroundings";
@@ -33,20 +33,21 @@ export function DesignerControls({ catalogue, device, state, onChange }: Designe
         original={original}
         minimum={card?.minimum}
         maximum={card?.maximum}
-        onMove={set}
-        onChange={set}
+        {...both(set)}
       />
     );
   };
   return (
-    <section className={styles.controls} aria-label="What can be turned">
+    <section className={`card ${styles.controls}`} aria-label="Knobs">
       <NativeSelect
         label="Device"
         value={state.id}
         data={catalogue.devices.map((d) => ({ value: d.id, label: d.title || d.id }))}
         onChange={(event) => onChange({ ...newDesign(event.currentTarget.value), environment: state.environment })}
       />
-      <p className={styles.source}>{device.source}</p>
+      <Box component="p" className="note" mt={8}>
+        {device.source}
+      </Box>
       {groups().map((group) => (
         <fieldset key={group.title} className={styles.group}>
           <legend>{group.title}</legend>
@@ -56,23 +57,17 @@ export function DesignerControls({ catalogue, device, state, onChange }: Designe
       <fieldset className={styles.group}>
         <legend>Environment</legend>
         {(isGyroscope(device) ? AROUND_A_PACKAGE : ENVIRONMENT).map((knob) => {
-          const set = (value: number) =>
-            onChange({ ...state, environment: { ...state.environment, [knob.path]: value } });
-          return (
-            <Knob
-              key={knob.path}
-              {...knob}
-              value={state.environment[knob.path] ?? AIR[knob.path]}
-              original={AIR[knob.path]}
-              onMove={set}
-              onChange={set}
-            />
-          );
+          const { environment } = state;
+          const set = (value: number) => onChange({ ...state, environment: { ...environment, [knob.path]: value } });
+          const air = AIR[knob.path];
+          return <Knob key={knob.path} {...knob} {...both(set)} value={environment[knob.path] ?? air} original={air} />;
         })}
       </fieldset>
     </section>
   );
 }
+
+const both = (set: (value: number) => void) => ({ onMove: set, onChange: set });
 
 function defaultOf(catalogue: DeviceCatalogue, path: string): number {
   return Number(catalogue.geometry.find((p) => `geometry.${p.name}` === path)?.default ?? 0);

@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button, Group } from "@mantine/core";
 import { IconDice5, IconPlayerPlay } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
@@ -34,7 +34,7 @@ const FIRST = "lcr-350";
 /** The others are worked out from the drawing of a resonator. */
 const isOfGyroscope = ({ name }: { name: string }) => name.startsWith("gyro.");
 
-/** The drawing board: turn a number of a device and see at once what it would be. */
+/** The drawing board: turn a number of a device and see its effect at once. */
 export function Designer() {
   const drives = useMay("drive");
   const teaches = useMay("teach");
@@ -45,6 +45,7 @@ export function Designer() {
   const [spread, setSpread] = useState<ProcessSpread["statistics"][string] | undefined>(undefined);
   const [busy, during] = useBusy();
   const { evaluation, bode, drawing, refusal, design } = useDesign(state);
+  const isTurning = evaluation !== undefined && "gyro.axis_deg" in evaluation.metrics;
 
   useEffect(() => {
     api.deviceCatalogue().then(setCatalogue, showError);
@@ -80,23 +81,23 @@ export function Designer() {
   if (!catalogue || !device)
     return <EmptyState title="Loading the devices">They come from the server's catalogue.</EmptyState>;
   return (
-    <main className={styles.page}>
-      <header className={`row ${styles.top}`}>
+    <main className={`paper ${styles.page}`}>
+      <header className={`card page-top ${styles.top}`}>
         <PageHead name="Design" item={isKnown ? device.title : undefined} heading="Device designer" />
         {item && !isKnown && <span className="wrong">The catalogue has no device {item}.</span>}
         {state.drawn && (
-          <span className={styles.drawn}>
+          <Box component="span" c="var(--accent)" bg="var(--accent-soft)" bdrs={10} fz="sm" p="2px 10px">
             device {state.drawn.seed} of the process
             {spread &&
               `; 98 % of them have f₀ from ${formatSi(spread.p01, "Hz", 3)} to ${formatSi(spread.p99, "Hz", 3)}`}
-          </span>
+          </Box>
         )}
         {refusal && (
           <span className="wrong" role="alert">
             {refusal.body.message}. {refusal.body.hint}
           </span>
         )}
-        <div className={styles.actions}>
+        <Group gap={8} ml="auto">
           {state.drawn && (
             <Button size="xs" onClick={() => setState({ ...state, drawn: undefined })}>
               Back to the drawing
@@ -124,43 +125,40 @@ export function Designer() {
               Use on the bench
             </Button>
           )}
-        </div>
+        </Group>
       </header>
       <DesignerControls catalogue={catalogue} device={device} state={state} onChange={change} />
-      {evaluation && "gyro.axis_deg" in evaluation.metrics ? (
+      {evaluation && (isTurning || (bode && drawing)) ? (
         <>
-          <section className={`column ${styles.drawing}`} aria-label="Drawing">
-            <AxesView metrics={evaluation.metrics} title={evaluation.title} />
+          <section className={`column card ${styles.drawing}`} aria-label="Drawing">
+            {isTurning ? (
+              <AxesView metrics={evaluation.metrics} title={evaluation.title} />
+            ) : (
+              <DeviceView
+                geometry={evaluation.geometry}
+                title={evaluation.title}
+                onChooseDrawn={() => setState(newDesign(FIRST))}
+              />
+            )}
           </section>
           <div className={`column ${styles.results}`}>
-            <section className={styles.figures} aria-label="Figures">
-              <FigureGrid figures={evaluation.figures.filter(isOfGyroscope)} original={original?.figures} drawn />
-            </section>
-          </div>
-        </>
-      ) : evaluation && bode && drawing ? (
-        <>
-          <section className={`column ${styles.drawing}`} aria-label="Drawing">
-            <DeviceView
-              geometry={evaluation.geometry}
-              title={evaluation.title}
-              onChooseDrawn={() => setState(newDesign(FIRST))}
-            />
-          </section>
-          <div className={`column ${styles.results}`}>
-            <section className={styles.figures} aria-label="Figures">
+            <section className={`card ${styles.figures}`} aria-label="Figures">
               <FigureGrid
-                figures={evaluation.figures}
+                figures={isTurning ? evaluation.figures.filter(isOfGyroscope) : evaluation.figures}
                 original={original?.figures}
-                drawn={evaluation.geometry !== null}
+                drawn={isTurning || evaluation.geometry !== null}
               />
             </section>
-            <section className={styles.response} aria-label="Frequency response">
-              <ResponseView bode={bode} drawing={drawing} />
-            </section>
-            <section className={styles.sensitivity} aria-label="Sensitivity">
-              <SensitivityTable evaluation={evaluation} />
-            </section>
+            {bode && drawing && (
+              <>
+                <section className={`card ${styles.response}`} aria-label="Frequency response">
+                  <ResponseView bode={bode} drawing={drawing} />
+                </section>
+                <section className={`card ${styles.sensitivity}`} aria-label="Sensitivity">
+                  <SensitivityTable evaluation={evaluation} />
+                </section>
+              </>
+            )}
           </div>
         </>
       ) : (

@@ -6,6 +6,7 @@ import { EmptyState } from "../ui/empty-state";
 import { formatShort, formatSi } from "../ui/format";
 import { CombDetail } from "./comb-detail";
 import styles from "./designer.module.css";
+import { COLOURS, Parts } from "./parts";
 
 const MARGIN = 14;
 const SCALE_BARS = [20, 50, 100, 200, 500];
@@ -60,12 +61,14 @@ export function DeviceView({ geometry, title, onChooseDrawn }: DeviceViewProps) 
           </text>
         </g>
       </svg>
-      <ul className={styles.parts}>
-        <li data-part="shuttle">shuttle, moves</li>
-        <li data-part="beam">beams and trusses, bend</li>
-        <li data-part="stator">stators</li>
-        <li data-part="anchor">anchors</li>
-      </ul>
+      <Parts
+        parts={[
+          ["shuttle, moves", COLOURS.shuttle],
+          ["beams and trusses, bend", COLOURS.beam],
+          ["stators", COLOURS.stator],
+          ["anchors"],
+        ]}
+      />
       <CombDetail geometry={geometry} />
     </>
   );

@@ -1,4 +1,4 @@
-import { Popover, UnstyledButton } from "@mantine/core";
+import { Box, Popover, UnstyledButton } from "@mantine/core";
 import type { Evaluation } from "../api/types";
 import { EquationDetail } from "../ui/equation-detail";
 import { formatChange, formatSi } from "../ui/format";
@@ -9,19 +9,19 @@ type Figure = Evaluation["figures"][number];
 
 interface FigureGridProps {
   figures: Figure[];
-  /** Those of the device as the catalogue has it. */
+  /** The figures of the device of the catalogue. */
   original: Figure[] | undefined;
-  /** Whether the device has a drawing; without one, what needs the beams takes those of LCR-350. */
+  /** Whether the device has a drawing; without one, the beams of LCR-350 are used. */
   drawn: boolean;
 }
 
-/** What people quote of a device: value, unit, equation, and what changed since the catalogue. */
+/** The figures of a device: value, unit, equation, and the change since the catalogue. */
 export function FigureGrid({ figures, original, drawn }: FigureGridProps) {
   return (
     <dl className={styles.grid}>
       {figures.map((figure) => (
-        <div key={figure.name} className={styles.figure}>
-          <dt>
+        <Box key={figure.name} py={8}>
+          <dt className={styles.name}>
             {figure.label}
             <Popover width={400} position="bottom">
               <Popover.Target>
@@ -44,12 +44,14 @@ export function FigureGrid({ figures, original, drawn }: FigureGridProps) {
             </Popover>
           </dt>
           <dd>
-            <b>{formatSi(figure.value, figure.unit)}</b>
-            <small>
+            <Box component="b" display="block" fz="lg" fw={620} style={{ whiteSpace: "nowrap" }}>
+              {formatSi(figure.value, figure.unit)}
+            </Box>
+            <Box component="small" display="block" mih="1.4em">
               {!drawn && figure.name === "pull_in_v" ? "with the beams of LCR-350" : since(figure, original)}
-            </small>
+            </Box>
           </dd>
-        </div>
+        </Box>
       ))}
     </dl>
   );

@@ -1,66 +1,54 @@
 import type { Knob, KnobGroup } from "../ui/surroundings";
 import { roundTo } from "../ui/unit-scale";
-import { DRAWING } from "./knobs";
+import { around, DRAWING, knob } from "./knobs";
 
-/** A cross term reaches so much of the least of what it couples; what it must stay below is 1. */
+/** The range of a cross term, as a share of the smaller term that it couples; it must stay below 1. */
 const CROSS_SHARE = 0.2;
 const MOST_DEG = 10;
 
-/** What can be turned about a gyroscope: its masses and swing, its stiffness and damping with what couples the axes. */
+/** The knobs of a gyroscope: its masses and swing, its stiffness and damping with their cross terms. */
 export function gyroscopeKnobs(value: (path: string) => number | undefined): KnobGroup[] {
   const at = (name: string) => value(`gyroscope.${name}`);
-  const around = (name: string, label: string, unit: string): Knob[] => {
-    const middle = at(name);
-    return middle
-      ? [{ path: `gyroscope.${name}`, label, unit, low: middle / 4, high: middle * 4, step: 0, log: true }]
-      : [];
-  };
-  const about = (name: string, label: string, unit: string, reach: number): Knob[] =>
-    at(name) === undefined
-      ? []
-      : [{ path: `gyroscope.${name}`, label, unit, low: -reach, high: reach, step: roundTo(reach / 200, 1) }];
+  const about = (name: string, label: string, unit: string): Knob[] =>
+    around(`gyroscope.${name}`, label, unit, at(name));
+  const within = (name: string, label: string, unit: string, reach: number): Knob[] =>
+    at(name) === undefined ? [] : [knob(`gyroscope.${name}`, label, unit, -reach, reach, roundTo(reach / 200, 1))];
   const cross = (x: string, y: string) => roundTo(CROSS_SHARE * Math.min(at(x) ?? 1, at(y) ?? 1), 1);
   return [
     {
       title: "Masses and swing",
       knobs: [
-        ...around("mass_x_kg", "Mass along x", "kg"),
-        ...around("mass_y_kg", "Mass along y", "kg"),
-        ...around("coriolis_mass_kg", "Mass the rate acts on", "kg"),
-        ...around("drive_amplitude_um", "Amplitude of x", "um"),
+        ...about("mass_x_kg", "Mass along x", "kg"),
+        ...about("mass_y_kg", "Mass along y", "kg"),
+        ...about("coriolis_mass_kg", "Mass the rate acts on", "kg"),
+        ...about("drive_amplitude_um", "Amplitude of x", "um"),
       ],
     },
     {
       title: "Stiffness",
       knobs: [
-        ...around("stiffness_x_n_m", "Along x", "N/m"),
-        ...around("stiffness_y_n_m", "Along y", "N/m"),
-        ...about("stiffness_xy_n_m", "Cross stiffness", "N/m", cross("stiffness_x_n_m", "stiffness_y_n_m")),
-        ...about("alpha_deg", "Angle of its axes", "deg", MOST_DEG),
+        ...about("stiffness_x_n_m", "Along x", "N/m"),
+        ...about("stiffness_y_n_m", "Along y", "N/m"),
+        ...within("stiffness_xy_n_m", "Cross stiffness", "N/m", cross("stiffness_x_n_m", "stiffness_y_n_m")),
+        ...within("alpha_deg", "Angle of its axes", "deg", MOST_DEG),
       ],
     },
     {
       title: "Damping",
       knobs: [
-        ...around("damping_x_ns_m", "Along x", "N s/m"),
-        ...around("damping_y_ns_m", "Along y", "N s/m"),
-        ...about("damping_xy_ns_m", "Cross damping", "N s/m", cross("damping_x_ns_m", "damping_y_ns_m")),
-        ...about("gamma_deg", "Angle of its axes", "deg", MOST_DEG),
+        ...about("damping_x_ns_m", "Along x", "N s/m"),
+        ...about("damping_y_ns_m", "Along y", "N s/m"),
+        ...within("damping_xy_ns_m", "Cross damping", "N s/m", cross("damping_x_ns_m", "damping_y_ns_m")),
+        ...within("gamma_deg", "Angle of its axes", "deg", MOST_DEG),
       ],
     },
   ];
 }
 
-const drawn = (name: string, label: string, unit: string, low: number, high: number, step: number): Knob => ({
-  path: `drawn_gyroscope.${name}`,
-  label,
-  unit,
-  low,
-  high,
-  step,
-});
+const drawn = (name: string, label: string, unit: string, low: number, high: number, step: number) =>
+  knob(`drawn_gyroscope.${name}`, label, unit, low, high, step);
 
-/** What can be turned about a gyroscope from a drawing: the drawing, what y has of its own, and what no drawing tells. */
+/** The knobs of a gyroscope from a drawing: the drawing, the sense frame, and the numbers outside a drawing. */
 export const DRAWN_GYROSCOPE: KnobGroup[] = [
   {
     title: "Sense frame, along y",

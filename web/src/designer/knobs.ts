@@ -1,15 +1,23 @@
 import type { Knob, KnobGroup } from "../ui/surroundings";
 
-const um = (name: string, label: string, low: number, high: number, step: number): Knob => ({
-  path: `geometry.${name}`,
+export const knob = (path: string, label: string, unit: string, low: number, high: number, step: number): Knob => ({
+  path,
   label,
-  unit: "um",
+  unit,
   low,
   high,
   step,
 });
+const um = (name: string, label: string, low: number, high: number, step: number) =>
+  knob(`geometry.${name}`, label, "um", low, high, step);
+const fingers = (path: string) => knob(path, "Fingers per side", "", 4, 160, 1);
+const BIAS = knob("bias_v", "Bias", "V", 1, 60, 0.5);
 
-/** What can be turned about a drawing; the usual reach, exact entry goes further. */
+/** A knob around a given value, by ratios; none without the value. */
+export const around = (path: string, label: string, unit: string, middle: number | undefined): Knob[] =>
+  middle ? [{ ...knob(path, label, unit, middle / 4, middle * 4, 0), log: true }] : [];
+
+/** The knobs of a drawing with their usual ranges; exact entry goes further. */
 export const DRAWING: KnobGroup[] = [
   {
     title: "Beams and trusses",
@@ -24,13 +32,13 @@ export const DRAWING: KnobGroup[] = [
   {
     title: "Comb",
     knobs: [
-      { path: "geometry.fingers", label: "Fingers per side", unit: "", low: 4, high: 160, step: 1 },
+      fingers("geometry.fingers"),
       um("finger_gap_um", "Gap, drawn", 0.5, 6, 0.05),
       um("finger_width_um", "Finger width, drawn", 1, 6, 0.05),
       um("comb_bias_um", "Etch bias per edge", 0, 0.45, 0.005),
       um("finger_length_um", "Finger length", 20, 150, 1),
       um("overlap_um", "Overlap at rest", 5, 100, 1),
-      { path: "bias_v", label: "Bias", unit: "V", low: 1, high: 60, step: 0.5 },
+      BIAS,
     ],
   },
   {
@@ -42,31 +50,23 @@ export const DRAWING: KnobGroup[] = [
       um("plate_width_um", "Plate width", 40, 300, 5),
       um("arm_width_um", "Arm width", 4, 30, 0.5),
       um("arm_length_um", "Arm length", 100, 1200, 10),
-      { path: "geometry.youngs_modulus_gpa", label: "Young's modulus", unit: "GPa", low: 100, high: 200, step: 0.5 },
-      { path: "geometry.density_kg_m3", label: "Density", unit: "kg/m^3", low: 1500, high: 8000, step: 10 },
+      knob("geometry.youngs_modulus_gpa", "Young's modulus", "GPa", 100, 200, 0.5),
+      knob("geometry.density_kg_m3", "Density", "kg/m^3", 1500, 8000, 10),
     ],
   },
 ];
 
-/** What can be turned about a device that is given by its figures. */
-export function given(value: (path: string) => number | undefined): KnobGroup[] {
-  const around = (path: string, label: string, unit: string): Knob[] => {
-    const middle = value(path);
-    return middle === undefined ? [] : [{ path, label, unit, low: middle / 4, high: middle * 4, step: 0, log: true }];
-  };
-  return [
-    {
-      title: "Given by figures",
-      knobs: [
-        ...around("mass_kg", "Mass", "kg"),
-        ...around("stiffness_n_m", "Stiffness", "N/m"),
-        ...around("damping_ns_m", "Damping", "N s/m"),
-        ...around("force_n_per_v", "Force per volt", "N/V"),
-        ...(value("fingers") === undefined
-          ? []
-          : [{ path: "fingers", label: "Fingers per side", unit: "", low: 4, high: 160, step: 1 }]),
-        { path: "bias_v", label: "Bias", unit: "V", low: 1, high: 60, step: 0.5 },
-      ],
-    },
-  ];
-}
+/** The knobs of a device that is given by its figures. */
+export const given = (value: (path: string) => number | undefined): KnobGroup[] => [
+  {
+    title: "Given by figures",
+    knobs: [
+      ...around("mass_kg", "Mass", "kg", value("mass_kg")),
+      ...around("stiffness_n_m", "Stiffness", "N/m", value("stiffness_n_m")),
+      ...around("damping_ns_m", "Damping", "N s/m", value("damping_ns_m")),
+      ...around("force_n_per_v", "Force per volt", "N/V", value("force_n_per_v")),
+      ...(value("fingers") === undefined ? [] : [fingers("fingers")]),
+      BIAS,
+    ],
+  },
+];

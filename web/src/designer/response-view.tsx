@@ -13,7 +13,7 @@ interface ResponseViewProps {
 /** The Bode diagram of the device, and the band in which the process leaves devices of this drawing. */
 export function ResponseView({ bode, drawing }: ResponseViewProps) {
   const shown = useMemo(() => {
-    // both relative to the drawing at rest
+    // both relative to the static gain of the drawing
     const shift = decibels(bode.static_gain_um_per_v / drawing.static_gain_um_per_v);
     const own = {
       name: "This device",
@@ -37,7 +37,7 @@ export function ResponseView({ bode, drawing }: ResponseViewProps) {
   }, [bode, drawing]);
   return (
     <>
-      <h2 className={styles.heading}>Frequency response</h2>
+      <h2>Frequency response</h2>
       <div className={styles.bode}>
         <BodePlot label="Bode diagram with its tolerance band" shown={shown} />
       </div>

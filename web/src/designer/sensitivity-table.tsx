@@ -1,7 +1,7 @@
+import { Box } from "@mantine/core";
 import type { Evaluation } from "../api/types";
 import { formatChange, formatIn, formatSi } from "../ui/format";
 import { TableHead } from "../ui/table-head";
-import styles from "./designer.module.css";
 
 const STEPS: [string, string][] = [
   ["beam_bias_um", "Beams 0.2 µm narrower"],
@@ -20,25 +20,25 @@ const COLUMNS: [string, string][] = [
   ["quality_factor", "Q"],
 ];
 
-/** What a step of the process does to the device; the beams first, for the stiffness goes with the cube of their width. */
+/** The effect of a step of the process on the device; the beams first, since the stiffness goes with the cube of their width. */
 export function SensitivityTable({ evaluation }: { evaluation: Evaluation }) {
   const { geometry, sensitivities } = evaluation;
   if (!geometry)
     return (
       <>
-        <h2 className={styles.heading}>Sensitivity to the process</h2>
-        <p className={styles.source}>
+        <h2>Sensitivity to the process</h2>
+        <Box component="p" className="note" mt={12}>
           This device is given by its figures. Choose a device with a drawing, such as LCR-350, to see the effect of the
           process.
-        </p>
+        </Box>
       </>
     );
   const width = geometry.beam_width_um - 2 * geometry.beam_bias_um;
   const softer = sensitivities.beam_bias_um?.stiffness_n_m;
   return (
     <>
-      <h2 className={styles.heading}>Sensitivity to the process</h2>
-      <table className={`numbers ${styles.table}`}>
+      <h2>Sensitivity to the process</h2>
+      <Box component="table" className="numbers" w="100%" mt={4}>
         <TableHead names={["If the process makes", ...COLUMNS.map(([, sign]) => sign)]} />
         <tbody>
           {STEPS.map(([name, words]) => (
@@ -47,21 +47,21 @@ export function SensitivityTable({ evaluation }: { evaluation: Evaluation }) {
               {COLUMNS.map(([key]) => {
                 const change = sensitivities[name]?.[key];
                 return (
-                  <td key={key} data-large={Math.abs(change ?? 0) >= 10}>
+                  <Box component="td" key={key} fw={Math.abs(change ?? 0) >= 10 ? 680 : undefined}>
                     {change === undefined ? "gone" : signed(change)}
-                  </td>
+                  </Box>
                 );
               })}
             </tr>
           ))}
         </tbody>
-      </table>
-      <p className={styles.source}>
+      </Box>
+      <Box component="p" className="note" mt={8}>
         Changes in %. The beams are {formatSi(width, "um", 3)} wide as etched
         {softer === undefined
           ? "; they would vanish with 0.2 µm less."
           : `; 1 − (1 − 0.2/w)³ (1.4.2) says ${formatIn(100 * (1 - (1 - 0.2 / width) ** 3), "%", 1)} softer, the linear rule 3 · 0.2/w ${formatIn(60 / width, "%", 1)}.`}
-      </p>
+      </Box>
     </>
   );
 }

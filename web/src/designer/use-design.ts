@@ -15,9 +15,9 @@ interface Worked {
 const SPAN = 10;
 
 /**
- * What the server makes of a design: one request at a time, always the newest design next.
+ * The evaluation of a design by the server: one request at a time, always the newest design next.
  *
- * While a value is refused the last good picture stays, with what is wrong beside it.
+ * While a value is refused the last good picture stays, with the refusal.
  */
 export function useDesign(state: DesignState) {
   const [worked, setWorked] = useState<Worked | undefined>(undefined);

@@ -1,20 +1,9 @@
 import type { GalleryCard } from "../api/types";
 
-/** Verdicts from best to worst, and the word for what the dissertation does not claim. */
-export const VERDICTS = [
-  "reproduced",
-  "reproduced by tuning",
-  "reproduced, by a PID too",
-  "reproduced by tuning, by a PID too",
-  "partly",
-  "not reproduced",
-  "ours",
-] as const;
-
 export interface GalleryFilter {
   /** A chapter, an appendix, or "all". */
   chapter: string;
-  /** One of the verdicts, "open" for what has not been measured or does not hold, or "all". */
+  /** One of the verdicts, "open" for claims that are not measured or do not hold, or "all". */
   verdict: string;
   words: string;
 }
@@ -27,7 +16,7 @@ export function chapterOf(id: string): string {
   return /^(?:ch(\d+)|app([A-Z]))-/.exec(id)?.slice(1).find(Boolean) ?? "live";
 }
 
-/** Where a chapter stands in the book; live benches come first, appendices last. */
+/** The place of a chapter in the book; live benches come first, appendices last. */
 const rank = (name: string) => (name === "live" ? 0 : /\d/.test(name) ? Number(name) : 100 + name.charCodeAt(0));
 
 /** The chapters that occur, in the order of the book. */
@@ -45,7 +34,7 @@ export function chapterName(chapter: string): string {
   return /\d/.test(chapter) ? `Chapter ${chapter}` : `Appendix ${chapter}`;
 }
 
-/** Where a word may stand in a card, and how much it says there. */
+/** The places of a word in a card, with the weight of each. */
 const PLACES: readonly [number, (card: GalleryCard) => string][] = [
   [8, (card) => card.id.replaceAll("-", " ")],
   [6, (card) => card.title],
@@ -54,7 +43,7 @@ const PLACES: readonly [number, (card: GalleryCard) => string][] = [
   [1, (card) => `${card.source} ${card.summary} ${card.claim}`],
 ];
 
-/** How well a card fits a word: the best place it stands in, twice as well at the start of a word; 0 if nowhere. */
+/** How well a card fits a word: the weight of its best place, doubled at the start of a word; 0 without a match. */
 function weightOf(card: GalleryCard, word: string): number {
   const isNumber = /^\d+$/.test(word); // which is no part of another number
   const start = new RegExp(

@@ -2,13 +2,15 @@ import { useState } from "react";
 import type { GalleryCard } from "../api/types";
 import { formatShort } from "../ui/format";
 import { metricScale } from "../ui/metric-name";
+import { TableHead } from "../ui/table-head";
 import { Verdict } from "../ui/verdict";
 import styles from "./gallery.module.css";
 
 const SHOWN = 3;
+const MORE = { marginTop: 4, padding: "2px 0", color: "var(--accent)", font: "560 var(--size-0) var(--font)" };
 
 type Expected = GalleryCard["expectations"][number];
-/** A row; runs kept from earlier lack what has been added since. */
+/** A row; runs of earlier versions lack the newer fields. */
 type Entry = Omit<Expected, "fitted" | "reason" | "comparator" | "pid_too" | "expected_words"> & Partial<Expected>;
 
 interface ExpectationTableProps {
@@ -17,7 +19,7 @@ interface ExpectationTableProps {
   verdict: string | null;
 }
 
-/** What is said of a figure beside its numbers: why it stands alone, what was chosen for it, where it comes from. */
+/** The remarks on a figure: its note, the values chosen for it, and why it has no open loop. */
 function remarks(entry: Entry): string[] {
   const fitted = entry.fitted ?? [];
   return [
@@ -38,33 +40,30 @@ function readable({ metric, expected }: Entry): string {
 const NUMBER = /[-−]?\d[\d.]*(?:e[+-]?\d+)?/g;
 const numberIn = (text: string) => Number(text.replace("−", "-"));
 
-/** Figure by figure what is expected, what was measured, and what the open loop gives; the first few until all are asked for. */
+/** For each figure the expected and the measured value, and the value of the open loop; the first few, or all on request. */
 export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
   const [all, setAll] = useState(false);
-  if (entries.length === 0) return <p className={styles.nothing}>This experiment makes no claim.</p>;
+  if (entries.length === 0)
+    return (
+      <p className="note" style={{ flex: 1 }}>
+        This experiment makes no claim.
+      </p>
+    );
   const rows = all ? entries : entries.slice(0, SHOWN);
   const hasOpenLoop = entries.some((entry) => typeof entry.open_loop === "number");
   const hasPid = entries.some((entry) => typeof entry.pid === "number");
   return (
     <div className={styles.figures}>
       <table>
-        <thead>
-          <tr>
-            <th scope="col">figure</th>
-            <th scope="col">expected</th>
-            <th scope="col">measured</th>
-            {hasOpenLoop && (
-              <th scope="col" title="The same scenario with the open loop in place of its controller">
-                open loop
-              </th>
-            )}
-            {hasPid && (
-              <th scope="col" title="The same scenario with a tuned PID in place of its controller">
-                PID
-              </th>
-            )}
-          </tr>
-        </thead>
+        <TableHead
+          names={[
+            "figure",
+            "expected",
+            "measured",
+            hasOpenLoop && ["open loop", "The same scenario with the open loop in place of its controller"],
+            hasPid && ["PID", "The same scenario with a tuned PID in place of its controller"],
+          ]}
+        />
         <tbody>
           {rows.map((entry) => {
             const { name, say } = metricScale(entry.metric, []);
@@ -73,11 +72,9 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
               <tr key={entry.metric} title={[entry.metric, ...remarks(entry)].join(": ")}>
                 <th scope="row">
                   {name}
-                  {entry.published && (
-                    <small className={styles.published}>published: {entry.published.replaceAll(" %", "\u00a0%")}</small>
-                  )}
+                  {entry.published && <small>published: {entry.published.replaceAll(" %", "\u00a0%")}</small>}
                   {entry.comparator && (
-                    <small className={styles.published}>
+                    <small>
                       {entry.comparator}
                       {entry.pid_too && ", meets the claim too"}
                     </small>
@@ -90,7 +87,7 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
                   {all && remarks(entry).map((text) => <small key={text}>{text}</small>)}
                 </th>
                 <td>{expected}</td>
-                <td className={styles.measured} data-ok={entry.ok}>
+                <td style={{ fontWeight: 620, color: entry.ok === false ? "var(--alarm)" : undefined }}>
                   {say(entry.measured)}
                   {entry.ok === false && " ✗"}
                 </td>
@@ -102,7 +99,7 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
         </tbody>
       </table>
       {entries.length > SHOWN || entries.some((entry) => remarks(entry).length > 0) ? (
-        <button type="button" className={styles.more} aria-expanded={all} onClick={() => setAll(!all)}>
+        <button type="button" style={MORE} aria-expanded={all} onClick={() => setAll(!all)}>
           {all ? "less" : entries.length > SHOWN ? `all ${entries.length} figures, with notes` : "notes"}
         </button>
       ) : null}

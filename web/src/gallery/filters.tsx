@@ -1,6 +1,7 @@
 import { NativeSelect, TextInput } from "@mantine/core";
 import type { GalleryCard } from "../api/types";
-import { chapterName, chaptersOf, type GalleryFilter, VERDICTS } from "./chapters";
+import { VERDICTS } from "../ui/verdict";
+import { chapterName, chaptersOf, type GalleryFilter } from "./chapters";
 
 interface FiltersProps {
   all: readonly GalleryCard[];

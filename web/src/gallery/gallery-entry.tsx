@@ -1,4 +1,4 @@
-import { Button, Progress } from "@mantine/core";
+import { Box, Button, Group, Progress } from "@mantine/core";
 import { IconFileText, IconPlayerPlay, IconPlayerTrackNext } from "@tabler/icons-react";
 import { useEffect, useRef } from "react";
 import { api } from "../api/api";
@@ -9,6 +9,7 @@ import { PlaceLink } from "../bench/page-head";
 import { showError } from "../bench/send";
 import { useBusy } from "../bench/use-busy";
 import { setPage } from "../bench/view-store";
+import { isActive } from "../runs/jobs";
 import { useOnScreen } from "../ui/on-screen";
 import { Verdict } from "../ui/verdict";
 import { ExpectationTable } from "./expectation-table";
@@ -24,7 +25,7 @@ interface GalleryEntryProps {
   onSight(id: string, isShown: boolean): void;
 }
 
-/** A scenario of the library: its figure, its claim beside what was measured, and the two ways to run it. */
+/** A scenario of the library: its figure, its claim with the measured values, and the two ways to run it. */
 export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntryProps) {
   const element = useRef<HTMLLIElement>(null);
   const isShown = useOnScreen(element);
@@ -36,7 +37,7 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
   const drives = useMay("drive");
   const teaches = useMay("teach");
   const { title } = card;
-  const underWay = card.state === "queued" || card.state === "running";
+  const underWay = isActive(card.state);
 
   const live = () =>
     during(async () => {
@@ -46,7 +47,7 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
   const headless = () => api.startRun({ scenario: card.id }).then(onChanged, showError);
 
   return (
-    <li ref={element} className={`column ${styles.card}`}>
+    <Box component="li" ref={element} className="column card" p={12} style={{ gap: 8 }}>
       <div className={styles.thumbnail}>
         {card.figure ? (
           <img src={`./api/v1/gallery/${card.id}/figure?v=${card.figure}`} alt={`Figure of ${title}`} loading="lazy" />
@@ -54,19 +55,19 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
           <img src={`./api/v1/runs/${card.run}/thumbnail`} alt={`Figure of ${title}`} loading="lazy" />
         ) : (
           !underWay && (
-            <div className={`column ${styles.wait}`} data-failed={card.problem !== ""}>
+            <div className={`column note ${styles.wait}`} data-failed={card.problem !== ""}>
               {card.problem ? `No figure: ${card.problem}` : isMaking ? "Its figure is being made" : "Not measured yet"}
             </div>
           )
         )}
         {underWay && (
-          <div className={`column ${styles.wait}`}>
+          <div className={`column note ${styles.wait}`}>
             {card.state === "queued" ? "waits for its turn" : "running"}
             <Progress value={card.progress * 100} size="sm" w="60%" aria-label={`Progress of ${title}`} />
           </div>
         )}
       </div>
-      <div className={styles.words}>
+      <div>
         <h2>
           <PlaceLink place={{ page: "gallery", item: card.id }}>{title}</PlaceLink>
         </h2>
@@ -75,23 +76,25 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
           {card.source && ` · ${card.source}`}
         </small>
         {headlines(card).map(({ metric, figure, ours, printed }) => (
-          <p key={metric} className={styles.headline}>
+          <Box component="p" key={metric} mt={6}>
             {figure}: <b>ours {ours}</b> / printed {printed}
-          </p>
+          </Box>
         ))}
-        <p>{card.claim || card.summary}</p>
+        <Box component="p" mt={4} fz="sm">
+          {card.claim || card.summary}
+        </Box>
       </div>
       <ExpectationTable entries={card.expectations} verdict={card.verdict} />
-      <footer>
+      <Group component="footer" gap="4px 10px">
         <Verdict verdict={card.verdict} borneOut={card.ok === true} />
-        <span className={styles.ok} data-ok={card.ok}>
+        <Box component="span" fz="xs" c={card.ok === false ? "var(--alarm)" : "dimmed"}>
           {card.ok === null || card.expectations.length === 0
             ? ""
             : card.ok
               ? "measured as expected"
               : "other than expected"}
-        </span>
-        <div className={styles.buttons}>
+        </Box>
+        <Group gap={6} ml="auto" wrap="nowrap">
           {teaches && card.state === "done" && card.run && (
             <Button
               component="a"
@@ -127,8 +130,8 @@ export function GalleryEntry({ card, isMaking, onChanged, onSight }: GalleryEntr
               Live
             </Button>
           )}
-        </div>
-      </footer>
-    </li>
+        </Group>
+      </Group>
+    </Box>
   );
 }

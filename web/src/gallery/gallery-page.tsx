@@ -1,4 +1,4 @@
-import { Button, Progress } from "@mantine/core";
+import { Button, Group, Progress } from "@mantine/core";
 import { IconFolderOpen } from "@tabler/icons-react";
 import { useCallback, useMemo, useRef, useState } from "react";
 import { api } from "../api/api";
@@ -6,6 +6,7 @@ import { useMay } from "../api/me";
 import { useAnswer } from "../api/queries";
 import { PageHead } from "../bench/page-head";
 import { setPage, useView } from "../bench/view-store";
+import { isActive } from "../runs/jobs";
 import { EmptyState } from "../ui/empty-state";
 import { formatCount, formatNumber } from "../ui/format";
 import { Stale } from "../ui/stale";
@@ -19,15 +20,14 @@ const BUSY_MS = 700;
 const CALM_MS = 15_000;
 /** Most cards that are named as in sight, in the order in which they came. */
 const MOST_FIRST = 64;
-const isUnderWay = (state: string) => state === "queued" || state === "running";
 
-/** Every experiment of the library: what is claimed, what was measured, and whether that agrees. */
+/** Every experiment of the library: its claim, the measured values, and whether they agree. */
 export function GalleryPage() {
   const inSight = useRef(new Set<string>());
   const { value, error, since, again } = useAnswer(
     ["gallery"],
     () => api.gallery([...inSight.current].slice(0, MOST_FIRST)),
-    (now) => (now?.figures.is_making || now?.cards.some((card) => isUnderWay(card.state)) ? BUSY_MS : CALM_MS),
+    (now) => (now?.figures.is_making || now?.cards.some((card) => isActive(card.state)) ? BUSY_MS : CALM_MS),
   );
   const onSight = useCallback((id: string, isShown: boolean) => {
     inSight.current[isShown ? "add" : "delete"](id);
@@ -40,15 +40,15 @@ export function GalleryPage() {
   const figures = value?.figures;
   const one = all?.find(({ id }) => id === item);
   const cards = useMemo(() => (one ? [one] : item ? [] : chosen(all ?? [], filter)), [all, filter, item, one]);
-  const busy = all?.filter((card) => isUnderWay(card.state)).length ?? 0;
+  const busy = all?.filter((card) => isActive(card.state)).length ?? 0;
   const showAll = () => {
     setFilter(EVERYTHING);
     setPage("gallery");
   };
 
   return (
-    <main className={`column ${styles.page}`}>
-      <header className={`row ${styles.top}`}>
+    <main className="paper">
+      <header className="card page-top">
         <PageHead name="Gallery" item={one?.title} />
         {item ? (
           <Button size="xs" onClick={() => setPage("gallery")}>
@@ -75,7 +75,7 @@ export function GalleryPage() {
           </Button>
         )}
         {figures?.is_making && (
-          <div className={`line ${styles.making}`}>
+          <Group className="note" gap={8}>
             Figures: {formatNumber(figures.made, 0)} of {formatNumber(figures.total, 0)}
             <Progress
               value={(100 * figures.made) / figures.total}
@@ -83,7 +83,7 @@ export function GalleryPage() {
               w={120}
               aria-label="Figures that have been made"
             />
-          </div>
+          </Group>
         )}
         {figures?.problem && (
           <p className="wrong" role="status">

@@ -2,7 +2,7 @@ import type { GalleryCard } from "../api/types";
 import { formatFigure } from "../ui/format";
 import { metricScale } from "../ui/metric-name";
 
-export interface Headline {
+interface Headline {
   metric: string;
   figure: string;
   ours: string;

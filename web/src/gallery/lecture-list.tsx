@@ -1,28 +1,27 @@
-import { Button } from "@mantine/core";
+import { Box, Button, Group, Stack } from "@mantine/core";
 import { IconPlayerPlay } from "@tabler/icons-react";
 import { lectures } from "../api/lectures";
 import { useAsked } from "../api/queries";
 import { notesOf, startLecture } from "../bench/lecture";
 import { formatCount, formatShort } from "../ui/format";
-import styles from "./gallery.module.css";
 
 /** The lectures: scripts of some minutes that go from experiment to experiment, with notes for the speaker. */
 export function LectureList() {
   const { answer: value } = useAsked(["lectures"], lectures.all);
   if (!value?.length) return null;
   return (
-    <details className={styles.lectures}>
+    <Box component="details" className="card" flex="none" mah="45vh" p="8px 12px" style={{ overflowY: "auto" }}>
       <summary>
         {formatCount(value.length, "lecture")} with notes for the speaker, chapters {value[0].chapter} to{" "}
         {value.at(-1)?.chapter}
       </summary>
-      <ul aria-label="Lectures">
+      <Stack component="ul" gap={10} m="10px 0 4px" aria-label="Lectures">
         {value.map(({ id, title, summary, minutes, cues }) => (
-          <li key={id}>
-            <div>
+          <Group component="li" key={id} gap="4px 12px">
+            <Box flex="1 1 300px">
               <h2>{title}</h2>
-              <p>{summary}</p>
-            </div>
+              <p className="note">{summary}</p>
+            </Box>
             <Button
               variant="filled"
               leftSection={<IconPlayerPlay size={15} />}
@@ -41,9 +40,9 @@ export function LectureList() {
               Notes
             </Button>
             <small>{formatCount(cues, "cue")}</small>
-          </li>
+          </Group>
         ))}
-      </ul>
-    </details>
+      </Stack>
+    </Box>
   );
 }

@@ -1,7 +1,7 @@
 import { labelsOn, tickLabels } from "../ui/format";
 import { CANVAS, fontFor } from "../ui/palette";
 import { linearTicks, powerTicks } from "../ui/ticks";
-import { timeLabels, timeSplits, timeUnit } from "../ui/time-axis";
+import { timeLabels, timeUnit } from "../ui/time-axis";
 import type { UnitScale } from "../ui/unit-scale";
 import type { Box, Field, Look, Pen } from "./pen";
 import { type TickedRange, ticksOf } from "./ticked-range";
@@ -9,13 +9,13 @@ import { type TickedRange, ticksOf } from "./ticked-range";
 export type Range = readonly [number, number];
 export type Place = (value: number) => number;
 
-/** One axis of a plot: its ends, its ticks and what is written at them. */
+/** One axis of a plot: its ends, its ticks and their labels. */
 export interface Axis {
   range: Range;
   isLog?: boolean;
-  /** Along the axis, with the unit; none where it stands elsewhere. */
+  /** Along the axis, with the unit; undefined where it is written elsewhere. */
   title?: string;
-  /** Where the title does not stand: the unit of the numbers, at their foot. */
+  /** Without a title: the unit of the numbers, at their foot. */
   unit?: string;
   /** About so many. */
   ticks(count: number): readonly number[];
@@ -23,7 +23,7 @@ export interface Axis {
   say(ticks: readonly number[]): readonly string[];
 }
 
-/** Where a plot lies, and where its values do. */
+/** The field of a plot, and the places of its values. */
 export interface Plot {
   field: Field;
   x: Place;
@@ -39,7 +39,7 @@ export function linearAxis(range: Range, title?: string, scale?: Pick<UnitScale,
     ticks(count) {
       const [low, high] = this.range.map((end) => end * factor);
       const ticks = linearTicks(low, high, Math.max(2, count));
-      // one number alone is no scale; of 5 asked for, two are there wherever the range lies
+      // one number alone is no scale; a request for 5 gives at least two in any range
       return (ticks.length > 1 ? ticks : linearTicks(low, high, 5)).map((t) => t / factor);
     },
     say: scale ? (ticks) => labelsOn(scale, ticks) : tickLabels,
@@ -62,14 +62,14 @@ export function logAxis(
   return { range, isLog: true, title, ticks: () => ticks, say: (shown) => shown.map(write) };
 }
 
-/** An axis of device time over ticks, whose zero may lie elsewhere than at tick 0. */
+/** An axis of device time over ticks; its zero may differ from tick 0. */
 export function timeAxis({ start, end }: { start: number; end: number }, dtMs: number, origin = 0): Axis {
   const span = (end - start) * dtMs;
   const first = (start - origin) * dtMs;
   return {
     range: [start, end],
     unit: timeUnit(span).unit,
-    ticks: (count) => timeSplits(first, first + span, Math.max(2, count)).map((ms) => ms / dtMs + origin),
+    ticks: (count) => linearTicks(first, first + span, Math.max(2, count)).map((ms) => ms / dtMs + origin),
     say: (ticks) =>
       timeLabels(
         ticks.map((tick) => (tick - origin) * dtMs),
@@ -78,7 +78,7 @@ export function timeAxis({ start, end }: { start: number; end: number }, dtMs: n
   };
 }
 
-/** Where the values of an axis lie between two pixels. */
+/** The places of the values of an axis between two pixels. */
 export function placeOn({ range: [low, high], isLog }: Pick<Axis, "range" | "isLog">, from: number, to: number): Place {
   if (!isLog) return (value) => from + ((value - low) / (high - low)) * (to - from);
   const decades = Math.log(high / low);
@@ -96,11 +96,11 @@ interface AxesOptions {
   isSquare?: boolean;
   /** One unit across is as long as one unit up: the axis with more room reaches further. */
   isAlike?: boolean;
-  /** Room for the numbers of the upright axis, px, where several plots stand under one another. */
+  /** Room for the numbers of the upright axis, px, if several plots share one column. */
   gutter?: number;
 }
 
-/** An axis across and one up, with grid, numbers and titles; what they enclose is free. */
+/** Two axes with grid, numbers and titles; the field between them stays empty. */
 export function paintAxes(pen: Pen, box: Box, across: Axis, up: Axis, look: Look, options: AxesOptions = {}): Plot {
   let [x, y] = [across, up];
   const { fontSize } = look;
@@ -143,7 +143,7 @@ function titleIn(pen: Pen, title: string, room: number): string {
   return pen.measureText(title).width > room ? (title.split(", ").at(-1) ?? title) : title;
 }
 
-/** How many numbers stand well above one another. */
+/** How many numbers fit above one another. */
 const rowCount = (tall: number, fontSize: number) => Math.min(8, tall / (fontSize * 1.9));
 
 const lengthOf = ({ range: [low, high] }: Axis) => high - low;
@@ -157,7 +157,7 @@ function about(axis: Axis, length: number): Axis {
 /**
  * The grid and the numbers of an axis across, under a field; a number without room is left out.
  *
- * The room ends where others stand, or where the picture does.
+ * The room ends at other text or at the edge of the picture.
  */
 export function paintColumns(
   pen: Pen,
@@ -194,7 +194,7 @@ export function paintColumns(
   pen.fillText(axis.unit, left - fontSize * 2.2, middle);
 }
 
-/** The numbers of an upright axis beside a field, and its grid where they stand on the left. */
+/** The numbers of an upright axis beside a field, and its grid if the numbers are on the left. */
 export function paintRows(pen: Pen, field: Field, axis: Axis, look: Look, rightOf?: number): void {
   const { fontSize } = look;
   const ink = CANVAS[look.scheme];
@@ -218,7 +218,7 @@ export function paintRows(pen: Pen, field: Field, axis: Axis, look: Look, rightO
   });
 }
 
-/** The two lines that everything stands on. */
+/** The two lines of the axes. */
 export function paintFrame(pen: Pen, { left, right, top, bottom }: Field, { scheme }: Look): void {
   pen.fillStyle = CANVAS[scheme].axis;
   pen.fillRect(Math.round(left), top, 1, bottom - top);

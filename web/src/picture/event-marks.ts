@@ -9,7 +9,7 @@ import { placeOn } from "./axes";
 import type { Box, Field, Look, Pen } from "./pen";
 import { paintRule } from "./traces";
 
-/** An axis of device time and what happened along it. */
+/** An axis of device time with its events. */
 export interface EventAxis {
   /** Ticks shown. */
   span: { start: number; end: number };
@@ -18,11 +18,11 @@ export interface EventAxis {
   origin?: number;
   isTriggered?: boolean;
   marks: Marks;
-  /** Where the axis lies in a plot of a size. */
+  /** The field of the axis in a plot of a size. */
   field(box: Box, look: Look): Field;
 }
 
-/** The axis of a frame of device time, with what has happened on the bench. */
+/** The axis of a frame of device time, with the events of the bench. */
 export const eventAxis = (
   { frame, span }: { frame: PanelFrame; span: { start: number; end: number } },
   fieldOf: (box: Box, look: Look) => Field,
@@ -71,7 +71,7 @@ export function markEvents(
     const at = x(event.tick);
     const tone = eventTone(event);
     const colour = tone === "alarm" ? ink.alarm : tone === "found" ? ink.accent : ink.event;
-    // what it crosses stays readable
+    // the text below it stays readable
     const line = { colour, width: 1, alpha: 0.75, dashes: tone === "alarm" ? [] : [4, 3] };
     paintRule(pen, [Math.round(at) + 0.5, top], [Math.round(at) + 0.5, bottom], line);
     const last = labels.at(-1);

@@ -1,3 +1,4 @@
+import { Group, Box as Place } from "@mantine/core";
 import { type ReactNode, useState } from "react";
 import type { Scheme } from "../ui/palette";
 import { useScheme } from "../ui/use-canvas";
@@ -11,12 +12,12 @@ import { PictureMenu } from "./picture-menu";
 
 interface FigureProps<Shown> {
   title: string;
-  /** What is seen, for who does not see it. */
+  /** The picture in words, for screen readers. */
   label: string;
   /** Of the plot, px. */
   height: number;
   paint(pen: Pen, box: Box, look: Look): Shown;
-  /** What the pointer reads at a place, px. */
+  /** The reading at a place, px. */
   read(at: { x: number; y: number }, shown: Shown): string | undefined;
   legend?(scheme: Scheme): LegendEntry[];
   children?: ReactNode;
@@ -29,11 +30,13 @@ export function Figure<Shown>({ title, label, height, paint, read, legend, child
   const take = () => ({ title, stem: fileStem(title), height: 1.5 * height, legend: legend?.("light"), paint });
   return (
     <figure className={`column ${styles.figure}`}>
-      <figcaption>
+      <Group component="figcaption" gap={12} wrap="nowrap" align="start" fz="sm" fw={600}>
         {title}
-        <output>{text}</output>
+        <Place component="output" className="cut" flex={1} c="dimmed" fw={450} ta="right">
+          {text}
+        </Place>
         <PictureMenu name={title} take={take} />
-      </figcaption>
+      </Group>
       <div style={{ height }}>
         <Painted label={label} paint={paint} onPoint={(at, shown) => setText(at && read(at, shown))} />
       </div>

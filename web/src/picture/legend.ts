@@ -7,7 +7,7 @@ export interface LegendEntry {
   colour: string;
   /** Of a line; px. */
   dashes?: readonly number[];
-  /** What stands before the name, unless a line. */
+  /** The mark before the name, if it is not a line. */
   mark?: "dot" | "cross" | "field";
 }
 

@@ -5,7 +5,7 @@ import type { Box, Look, Pen } from "./pen";
 
 interface LineChartProps extends LinesShown {
   title: string;
-  /** What a point says; its two numbers where nothing better is known. */
+  /** The words of a point; its two numbers by default. */
   say?(line: number, point: number): string;
 }
 

@@ -53,7 +53,7 @@ interface LiveCanvasProps {
   subscription: Subscription | undefined;
   /** Take the newest frame. */
   hear(frame: PanelFrame): void;
-  /** Paint the newest frame; with `tells` the words beside it may change now. */
+  /** Paint the newest frame; with `tells` the words next to it may change now. */
   paint: LivePaint;
   /** Painted at most so often, ms. */
   everyMs?: number;

@@ -73,7 +73,7 @@ function spanOf(values: readonly number[]): Range {
 
 const REACH_PX = 40;
 
-/** What the point nearest to a place says, px. */
+/** The words of the point nearest to a place, px. */
 export function nearestPoint(
   lines: readonly ChartLine[],
   plot: Plot,

@@ -7,15 +7,15 @@ import type { Box, Look, Pen } from "./pen";
 const LEAST_PX = 60;
 
 interface PaintedProps<Shown> {
-  /** What is seen, for who does not see it. */
+  /** The picture in words, for screen readers. */
   label: string;
-  /** Says where things lie, for the pointer; a new function paints anew. */
+  /** Returns the places of things for the pointer; a new function repaints. */
   paint(pen: Pen, box: Box, look: Look): Shown;
   /** Where the pointer is, px, or that it has left. */
   onPoint?(at: { x: number; y: number } | undefined, shown: Shown): void;
 }
 
-/** What a painter paints, as large as its place: in the colours and letters of the page, as sharp as the screen. */
+/** A canvas for a painter, as large as its place: in the colours and letters of the page, as sharp as the screen. */
 export function Painted<Shown>({ label, paint, onPoint }: PaintedProps<Shown>) {
   const scheme = useScheme();
   const fontSize = useView((s) => s.fontPx);

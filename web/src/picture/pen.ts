@@ -1,7 +1,7 @@
 import type { Scheme } from "../ui/palette";
 
 /**
- * What a painter may use of a canvas: as much as can also be written down as SVG.
+ * The part of a canvas that a painter may use: all of it can also be written as SVG.
  *
  * A painter that takes a `Pen` draws on the screen and into a file by the same lines.
  */
@@ -33,13 +33,13 @@ export interface Pen {
   measureText(text: string): { width: number };
 }
 
-/** The size of what is painted, px. */
+/** The size of a painting, px. */
 export interface Box {
   width: number;
   height: number;
 }
 
-/** Where something lies in what is painted, px. */
+/** A rectangle in a painting, px. */
 export interface Field {
   left: number;
   right: number;

@@ -4,18 +4,18 @@ import type { ReactNode } from "react";
 import { pngOf, saveFile } from "../ui/save-file";
 import { type Picture, pictureSvg } from "./picture";
 
-/** What is shown now; nothing before anything is. */
+/** The present picture; undefined before the first. */
 export type TakePicture = () => Picture | undefined;
 
 interface PictureMenuProps {
   take: TakePicture;
-  /** What is exported, where there are several. */
+  /** The name of the picture, if there are several. */
   name?: string;
   /** More that can be kept, below the picture. */
   children?: ReactNode;
 }
 
-/** Keep what a panel shows as a picture with titled axes and events. */
+/** Save the contents of a panel as a picture with titled axes and events. */
 export function PictureMenu({ take, name, children }: PictureMenuProps) {
   const keep = async (kind: "png" | "svg") => {
     const picture = take();

@@ -5,7 +5,7 @@ import { type LegendEntry, paintLegend } from "./legend";
 import { type Box, type Look, PAPER, type Pen } from "./pen";
 import { SvgPen } from "./svg-pen";
 
-/** What a panel shows, to be kept as a file: its own painter, in light colours, and what stands around it. */
+/** A picture of a panel for a file: its own painter, in light colours, with title, legend and axes. */
 export interface Picture {
   /** The file's name, without its ending. */
   stem: string;

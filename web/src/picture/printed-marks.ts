@@ -11,13 +11,13 @@ const LINE = { width: 1.8, dashes: [10, 4, 2, 4] };
 interface MarkedPlot {
   /** Ticks shown. */
   span: { start: number; end: number };
-  /** Where the values of a signal lie; nothing where it has no axis. */
+  /** The places of the values of a signal; undefined without an axis. */
   placeOf(signal: string): Place | undefined;
   colourOf(signal: string): string;
 }
 
 /**
- * What is printed of a figure, under the traces: a hatched band, dashed lines at values, an upright line at a moment,
+ * The printed marks of a figure, under the traces: a hatched band, dashed lines at values, an upright line at a moment,
  * each with its number as printed.
  */
 export function paintPrinted(
@@ -94,10 +94,10 @@ export function paintPrinted(
 
 const overlap = (a: Field, b: Field) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
 
-/** Beyond so many times what the traces span, an axis does not reach for a mark. */
+/** An axis extends to a mark by at most so many times the range of the traces. */
 const REACH = 1.5;
 
-/** The ends of what the traces of a unit span, and of the marks in sight that are not far from them. */
+/** The range of the traces of a unit, extended to the visible marks near them. */
 export function reachMarks(
   [low, high]: readonly [number, number],
   marks: readonly PrintedMark[],

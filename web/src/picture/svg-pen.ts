@@ -17,7 +17,7 @@ const STATE = [
 const n = (value: number) => String(Math.round(value * 100) / 100);
 const allFinite = (...values: number[]) => values.every(Number.isFinite);
 
-/** A pen that writes SVG. Like a canvas it passes over what has no place. */
+/** A pen that writes SVG. Like a canvas it skips calls with coordinates that are not finite. */
 export class SvgPen implements Pen {
   fillStyle: Pen["fillStyle"] = "#000000";
   strokeStyle: Pen["strokeStyle"] = "#000000";
@@ -158,7 +158,7 @@ export function svgColour(css: string): { colour: string; opacity: number } {
 }
 
 /** The attributes of a fill or a stroke. */
-export function svgPaint(kind: "fill" | "stroke", css: string, alpha = 1): string {
+function svgPaint(kind: "fill" | "stroke", css: string, alpha = 1): string {
   const { colour, opacity } = svgColour(css);
   const seen = Math.round(opacity * alpha * 1000) / 1000;
   return `${kind}="${colour}"${seen < 1 ? ` ${kind}-opacity="${seen}"` : ""}`;

@@ -2,7 +2,7 @@ import type { Pen } from "./pen";
 
 export const FAMILY = "IBM Plex Sans, system-ui, sans-serif";
 
-/** How far a line of text stands below its point, in sizes of the font: programs disagree on baselines by name. */
+/** The distance of a line of text below its point, in sizes of the font: programs disagree on named baselines. */
 const DROP: Record<CanvasTextBaseline, number> = {
   top: 0.85,
   hanging: 0.75,
@@ -54,7 +54,7 @@ export function svgText(
 
 let ruler: CanvasRenderingContext2D | null | undefined;
 
-/** Width of a line of text, px; without a canvas, that of letters of a usual width. */
+/** Width of a line of text, px; without a canvas, an estimate from the usual width of a letter. */
 export function textWidth(text: string, size: number, weight: number, family: string): number {
   if (ruler === undefined) ruler = document.createElement("canvas").getContext("2d") ?? null;
   if (!ruler) return 0.55 * size * text.length;

@@ -1,7 +1,7 @@
 import type { Place, Plot } from "./axes";
 import type { Field, Pen } from "./pen";
 
-export interface Stroke {
+interface Stroke {
   colour: string;
   width?: number;
   dashes?: readonly number[];
@@ -53,7 +53,7 @@ export function paintRule(pen: Pen, from: readonly [number, number], to: readonl
   ink(pen, stroke);
 }
 
-/** What lies between two lines over the same points. */
+/** The area between two lines over the same points. */
 export function paintBand(
   pen: Pen,
   { x, y }: Pick<Plot, "x" | "y">,
@@ -94,7 +94,7 @@ export function paintCross(pen: Pen, x: number, y: number, stroke: Stroke): void
   ink(pen, stroke);
 }
 
-/** Points with bars for what they may be off by. */
+/** Points with error bars. */
 export function paintPoints(
   pen: Pen,
   plot: Pick<Plot, "x" | "y">,
@@ -157,7 +157,7 @@ function ink(pen: Pen, { colour, width = 2, dashes = [], alpha = 1 }: Stroke): v
 
 const STEP = 8;
 
-/** Fill a field with the diagonal hatch of a colour: a guess, as against the solid of what is known. */
+/** Fill a field with the diagonal hatch of a colour: hatched is a guess, solid is known. */
 export function fillHatched(pen: Pen, left: number, top: number, width: number, height: number, colour: string): void {
   pen.fillStyle = `${colour}40`;
   pen.fillRect(left, top, width, height);

@@ -1,4 +1,4 @@
-import { MultiSelect } from "@mantine/core";
+import { Box, MultiSelect, Stack } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../api/api";
 import { useAnswer, useLast } from "../api/queries";
@@ -12,7 +12,7 @@ import { CampaignFigures } from "./campaign-figures";
 import { DiagnosisCharts } from "./diagnosis-charts";
 import { DistributionChart } from "./distribution-chart";
 import { ReportButton, ScriptButton } from "./file-buttons";
-import { sweepName } from "./jobs";
+import { isActive, sweepName } from "./jobs";
 import { NameField } from "./name-field";
 import { PointsTable } from "./points-table";
 import styles from "./runs.module.css";
@@ -21,12 +21,11 @@ import { usePoints } from "./use-points";
 /** Runs from which their distribution is worth a plot. */
 const SOME_RUNS = 50;
 const MOST_SAID = 4;
-/** Columns of the table before anybody chooses. */
+/** The number of columns of the table at first. */
 const FIRST_COLUMNS = 4;
 
-/** A campaign: its picture, what each diagnoser said, and its points as a table. */
+/** A campaign: its picture, the verdicts of each diagnoser, and its points as a table. */
 export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChanged(): void }) {
-  const active = sweep.state === "queued" || sweep.state === "running";
   const { value, error, since, again, isPage, every, ...paging } = usePoints(sweep);
   const [columns, setColumns] = useState<string[] | undefined>(undefined);
   const [chosen, setChosen] = useState<{ figure?: string; across?: string }>({});
@@ -41,7 +40,7 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
   const shown = columns ?? picture?.figures.slice(0, FIRST_COLUMNS) ?? [];
 
   return (
-    <article className={`column ${styles.result}`}>
+    <Stack component="article" className={styles.result} gap={12}>
       <header>
         <h2>{sweepName(sweep)}</h2>
         <small>
@@ -57,7 +56,7 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
       <Stale error={error} since={since} onRetry={again} />
       {points.length === 0 ? (
         !error && (
-          <EmptyState title={active ? "No run is done yet" : "No result"}>
+          <EmptyState title={isActive(sweep.state) ? "No run is done yet" : "No result"}>
             The first results of a campaign appear here while it runs.
           </EmptyState>
         )
@@ -82,8 +81,10 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
             />
           )}
           <DiagnosisCharts points={points} words={value?.words ?? {}} />
-          <details className={styles.points} open={picture?.parts.length === 0}>
-            <summary>All points as a table</summary>
+          <details open={picture?.parts.length === 0}>
+            <Box component="summary" py={4} fz="sm" fw={600}>
+              All points as a table
+            </Box>
             <MultiSelect
               size="xs"
               label="Columns"
@@ -97,11 +98,11 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
           </details>
         </>
       )}
-    </article>
+    </Stack>
   );
 }
 
-/** What runs could not do, and what they warn of, each text once. */
+/** The errors and the warnings of the runs, each text once. */
 function Said({ points }: { points: PointTally[] }) {
   const errors = [...new Set(points.flatMap((point) => point.errors ?? []))].slice(0, MOST_SAID);
   const warnings = [...new Set(points.flatMap((point) => point.warnings ?? []))].slice(0, MOST_SAID);

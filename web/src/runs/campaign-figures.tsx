@@ -1,4 +1,4 @@
-import { Select } from "@mantine/core";
+import { Select, Stack } from "@mantine/core";
 import { useMemo } from "react";
 import type { CampaignPicture } from "../api/types";
 import { Figure } from "../picture/figure";
@@ -24,7 +24,7 @@ export function CampaignFigures({ picture, onChoose }: CampaignFiguresProps) {
     parts.flatMap(({ mean }) => mean),
   );
   return (
-    <section className={`column ${styles.diagnosis}`} aria-label="Figures">
+    <Stack component="section" gap={12} aria-label="Figures">
       <div className={`row ${styles.links}`}>
         <Select
           label="Figure"
@@ -45,7 +45,7 @@ export function CampaignFigures({ picture, onChoose }: CampaignFiguresProps) {
           />
         )}
       </div>
-      <div className={styles.charts}>
+      <div className="plots">
         {kind === "map" ? (
           parts.map((part) => <MapFigure key={JSON.stringify(part.labels)} {...{ picture, part, scale }} />)
         ) : kind === "rows" ? (
@@ -57,8 +57,8 @@ export function CampaignFigures({ picture, onChoose }: CampaignFiguresProps) {
           </>
         )}
       </div>
-      {left_out > 0 && <p className={styles.note}>{formatCount(left_out, "more combination")} in the table.</p>}
-    </section>
+      {left_out > 0 && <p className="note">{formatCount(left_out, "more combination")} in the table.</p>}
+    </Stack>
   );
 }
 

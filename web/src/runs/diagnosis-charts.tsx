@@ -1,4 +1,4 @@
-import { NativeSelect } from "@mantine/core";
+import { NativeSelect, Stack } from "@mantine/core";
 import { useState } from "react";
 import type { PointTally } from "../api/types";
 import { LineChart } from "../picture/line-chart";
@@ -10,7 +10,7 @@ import styles from "./runs.module.css";
 const MOST_LINES = 8;
 const UNIT: [number, number] = [0, 1];
 
-/** What a diagnoser said in all runs: operating characteristic and delays of the points, confusion of one. */
+/** The verdicts of a diagnoser in all runs: operating characteristic and delays of the points, confusion of one point. */
 export function DiagnosisCharts({ points, words }: { points: PointTally[]; words: Record<string, string> }) {
   const diagnosers = [...new Set(points.flatMap((point) => Object.keys(point.diagnosis ?? {})))];
   const [diagnoser, setDiagnoser] = useState<string | undefined>(undefined);
@@ -24,7 +24,7 @@ export function DiagnosisCharts({ points, words }: { points: PointTally[]; words
   const drawn = found.slice(0, MOST_LINES);
   const one = found[Math.min(at, found.length - 1)];
   return (
-    <section className={`column ${styles.diagnosis}`} aria-label="Diagnosis">
+    <Stack component="section" gap={12} aria-label="Diagnosis">
       <div className={`row ${styles.links}`}>
         <h3>Diagnosis</h3>
         {diagnosers.length > 1 && (
@@ -36,28 +36,20 @@ export function DiagnosisCharts({ points, words }: { points: PointTally[]; words
           />
         )}
         {found.length > MOST_LINES && (
-          <span className={styles.note}>
+          <span className="note">
             curves of the first {MOST_LINES} of {formatCount(found.length, "point")}
           </span>
         )}
       </div>
-      <div className={styles.charts}>
+      <div className="plots">
         <LineChart
           title="Receiver operating characteristic, sample by sample"
           xLabel="share of false alarms"
           yLabel="share of detections"
           xRange={UNIT}
           yRange={UNIT}
-          lines={drawn.flatMap(({ name, tally }) =>
-            tally.roc
-              ? [
-                  {
-                    name: `${name} (area ${formatShare(tally.roc.area)})`,
-                    x: tally.roc.false_alarm,
-                    y: tally.roc.detection,
-                  },
-                ]
-              : [],
+          lines={drawn.flatMap(({ name, tally: { roc } }) =>
+            roc ? [{ name: `${name} (area ${formatShare(roc.area)})`, x: roc.false_alarm, y: roc.detection }] : [],
           )}
         />
         <LineChart
@@ -77,14 +69,14 @@ export function DiagnosisCharts({ points, words }: { points: PointTally[]; words
           onChange={(e) => setAt(Number(e.currentTarget.value))}
         />
       )}
-      <div className={styles.wide}>
+      <div className="wide">
         <Confusion
           title={words[id] ?? id}
           names={one.tally.names.map((name) => words[name] ?? name)}
           counts={one.tally.confusion}
         />
       </div>
-      {one.tally.missed > 0 && <p className={styles.note}>{one.tally.missed} changes were never found.</p>}
-    </section>
+      {one.tally.missed > 0 && <p className="note">{one.tally.missed} changes were never found.</p>}
+    </Stack>
   );
 }

@@ -1,4 +1,4 @@
-import { NativeSelect } from "@mantine/core";
+import { NativeSelect, Box as Place, Stack } from "@mantine/core";
 import { useCallback, useMemo, useState } from "react";
 import { api } from "../api/api";
 import { useAnswer, useLast } from "../api/queries";
@@ -16,7 +16,7 @@ import styles from "./runs.module.css";
 
 interface DistributionChartProps {
   sweep: SweepRun;
-  /** What runs can be counted over. */
+  /** The quantities over which runs can be counted. */
   quantities: readonly string[];
   figures: readonly string[];
   /** The figure to begin with. */
@@ -33,17 +33,12 @@ export function DistributionChart({ sweep, quantities, figures, first, every }: 
   const [up, setUp] = useState<string | undefined>(undefined);
   const x = across ?? varied ?? figure;
   const y = up ?? (varied ? figure : "");
-  const {
-    value: answer,
-    error,
-    since,
-    again,
-  } = useAnswer(
+  const { value: newest, ...answer } = useAnswer(
     ["sweep distribution", sweep.id, sweep.state, x, y],
     () => api.sweepDistribution(sweep.id, { x, y: y || undefined }),
     () => every,
   );
-  const value = useLast(answer);
+  const value = useLast(newest);
   const shown = useMemo((): Shown | undefined => {
     if (!value) return undefined;
     const scale = (extent: typeof value.x) =>
@@ -55,7 +50,7 @@ export function DistributionChart({ sweep, quantities, figures, first, every }: 
     label: figures.includes(name) ? metricScale(name, []).title : labelScale(name, []).title,
   }));
   return (
-    <section className={`column ${styles.diagnosis}`} aria-label="Distribution of runs">
+    <Stack component="section" gap={12} aria-label="Distribution of runs">
       <h3>Distribution of runs</h3>
       <div className={`row ${styles.links}`}>
         <NativeSelect label="Across" value={x} data={names} onChange={(e) => setAcross(e.currentTarget.value)} />
@@ -66,9 +61,9 @@ export function DistributionChart({ sweep, quantities, figures, first, every }: 
           onChange={(e) => setUp(e.currentTarget.value)}
         />
       </div>
-      <Stale error={error} since={since} onRetry={again} />
+      <Stale error={answer.error} since={answer.since} onRetry={answer.again} />
       {shown && <Chart shown={shown} />}
-    </section>
+    </Stack>
   );
 }
 
@@ -86,19 +81,19 @@ function Chart({ shown }: { shown: Shown }) {
       read={(at, plot) => cellText(shown, plot, at)}
     >
       {y && !found.dots && <Scale most={mostIn(found)} />}
-      <p className={styles.note}>{formatCount(found.runs, "run")}. Point at the plot to read it.</p>
+      <p className="note">{formatCount(found.runs, "run")}. Point at the plot to read it.</p>
     </Figure>
   );
 }
 
-/** What each colour means. */
+/** The meaning of each colour. */
 function Scale({ most }: { most: number }) {
   const scheme = useScheme();
   const colours = [0, 0.25, 0.5, 0.75, 1].map((share) => rampColour(share, scheme));
   return (
     <p className="line remark">
       <span>runs in a cell: 1</span>
-      <span className={styles.ramp} style={{ background: `linear-gradient(to right, ${colours.join(", ")})` }} />
+      <Place component="span" w="min(220px, 40%)" h={10} bg={`linear-gradient(to right, ${colours.join(", ")})`} />
       <span>{most} (logarithmic)</span>
     </p>
   );

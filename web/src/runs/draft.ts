@@ -1,5 +1,5 @@
 import type { Document } from "../api/types";
-import { metricName, metricTitle } from "../ui/metric-name";
+import { metricTitle } from "../ui/metric-name";
 import { roundTo } from "../ui/unit-scale";
 
 /** A value at a dotted path of the scenario, as typed; one value or several. */
@@ -9,21 +9,21 @@ export interface Row {
 }
 
 /** Bounds of a value at a dotted path, as typed. */
-export interface RangeRow {
+interface RangeRow {
   path: string;
   min: string;
   max: string;
   log: boolean;
 }
 
-/** What is about to be started, as the form has it. */
+/** The run or campaign in the form, before its start. */
 export interface Draft {
   kind: "run" | "campaign";
   scenario: string;
   /** Name of the run or campaign; empty: its title. */
   label: string;
   set: Row[];
-  /** Keep the signals of blocks that only look on too. */
+  /** Keep the signals of unused blocks too. */
   all: boolean;
   firstSeed: number;
   /** 0 while the field is empty: one. */
@@ -101,7 +101,7 @@ const setOf = (rows: readonly Row[]) =>
 /** Seeds as they are counted everywhere: both ends included. */
 const spanOf = (first: number, count: number) => `${first}:${first + Math.max(1, count) - 1}`;
 
-/** What a run is asked for with. */
+/** The request for a run. */
 export function runOf(draft: Draft) {
   const { scenario, label, all, firstSeed, seeds } = draft;
   return { scenario, label, all, set: setOf(draft.set), seeds: spanOf(firstSeed, seeds) };
@@ -148,7 +148,7 @@ export function pathsOf(document: unknown, prefix = ""): string[] {
 /** A path in words: "sensor.noise_um" reads "noise, µm · sensor". */
 export function pathTitle(path: string): string {
   const [last = "", ...outer] = path.split(".").reverse();
-  const of = outer.reverse().map(metricName).join(" ");
+  const of = outer.reverse().join(" ").replaceAll("_", " ");
   return of ? `${metricTitle(last)} · ${of}` : metricTitle(last);
 }
 

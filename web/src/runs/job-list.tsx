@@ -1,4 +1,4 @@
-import { ActionIcon, Button, Checkbox, Progress } from "@mantine/core";
+import { ActionIcon, Button, Checkbox, Group, Progress } from "@mantine/core";
 import { IconArrowsDiff, IconPlayerStopFilled, IconTrash } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../api/api";
@@ -52,7 +52,7 @@ export function JobList({ jobs, chosen, onChoose, onChanged }: JobListProps) {
 
   return (
     <>
-      <div className={styles.tools}>
+      <Group gap={6} p="0 12px 8px" style={{ borderBottom: "1px solid var(--line)" }}>
         <Button
           leftSection={<IconArrowsDiff size={15} />}
           disabled={finished.length < 2 || finished.length > MOST_COMPARED}
@@ -69,7 +69,7 @@ export function JobList({ jobs, chosen, onChoose, onChanged }: JobListProps) {
         >
           {marks.length > 0 ? `Remove ${removable.length}` : "Remove all finished"}
         </Button>
-      </div>
+      </Group>
       <ul className={styles.list}>
         {jobs.map((job) => (
           <li key={keyOf(job)} data-chosen={job.id === chosen?.id}>
@@ -84,8 +84,8 @@ export function JobList({ jobs, chosen, onChoose, onChanged }: JobListProps) {
               aria-current={job.id === chosen?.id ? "true" : undefined}
               onClick={() => onChoose({ kind: job.kind, id: job.id })}
             >
-              <b>{job.title}</b>
-              <span>{job.about}</span>
+              <b className="cut">{job.title}</b>
+              <span className="cut">{job.about}</span>
               <span
                 className={styles.state}
                 data-state={job.state}

@@ -3,9 +3,9 @@ import { formatCount, formatNumber } from "../ui/format";
 
 interface Common {
   id: string;
-  /** Its name if somebody gave it one, else its title. */
+  /** Its given name, else its title. */
   title: string;
-  /** What it consists of, in a few words. */
+  /** Its contents, in a few words. */
   about: string;
   state: string;
   created: string;
@@ -18,15 +18,17 @@ export type Job = Common & ({ kind: "run"; run: Run } | { kind: "campaign"; swee
 
 export const isActive = (state: string) => state === "queued" || state === "running";
 
-/** What a run is called. */
+/** The name of a run. */
 export const runName = (run: Run): string => run.label || run.title || run.scenario_id;
 
-/** What a campaign is called. */
+/** The name of a campaign. */
 export const sweepName = (sweep: SweepRun): string => sweep.label || sweep.title || `Campaign ${sweep.name}`;
 
 /** The seeds of a run in words. */
 export const seedText = (run: Run): string =>
   run.seeds.length > 1 ? formatCount(run.seeds.length, "seed") : `seed ${run.seeds[0]}`;
+
+const commonOf = ({ id, state, created }: Run | SweepRun) => ({ id, state, created, isActive: isActive(state) });
 
 /** Runs and campaigns as one list, newest first. */
 export function jobsOf(runs: readonly Run[], sweeps: readonly SweepRun[]): Job[] {
@@ -35,32 +37,26 @@ export function jobsOf(runs: readonly Run[], sweeps: readonly SweepRun[]): Job[]
       (run): Job => ({
         kind: "run",
         run,
-        id: run.id,
+        ...commonOf(run),
         title: runName(run),
         about: `${run.scenario_id} · ${seedText(run)}`,
-        state: run.state,
-        created: run.created,
         progress: run.progress,
-        isActive: isActive(run.state),
       }),
     ),
     ...sweeps.map(
       (sweep): Job => ({
         kind: "campaign",
         sweep,
-        id: sweep.id,
+        ...commonOf(sweep),
         title: sweepName(sweep),
         about: `${sweep.name} · ${formatNumber(sweep.done ?? 0, 0)} of ${formatCount(sweep.runs, "run")}`,
-        state: sweep.state,
-        created: sweep.created,
         progress: sweep.runs ? (sweep.done ?? 0) / sweep.runs : 0,
-        isActive: isActive(sweep.state),
       }),
     ),
   ].sort((a, b) => Date.parse(b.created) - Date.parse(a.created));
 }
 
-/** How a job stands, in words. */
+/** The state of a job, in words. */
 export function stateText(job: Job): string {
   if (job.state !== "done" || job.kind === "campaign") return job.state;
   const summary = job.run.summary as { ok?: boolean; trip?: unknown; expectations?: unknown[] } | null;

@@ -6,7 +6,7 @@ const LONGEST = 120;
 
 interface NameFieldProps {
   label: string;
-  /** What it is called without a name of its own. */
+  /** The title shown without a name. */
   title: string;
   save(label: string): Promise<unknown>;
 }

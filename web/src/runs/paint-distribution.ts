@@ -6,14 +6,14 @@ import { formatCount, formatShort } from "../ui/format";
 import type { MetricScale } from "../ui/metric-name";
 import { rampColour, TRACE_COLOURS } from "../ui/palette";
 
-/** What is painted: runs over one quantity or two, and how these are shown. */
+/** The runs to paint, over one quantity or two, and the scales of these. */
 export interface Shown {
   found: Distribution;
   x: MetricScale;
   y: MetricScale | undefined;
 }
 
-/** Where a number of runs lies on the scale of colours, which is logarithmic. */
+/** The place of a number of runs on the logarithmic scale of colours. */
 export const shareOf = (count: number, most: number): number => (most > 1 ? Math.log(count) / Math.log(most) : 1);
 
 /** The most runs in one cell. */
@@ -69,7 +69,7 @@ function rangeText(scale: MetricScale, low: number, high: number): string {
   return `${scale.name} ${from} to ${to}${scale.unit && `\u00a0${scale.unit}`}`;
 }
 
-/** What stands under the pointer, in words. */
+/** The cell under the pointer, in words. */
 export function cellText({ found, x, y }: Shown, { field }: Plot, at: { x: number; y: number }): string | undefined {
   const column = Math.floor(((at.x - field.left) / (field.right - field.left)) * found.x.cells);
   const row = found.y ? Math.floor(((field.bottom - at.y) / (field.bottom - field.top)) * found.y.cells) : 0;

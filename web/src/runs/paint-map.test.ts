@@ -11,7 +11,7 @@ vi.spyOn(HTMLCanvasElement.prototype, "getContext").mockReturnValue(null);
 
 const BOX = { width: 500, height: 300 };
 const LOOK = { scheme: "light", fontSize: 12 } as const;
-/** A grid of three noises and two masses, of which one point has no result yet. */
+/** A grid of three noises and two masses; one point has no result yet. */
 const PICTURE: CampaignPicture = {
   kind: "map",
   figure: "control.rms_error_um",

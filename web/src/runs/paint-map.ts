@@ -8,7 +8,7 @@ import { labelScale, labelText } from "./points";
 export type Part = CampaignPicture["parts"][number];
 
 /** A figure over two numbers: the values of each, in their order, and the place of each point among them. */
-export interface MapShown {
+interface MapShown {
   part: Part;
   x: MetricScale;
   y: MetricScale;
@@ -72,7 +72,7 @@ export function pointAt({ part, columns, rows }: MapShown, { field }: Plot, at: 
   return found < 0 ? undefined : found;
 }
 
-/** An axis with a place of one width for each value, whatever lies between them. */
+/** An axis with equal places for all values. */
 function valueAxis(values: readonly number[], scale: MetricScale): Axis {
   return {
     range: [0, values.length],

@@ -6,7 +6,7 @@ import { CANVAS, TRACE_COLOURS } from "../ui/palette";
 export interface Rank {
   name: string;
   value: number;
-  /** Half of what it may be off by. */
+  /** Half the length of its error bar. */
   spread?: number;
 }
 
@@ -22,7 +22,7 @@ export interface RanksShown {
 /** Half the height of a bar, in rows. */
 const HALF = 0.28;
 
-/** Bars from zero over what is chance, or dots with what they may be off by. */
+/** Bars from zero over the range of chance, or dots with error bars. */
 export function paintRanks(pen: Pen, box: Box, { label, span, ranks, chance }: RanksShown, look: Look): Plot {
   const names: Axis = {
     range: [ranks.length, 0],

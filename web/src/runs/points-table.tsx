@@ -1,4 +1,4 @@
-import { Pagination } from "@mantine/core";
+import { Group, Pagination } from "@mantine/core";
 import type { PointTally } from "../api/types";
 import { formatNumber, formatSpread } from "../ui/format";
 import { metricScale } from "../ui/metric-name";
@@ -14,7 +14,7 @@ interface Column {
 }
 
 interface PointsTableProps {
-  /** All points, or those of a page in the order asked for. */
+  /** All points, or the points of a page in the chosen order. */
   points: PointTally[];
   metrics: string[];
   /** Points on all pages. */
@@ -60,7 +60,7 @@ export function PointsTable({ points, metrics, found, isPage, page, setPage, ord
     by && !isPage ? [...points].sort((a, b) => compare(by.of(a), by.of(b)) * (order?.down ? -1 : 1)) : points;
   return (
     <>
-      <div className={styles.wide}>
+      <div className="wide">
         <table className={`numbers ${styles.table}`}>
           <thead>
             <tr>
@@ -94,8 +94,8 @@ export function PointsTable({ points, metrics, found, isPage, page, setPage, ord
         </table>
       </div>
       {isPage && (
-        <div className={`row ${styles.pages}`}>
-          <p className={styles.note} role="status">
+        <Group justify="space-between" gap="8px 16px" pt={8}>
+          <p className="note" role="status">
             Points {formatNumber((page - 1) * PAGE + 1, 0)} to {formatNumber(Math.min(page * PAGE, found), 0)} of{" "}
             {formatNumber(found, 0)}
           </p>
@@ -107,7 +107,7 @@ export function PointsTable({ points, metrics, found, isPage, page, setPage, ord
             getItemProps={(number) => ({ "aria-label": `Page ${number}` })}
             getControlProps={(control) => ({ "aria-label": `${control} page` })}
           />
-        </div>
+        </Group>
       )}
     </>
   );

@@ -10,11 +10,11 @@ export const labelScale = (path: string, values: readonly (string | number | und
     values.filter((value) => typeof value === "number"),
   );
 
-/** A value a point differs by; a number cut to what can be told apart. */
+/** A value by which points differ; a number in the digits that distinguish it. */
 export const labelText = (value: string | number, shown = (number: number) => number) =>
   typeof value === "number" ? formatShort(shown(value), "") : value;
 
-/** What a point is called: the values it differs by. */
+/** The name of a point: the values by which it differs. */
 export function pointName(labels: PointTally["labels"]): string {
   const parts = Object.entries(labels).map(([path, value]) => {
     if (path === "variant") return labelText(value);
@@ -24,7 +24,7 @@ export function pointName(labels: PointTally["labels"]): string {
   return parts.join(", ") || "all runs";
 }
 
-/** The share of changes found within so many samples; what was never found keeps it below one. */
+/** The share of changes found within so many samples; missed changes keep it below 1. */
 export function delayLine(name: string, tally: DiagnosisTally): ChartLine {
   const entries = Object.entries(tally.delays)
     .map(([delay, count]) => [Number(delay), count] as const)

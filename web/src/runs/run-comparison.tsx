@@ -1,4 +1,4 @@
-import { Checkbox, Select } from "@mantine/core";
+import { Checkbox, Select, Stack } from "@mantine/core";
 import { useState } from "react";
 import { api } from "../api/api";
 import { useAnswer } from "../api/queries";
@@ -8,6 +8,7 @@ import { EmptyState } from "../ui/empty-state";
 import { formatBeside, formatCount, formatFigure } from "../ui/format";
 import { metricScale } from "../ui/metric-name";
 import { Stale } from "../ui/stale";
+import { TableHead } from "../ui/table-head";
 import { unitText } from "../ui/unit-scale";
 import { runName, seedText } from "./jobs";
 import styles from "./runs.module.css";
@@ -28,7 +29,7 @@ export function RunComparison({ ids }: { ids: string }) {
   const different = value.figures.filter((row) => row.differences.some((one) => one !== 0));
   const rows = onlyDifferent ? different : value.figures;
   return (
-    <article className={`column ${styles.result}`} aria-label="Comparison">
+    <Stack component="article" className={styles.result} gap={12} aria-label="Comparison">
       <h2>{formatCount(value.runs.length, "run")} side by side</h2>
       <Traces ids={ids} comparison={value} names={names} />
       <Checkbox
@@ -37,23 +38,15 @@ export function RunComparison({ ids }: { ids: string }) {
         onChange={(e) => setOnlyDifferent(e.currentTarget.checked)}
       />
       {/* biome-ignore lint/a11y/noNoninteractiveTabindex: a table that scrolls is reached by the keyboard */}
-      <section className={styles.wide} tabIndex={0} aria-label="Figures of the runs">
+      <section className="wide" tabIndex={0} aria-label="Figures of the runs">
         <table className={`numbers ${styles.table}`}>
-          <thead>
-            <tr>
-              <th scope="col">figure</th>
-              {names.map((name, i) => (
-                <th key={value.runs[i].id} scope="col">
-                  {name}
-                </th>
-              ))}
-              {names.slice(1).map((name, i) => (
-                <th key={value.runs[i + 1].id} scope="col">
-                  {names.length > 2 ? `${name}: difference` : "difference"}
-                </th>
-              ))}
-            </tr>
-          </thead>
+          <TableHead
+            names={[
+              "figure",
+              ...names,
+              ...names.slice(1).map((name) => (names.length > 2 ? `${name}: difference` : "difference")),
+            ]}
+          />
           <tbody>
             {rows.map(({ metric, values, differences }) => {
               const { title, shown } = metricScale(metric, values);
@@ -77,7 +70,7 @@ export function RunComparison({ ids }: { ids: string }) {
           </tbody>
         </table>
       </section>
-    </article>
+    </Stack>
   );
 }
 
@@ -89,7 +82,7 @@ function Traces({ ids, comparison, names }: { ids: string; comparison: Compariso
   const { value, error, since, again } = useAnswer(signal ? ["compare", ids, signal] : undefined, () =>
     api.compareTraces(ids.split(","), signal ?? ""),
   );
-  if (!signal) return <p className={styles.note}>One of them is a study, which leaves no trace.</p>;
+  if (!signal) return <p className="note">One of them is a study, which leaves no trace.</p>;
   return (
     <>
       <Select
@@ -102,7 +95,7 @@ function Traces({ ids, comparison, names }: { ids: string; comparison: Compariso
         onChange={(name) => name && setSignal(name)}
       />
       <Stale error={error} since={since} onRetry={again} />
-      <div className={styles.charts}>
+      <div className="plots">
         {value && (
           <LineChart
             title={value.signal}

@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button, Stack } from "@mantine/core";
 import { IconPlayerPlay } from "@tabler/icons-react";
 import { api } from "../api/api";
 import type { GalleryCard, Run } from "../api/types";
@@ -18,7 +18,7 @@ import styles from "./runs.module.css";
 
 const DIGITS = 6;
 
-/** What the summary of a run holds, as `combbench run --json` prints it. */
+/** The summary of a run, as `combbench run --json` prints it. */
 interface Summary {
   seed: number;
   seeds?: number[];
@@ -35,7 +35,7 @@ interface Summary {
   expectations: GalleryCard["expectations"];
 }
 
-/** One run: what was expected and measured, every figure, and the files it left. */
+/** One run: the expected and measured values, every figure, and its files. */
 export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
   const files = `./api/v1/runs/${run.id}`;
   const summary = run.summary as Summary | null;
@@ -55,7 +55,7 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
     }, showError);
   const hasTrace = summary.ticks > 0;
   return (
-    <article className={`column ${styles.result}`}>
+    <Stack component="article" className={styles.result} gap={12}>
       <header>
         <h2>{runName(run)}</h2>
         <small>
@@ -102,7 +102,7 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
       {summary.expectations.length > 0 && (
         <>
           <h3>Expectations</h3>
-          {summary.claim && <p className={styles.note}>Claim: {summary.claim}.</p>}
+          {summary.claim && <p className="note">Claim: {summary.claim}.</p>}
           <ExpectationTable entries={summary.expectations} verdict={summary.verdict} />
         </>
       )}
@@ -126,11 +126,16 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
         </tbody>
       </table>
       {summary.digest && (
-        <p className={styles.digest} title="SHA-256 over the trace: the same from page, command line and script">
+        <Box
+          component="p"
+          className="remark"
+          title="SHA-256 over the trace: the same from page, command line and script"
+          style={{ overflowWrap: "anywhere" }}
+        >
           digest {summary.digest}
-        </p>
+        </Box>
       )}
-    </article>
+    </Stack>
   );
 }
 

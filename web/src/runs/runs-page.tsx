@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Button, Stack } from "@mantine/core";
 import { useDebouncedValue } from "@mantine/hooks";
 import { useCallback, useEffect, useRef, useState } from "react";
 import { api } from "../api/api";
@@ -30,7 +30,7 @@ async function jobsLike(filter: RunFilter): Promise<Job[]> {
   return jobsOf(runs, sweeps);
 }
 
-/** Headless runs and campaigns: start them, watch them, read what they gave. */
+/** Headless runs and campaigns: start them, watch them, read their results. */
 export function RunsPage() {
   const [filter, setFilter] = useState(ALL);
   const [wanted] = useDebouncedValue(filter, PAUSE_MS);
@@ -47,7 +47,7 @@ export function RunsPage() {
   const isFiltered = Object.values(filter).some(Boolean);
   const job = value?.find((one) => one.id === chosen?.id);
   const detail = useRef<HTMLElement>(null);
-  // Where the result stands below the list it comes into view when it is chosen.
+  // A result below the list scrolls into view when it is chosen.
   useEffect(() => {
     if (chosen?.id) detail.current?.scrollIntoView({ block: "start" });
   }, [chosen?.id]);
@@ -59,16 +59,16 @@ export function RunsPage() {
     [choose, again],
   );
   return (
-    <div className={styles.page}>
-      <section className={styles.start} aria-label="Start a run">
+    <div className={`paper ${styles.page}`}>
+      <Stack component="section" className="card" gap={12} p={12} aria-label="Start a run">
         <PageHead
           name="Runs"
           item={chosen?.kind === "comparison" ? "Comparison" : job?.title}
           heading="Runs and campaigns"
         />
         <StartForm onStarted={started} />
-      </section>
-      <section className={styles.jobs} aria-label="Runs and campaigns">
+      </Stack>
+      <section className={`card ${styles.jobs}`} aria-label="Runs and campaigns">
         <Stale error={error} since={since} onRetry={again} />
         <JobFilter filter={filter} scenarios={scenarios} onChange={setFilter} />
         {value && value.length > 0 ? (
@@ -94,7 +94,7 @@ export function RunsPage() {
       </section>
       <section
         ref={detail}
-        className={`column ${styles.detail}`}
+        className={`column card ${styles.detail}`}
         data-chosen={chosen !== undefined}
         aria-label="Result"
       >

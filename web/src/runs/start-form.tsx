@@ -1,4 +1,14 @@
-import { Button, Checkbox, NumberInput, SegmentedControl, Select, TextInput } from "@mantine/core";
+import {
+  Button,
+  Checkbox,
+  Group,
+  NumberInput,
+  type NumberInputProps,
+  SegmentedControl,
+  Select,
+  Stack,
+  TextInput,
+} from "@mantine/core";
 import { IconPlayerTrackNext } from "@tabler/icons-react";
 import { useEffect, useMemo, useState } from "react";
 import { api } from "../api/api";
@@ -49,8 +59,9 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
   };
 
   return (
-    <form
-      className={`column ${styles.form}`}
+    <Stack
+      component="form"
+      gap={12}
       aria-label="Start"
       onSubmit={(event) => {
         event.preventDefault();
@@ -115,34 +126,26 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
             />
           )}
           {draft.vary === "hypercube" && <Hypercube draft={draft} paths={paths} set={set} />}
-          <NumberInput
-            allowDecimal={false}
+          <WholeNumber
             label="Random devices"
             description="0 = use the scenario's device. Needs a device with a drawing, such as lcr-350."
             min={0}
             max={100_000}
             value={draft.devices}
-            onChange={(n) => set({ devices: Number(n) || 0 })}
+            onChange={(devices) => set({ devices })}
           />
         </>
       )}
-      <div className={styles.pair}>
-        <NumberInput
-          allowDecimal={false}
-          label="First seed"
-          min={0}
-          value={draft.firstSeed}
-          onChange={(n) => set({ firstSeed: Number(n) || 0 })}
-        />
-        <NumberInput
-          allowDecimal={false}
+      <Group grow gap={12} align="flex-end">
+        <WholeNumber label="First seed" min={0} value={draft.firstSeed} onChange={(firstSeed) => set({ firstSeed })} />
+        <WholeNumber
           label="Seeds"
           min={1}
           max={isRun ? 200 : 100_000}
           value={draft.seeds || ""}
-          onChange={(n) => set({ seeds: Number(n) })}
+          onChange={(seeds) => set({ seeds })}
         />
-      </div>
+      </Group>
       {isRun && (
         <Checkbox
           label="Keep all signals"
@@ -162,11 +165,11 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
           ? `Run ${draft.seeds > 1 ? formatCount(draft.seeds, "seed") : ""}`
           : `Start ${formatCount(total, "run")}`}
       </Button>
-      <p className={styles.note}>
+      <p className="note">
         {!isRun && `${formatCount(points, "point")} with ${formatCount(seeds, "seed")} each. `}
         Runs work in the background, after the live benches. Runs whose results are stored are not repeated.
       </p>
-    </form>
+    </Stack>
   );
 }
 
@@ -203,23 +206,26 @@ function Hypercube({ draft, paths, set }: { draft: Draft; paths: string[]; set(p
           </span>
         )}
       />
-      <div className={styles.pair}>
-        <NumberInput
-          allowDecimal={false}
+      <Group grow gap={12} align="flex-end">
+        <WholeNumber
           label="Points"
           min={1}
           max={100_000}
           value={draft.points || ""}
-          onChange={(n) => set({ points: Number(n) })}
+          onChange={(points) => set({ points })}
         />
-        <NumberInput
-          allowDecimal={false}
+        <WholeNumber
           label="Seed of the points"
           min={0}
           value={draft.hypercubeSeed}
-          onChange={(n) => set({ hypercubeSeed: Number(n) || 0 })}
+          onChange={(hypercubeSeed) => set({ hypercubeSeed })}
         />
-      </div>
+      </Group>
     </>
   );
+}
+
+/** A field for a whole number; an empty field is 0. */
+function WholeNumber({ onChange, ...field }: Omit<NumberInputProps, "onChange"> & { onChange(value: number): void }) {
+  return <NumberInput allowDecimal={false} {...field} onChange={(value) => onChange(Number(value) || 0)} />;
 }

@@ -2,6 +2,7 @@ import { useState } from "react";
 import { api } from "../api/api";
 import { type Answer, useAnswer, useLast } from "../api/queries";
 import type { PointQuery, SweepPoints, SweepRun } from "../api/types";
+import { isActive } from "./jobs";
 
 /** Points that the page has all at once; more are read page by page, in the order the server sorts them. */
 const MOST = 200;
@@ -9,10 +10,10 @@ const MOST = 200;
 export const PAGE = 50;
 
 const BUSY_MS = 2000;
-/** Until the first result is there. */
+/** Until the first result has arrived. */
 const FIRST_MS = 200;
 
-/** What a table of points is sorted by. */
+/** The sort order of a table of points. */
 export interface Order {
   id: string;
   down: boolean;
@@ -33,7 +34,7 @@ interface Points extends Omit<Answer<SweepPoints>, "value"> {
 
 /** The points of a campaign that have results: all of a small one, a page of a large one. */
 export function usePoints(sweep: SweepRun): Points {
-  const active = sweep.state === "queued" || sweep.state === "running";
+  const active = isActive(sweep.state);
   const [page, setPage] = useState(1);
   const [order, setOrder] = useState<Order | undefined>(undefined);
   const [found, setFound] = useState(0);

@@ -1,4 +1,4 @@
-import { ActionIcon, Autocomplete, Button, TextInput } from "@mantine/core";
+import { ActionIcon, Autocomplete, Box, Button, Stack, TextInput } from "@mantine/core";
 import { IconPlus, IconX } from "@tabler/icons-react";
 import type { ReactNode } from "react";
 import { EMPTY_ROW, pathTitle, type Row } from "./draft";
@@ -6,7 +6,7 @@ import styles from "./runs.module.css";
 
 interface ValueRowsProps {
   label: string;
-  /** What a second row says: how to add one. */
+  /** The words of the button that adds a row. */
   more: string;
   placeholder: string;
   rows: Row[];
@@ -51,8 +51,10 @@ export function PathRows<T extends { path: string }>(props: PathRowsProps<T>) {
   const { label, more, rows, paths, empty, onChange, entry } = props;
   const change = (at: number, row: T) => onChange(rows.map((old, i) => (i === at ? row : old)));
   return (
-    <fieldset className={`column ${styles.rows}`}>
-      <legend>{label}</legend>
+    <Stack component="fieldset" gap={4} align="flex-start">
+      <Box component="legend" pb={4} fz="xs" fw={500}>
+        {label}
+      </Box>
       {rows.map((row, at) => {
         const name = row.path || `${label} ${at + 1}`;
         return (
@@ -65,9 +67,11 @@ export function PathRows<T extends { path: string }>(props: PathRowsProps<T>) {
               limit={12}
               comboboxProps={{ width: 280, position: "bottom-start" }}
               renderOption={({ option }) => (
-                <span className={styles.path}>
+                <span>
                   {option.value}
-                  <small>{pathTitle(option.value)}</small>
+                  <Box component="small" display="block">
+                    {pathTitle(option.value)}
+                  </Box>
                 </span>
               )}
               value={row.path}
@@ -92,6 +96,6 @@ export function PathRows<T extends { path: string }>(props: PathRowsProps<T>) {
       >
         {more}
       </Button>
-    </fieldset>
+    </Stack>
   );
 }

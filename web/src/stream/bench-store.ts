@@ -19,20 +19,20 @@ export interface BenchStore {
   bench: Bench | undefined;
   scores: Record<string, Score>;
   events: LogEntry[];
-  /** What the narrator says of the present run. */
+  /** The sentences of the narrator about the present run. */
   narration: Narration;
   /** A hidden fault is to be found: the server serves little else, and panels that need more show one line. */
   blind: boolean;
-  /** How often the server has refused a bench behind the panels, as one that is gone. */
+  /** How often the server has refused a bench behind the traces because it is gone. */
   behindRefused: number;
   droppedFrames: number;
   /** The latest word of the server about this connection. */
   notice: { code: string; message: string } | undefined;
-  /** How often the server has told the page to ask what the person may do now. */
+  /** How often the server has called the page to ask for its rights again. */
   called: number;
 }
 
-/** What the page knows of the bench it shows. Written only by the stream; frames never pass through here. */
+/** The state of the bench on the page. Written only by the stream; frames never pass through here. */
 export const useBench = create<BenchStore>(() => ({
   connection: { phase: "idle", reason: undefined, retryAt: undefined, staleSince: undefined },
   bench: undefined,
@@ -48,7 +48,7 @@ export const useBench = create<BenchStore>(() => ({
 
 type BenchChanges = { [K in keyof Bench]?: Bench[K] | null };
 
-/** The bench with what a status says changed; unchanged parts keep their identity so little re-renders. */
+/** The bench with the changes of a status; unchanged parts keep their identity so little re-renders. */
 export function mergeStatus(bench: Bench, status: BenchChanges): Bench {
   const merged: Record<string, unknown> = { ...bench };
   let changed = false;

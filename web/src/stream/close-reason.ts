@@ -1,7 +1,7 @@
 export interface CloseReason {
   /** Whether trying again by itself can help. */
-  retry: boolean;
-  /** What the page can offer when it cannot help itself. */
+  retry?: boolean;
+  /** The offer of the page when it cannot reconnect by itself. */
   offer?: "bench" | "reload" | "login";
   /** Not worth a notice: the page reconnects, and its header says that it is slow. */
   quiet?: boolean;
@@ -11,36 +11,31 @@ export interface CloseReason {
 
 const REASONS: Record<number, CloseReason> = {
   4001: {
-    retry: false,
     offer: "reload",
     title: "The server speaks a newer version",
     advice: "Reload the page to get the matching one.",
   },
   4003: {
-    retry: false,
     title: "This address may not open the bench",
     advice: "Open the page at the address the server printed.",
   },
   4205: {
     retry: true,
     quiet: true,
-    title: "What may be seen of this bench has changed",
+    title: "The visible part of this bench has changed",
     advice: "Reconnecting.",
   },
   4401: {
-    retry: false,
     offer: "login",
     title: "You are not logged in",
     advice: "Open the address with the token that the server printed when it started.",
   },
   4403: {
-    retry: false,
     offer: "bench",
     title: "This bench is not yours",
     advice: "Another bench replaced it, or it belongs to another person.",
   },
   4404: {
-    retry: false,
     offer: "bench",
     title: "This bench was closed",
     advice: "It was closed, or the server was restarted: benches live as long as the server runs.",
@@ -62,7 +57,7 @@ const LOST: CloseReason = {
   advice: "The page reconnects by itself; the simulation keeps running.",
 };
 
-/** What a WebSocket close code means to the person at the page. */
+/** The meaning of a WebSocket close code for the person at the page. */
 export function closeReason(code: number): CloseReason {
   return REASONS[code] ?? LOST;
 }

@@ -21,7 +21,7 @@ export class DrawLoop {
       try {
         painter();
       } catch (error) {
-        // the others go on without it
+        // the others continue without it
         this.painters.delete(painter);
         reportError(error);
       }

@@ -1,7 +1,7 @@
 import { expect, it } from "vitest";
 import type { LogEntry } from "../api/types";
+import { logEntry } from "../testing/log-entry";
 import { appendEvent, currentEvents } from "./event-log";
-import { logEntry } from "./log-entry.fixture";
 
 const entry = (seq: number) => logEntry({ seq, tick: seq * 10 });
 

@@ -15,7 +15,7 @@ export function appendEvent(events: LogEntry[], event: LogEntry): LogEntry[] {
   return [...events.slice(0, at), event, ...events.slice(at)];
 }
 
-/** The events of the present run: a reset begins a new one, going back to a moment keeps those that led to it. */
+/** The events of the present run: a reset begins a new run, and a return to a moment keeps the events before it. */
 export function currentEvents(events: readonly LogEntry[]): LogEntry[] {
   const at = events.findLastIndex(({ kind }) => kind === "reset" || kind === "restored");
   if (at < 0) return [...events];

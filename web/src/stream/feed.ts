@@ -3,7 +3,7 @@ import { type CaptureList, type Subscription, tracesOf } from "./wire";
 
 const tracesIn = ({ signals, behind }: Subscription): string => JSON.stringify([signals, behind]);
 
-/** What one visible panel wants, and the newest picture it has been sent. */
+/** The subscription of one visible panel, and its newest picture. */
 export class Feed {
   readonly panel: number;
   readonly draw: (frame: PanelFrame) => void;
@@ -48,7 +48,7 @@ export class Feed {
     this.subscription = subscription;
   }
 
-  /** Draw the newest picture again: the panel has a new plot, and a bench that stands still sends no other. */
+  /** Draw the newest picture again: the panel has a new plot, and a paused bench sends no new picture. */
   redraw(): void {
     this.dirty = true;
     this.due = 0;

@@ -6,9 +6,9 @@ import type { CaptureList, ClientMessage, Subscription } from "./wire";
 const PANEL_IDS = 65535;
 
 /**
- * The panels that are visible now, what they subscribe to, and which frame they have drawn.
+ * The visible panels with their subscriptions and the frames they have drawn.
  *
- * `receive` only stores; `draw` paints what is new and acknowledges it, so the server never runs ahead.
+ * `receive` only stores; `draw` paints new frames and acknowledges them, so the server never runs ahead.
  */
 export class Feeds {
   private readonly feeds = new Map<number, Feed>();
@@ -77,7 +77,7 @@ export class Feeds {
     this.feeds.get(captures.panel)?.hear(captures);
   }
 
-  /** Draw what is new and due, and say what has arrived. Returns how many panels were drawn. */
+  /** Draw the feeds that are new and due, and acknowledge the arrived frames. Returns how many panels were drawn. */
   draw(): number {
     let drawn = 0;
     const now = performance.now();
@@ -96,12 +96,12 @@ export class Feeds {
     return drawn;
   }
 
-  /** Draw every picture again: the marks in it have changed, and a bench that stands still sends no other. */
+  /** Draw every picture again: the marks in it have changed, and a paused bench sends no new picture. */
   redraw(): void {
     for (const feed of this.feeds.values()) feed.redraw();
   }
 
-  /** Say what has arrived without drawing it: nobody looks, and the newest is kept for when somebody does. */
+  /** Acknowledge the arrived frames without drawing them: the page is hidden, and keeps the newest for later. */
   acknowledge(): void {
     if (this.received <= this.acknowledged) return;
     this.acknowledged = this.received;

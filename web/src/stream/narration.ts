@@ -3,7 +3,7 @@ import type { Sentence } from "../api/types";
 
 const KEEP = 2000;
 
-/** What the narrator says of the present run, and how many sentences before them the page has no more. */
+/** The sentences of the narrator about the present run, and the number of dropped sentences before them. */
 export interface Narration {
   before: number;
   sentences: Sentence[];
@@ -11,7 +11,7 @@ export interface Narration {
 
 export const NOTHING_SAID: Narration = { before: 0, sentences: [] };
 
-/** Add what the server says: the sentences behind a number; those the page had behind it are void. */
+/** Add the sentences of the server after a number; the page drops its own sentences after that number. */
 export function narrate(
   { before, sentences }: Narration,
   { after, sentences: said }: Pick<components["schemas"]["Narrated"], "after" | "sentences">,

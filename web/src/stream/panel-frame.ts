@@ -50,7 +50,7 @@ export function columnAt(frame: PanelFrame, signal: number, tick: number): numbe
   return Number.NaN;
 }
 
-/** Where each column lies, in ms, relative to `originTick`: the middle of the ticks it covers. */
+/** The place of each column, in ms, relative to `originTick`: the middle of the ticks it covers. */
 export function columnTimes(frame: PanelFrame, originTick: number): Float64Array {
   const per = (frame.endTick - frame.startTick) / frame.columns;
   const middle = Math.max(0, (per - 1) / 2);

@@ -1,6 +1,6 @@
 import type { Trigger } from "./wire";
 
-/** What a scope shows; kept with the layout. */
+/** The settings of a scope; stored with the layout. */
 export interface ScopeConfig {
   signals: string[];
   mode: "roll" | "triggered";
@@ -10,7 +10,7 @@ export interface ScopeConfig {
   log?: boolean;
   /** Whether cursors and figures are shown. */
   measure?: boolean;
-  /** Where cursors A and B stand, as shares of the width. */
+  /** The places of cursors A and B, as shares of the width. */
   cursors?: [number, number];
 }
 

@@ -25,7 +25,7 @@ export interface StreamHandlers {
   explain(): Promise<number | undefined>;
 }
 
-export interface Head {
+interface Head {
   tick: number;
   dtMs: number;
   running: boolean;
@@ -37,7 +37,7 @@ interface Pending {
   timer: ReturnType<typeof setTimeout>;
 }
 
-/** One page's connection to one bench: keeps itself alive, stores what arrives, sends what is wanted. */
+/** One page's connection to one bench: keeps itself alive, stores messages, sends commands and subscriptions. */
 export class StreamClient {
   readonly feeds = new Feeds((message) => this.send(message));
   head: Head = { tick: 0, dtMs: 0, running: false };
@@ -74,7 +74,7 @@ export class StreamClient {
     this.failReplies("The page left this bench.");
   }
 
-  /** Open another channel at once, whatever the present one waits for; one that is open stays. */
+  /** Open another channel at once, unless the present one is open. */
   retryNow(): void {
     if (this.isOpen || !this.bench) return;
     this.abandon();
@@ -160,7 +160,7 @@ export class StreamClient {
   }
 
   private receiveText(message: ServerMessage): void {
-    // At once, and by no timer: a page that is hidden still hears, and still drives.
+    // At once, and by no timer: a hidden page still receives and still drives.
     if (message.type === "ping") this.send({ type: "pong" });
     if (message.type === "reply") this.reply(message);
     if (message.type === "hello") this.attempt = 0;

@@ -8,7 +8,7 @@ import type { CaptureList, Subscription } from "./wire";
 /**
  * Stream to `draw` while the panel is visible; `draw` runs in the animation loop and must not set React state
  * per frame. With `everyMs` it runs no more often than that, and always on the newest picture in the end.
- * `hear` is told which captures its trigger has, when they have changed.
+ * `hear` receives the captures of the trigger when they have changed.
  */
 export function useFeed(
   subscription: Subscription | undefined,

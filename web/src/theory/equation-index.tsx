@@ -1,4 +1,4 @@
-import { Box, Switch, TextInput } from "@mantine/core";
+import { Box, Group, Switch, TextInput } from "@mantine/core";
 import { IconSearch } from "@tabler/icons-react";
 import { memo, useDeferredValue, useEffect, useMemo, useRef, useState } from "react";
 import { useCatalog } from "../api/use-catalog";
@@ -9,7 +9,7 @@ import { Formula } from "../ui/formula";
 import styles from "./equation-index.module.css";
 import { type Entry, entriesOf, found } from "./equations";
 
-/** Every equation that runs here, and what was printed where the two differ. */
+/** Every equation that runs here, and the printed one if the two differ. */
 export function EquationIndex() {
   const { blocks } = useCatalog();
   const asked = useView((s) => s.item);
@@ -24,17 +24,18 @@ export function EquationIndex() {
     if (isFilled && useView.getState().item) section.current?.scrollIntoView();
   }, [isFilled]);
   return (
-    <section ref={section} className={styles.index} aria-label="Equations">
-      <header className={`row ${styles.head}`}>
-        <div>
+    <section ref={section} className="card essay" aria-label="Equations">
+      <Group component="header" gap="8px 16px">
+        <Box flex="1 1 220px">
           <h2>Equations</h2>
-          <p role="status">
+          <Box component="p" c="dimmed" fz="sm" role="status">
             {errataOnly
               ? `${formatCount(listed.length, "equation")} with errata`
               : `${formatCount(listed.length, "equation")}, ${errata} of them with errata`}
-          </p>
-        </div>
+          </Box>
+        </Box>
         <TextInput
+          flex="0 1 320px"
           aria-label="Search equations"
           placeholder="Name, section or word: 5.2.4, gain, MRAC"
           leftSection={<IconSearch size={15} />}
@@ -47,7 +48,7 @@ export function EquationIndex() {
           checked={errataOnly}
           onChange={(e) => setErrataOnly(e.currentTarget.checked)}
         />
-      </header>
+      </Group>
       {isFilled && <Families families={families} />}
       {blocks.length > 0 && listed.length === 0 && (
         <Box component="p" c="dimmed">
@@ -62,8 +63,10 @@ export function EquationIndex() {
 function Families({ families }: { families: ReturnType<typeof found> }) {
   return useDeferredValue(families, families.slice(0, 1)).map((family) => (
     <section key={family.name} aria-label={family.name}>
-      <h3 className={styles.family}>{family.name}</h3>
-      <ul className={styles.list}>
+      <Box component="h3" m="16px 0 4px" c="dimmed" fz="sm" tt="capitalize">
+        {family.name}
+      </Box>
+      <ul>
         {family.entries.map((entry) => (
           <Row key={entry.blocks.join() + entry.equation.label + entry.equation.latex} entry={entry} />
         ))}

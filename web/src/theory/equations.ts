@@ -17,7 +17,7 @@ export interface Family {
 const wordsOf = (block: BlockCard, { label, source, why, printed, latex }: Equation) =>
   [block.title, block.name, block.family, label, source, why, printed, latex].join(" ").replaceAll("_", " ");
 
-/** Every equation of the catalogue, in its order; what several blocks of a family share stands once. */
+/** Every equation of the catalogue, in its order; an equation that blocks of a family share appears once. */
 export function entriesOf(blocks: readonly BlockCard[]): Entry[] {
   const entries = new Map<string, Entry>();
   for (const block of blocks)

@@ -1,4 +1,4 @@
-import { ActionIcon, Button } from "@mantine/core";
+import { ActionIcon, Box, Button } from "@mantine/core";
 import { IconPlus, IconX } from "@tabler/icons-react";
 import { useState } from "react";
 import { api } from "../api/api";
@@ -21,6 +21,10 @@ const PRESETS: { name: string; tones: Tone[] }[] = [
   { name: "Two tones", tones: [0.1, 0.4].map((frequency) => ({ amplitude: 10, frequency })) },
   { name: "Four tones", tones: [0.1, 0.4, 0.9, 1.6].map((frequency) => ({ amplitude: 10, frequency })) },
 ];
+const FIELDS = [
+  { key: "frequency", label: "Frequency", unit: "", minimum: 0, maximum: 1000 },
+  { key: "amplitude", label: "Amplitude", unit: "V", minimum: -1e6, maximum: 1e6 },
+] as const;
 const NAMES = ["least", "middle", "largest"];
 
 /** Whether an input tells the three parameters of a resonator apart. */
@@ -33,7 +37,7 @@ export function Excitation() {
     setTones(tones.map((tone, i) => (i === index ? { ...tone, ...part } : tone)));
   const largest = Math.max(...(answer?.eigenvalues ?? [1]));
   return (
-    <section className={styles.card} aria-label="Persistent excitation">
+    <section className="card essay" aria-label="Persistent excitation">
       <h2>Does the input excite enough?</h2>
       <Formula latex="\alpha_2 I\ge\int_t^{t+\delta}\varphi\varphi^T\,d\tau\ge\alpha_1 I>0,\quad\varphi=\tfrac1{(s+\lambda)^2}[u,-\dot y,-y]^T" />
       <div className={`row ${styles.examples}`}>
@@ -49,26 +53,16 @@ export function Excitation() {
           {tones.map((tone, i) => (
             // biome-ignore lint/suspicious/noArrayIndexKey: a tone is known by its place
             <tr key={i}>
-              <td>
-                <NumberField
-                  label={`Frequency of tone ${i + 1}`}
-                  unit=""
-                  value={tone.frequency}
-                  minimum={0}
-                  maximum={1000}
-                  onCommit={(frequency) => change(i, { frequency })}
-                />
-              </td>
-              <td>
-                <NumberField
-                  label={`Amplitude of tone ${i + 1}`}
-                  unit="V"
-                  value={tone.amplitude}
-                  minimum={-1e6}
-                  maximum={1e6}
-                  onCommit={(amplitude) => change(i, { amplitude })}
-                />
-              </td>
+              {FIELDS.map(({ key, label, ...limits }) => (
+                <td key={key}>
+                  <NumberField
+                    label={`${label} of tone ${i + 1}`}
+                    value={tone[key]}
+                    onCommit={(value) => change(i, { [key]: value })}
+                    {...limits}
+                  />
+                </td>
+              ))}
               <td>
                 <ActionIcon
                   size={26}
@@ -98,15 +92,15 @@ export function Excitation() {
         >
           Add a tone
         </Button>
-        <span className={styles.field}>
+        <span className="line note">
           damping a₁
           <NumberField label="Damping a1" unit="" value={a1} minimum={1e-6} maximum={100} onCommit={setA1} />
         </span>
       </div>
       {refusal && (
-        <p role="alert" className={styles.wrong}>
+        <Box component="p" role="alert" className="wrong" my={4}>
           {refusal.body.message}
-        </p>
+        </Box>
       )}
       {answer && (
         <div className={styles.answer} data-waiting={waiting || refusal !== undefined}>
@@ -129,7 +123,7 @@ export function Excitation() {
               ))}
             </tbody>
           </table>
-          <p className={styles.advice}>
+          <p className="note">
             Condition {answer.condition === null ? "infinite" : formatSi(answer.condition, "", 3)}; smallest, with every
             component at a unit mean square, {formatSi(answer.relative, "", 3)}.
           </p>

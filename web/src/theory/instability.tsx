@@ -1,10 +1,10 @@
-import { NativeSelect } from "@mantine/core";
+import { Box, NativeSelect } from "@mantine/core";
 import { useCallback, useState } from "react";
 import { api } from "../api/api";
 import { useAsked } from "../api/queries";
 import type { InstabilityMap, MapSource } from "../api/types";
 import { Painted } from "../picture/painted";
-import type { Box, Look, Pen } from "../picture/pen";
+import type { Look, Box as Paper, Pen } from "../picture/pen";
 import { PictureMenu } from "../picture/picture-menu";
 import { formatCount, formatNumber, formatPercent, formatShort, formatSi } from "../ui/format";
 import { Formula } from "../ui/formula";
@@ -52,9 +52,9 @@ export function Instability() {
   const { answer, refusal, waiting } = useAsked(["instability map", body], () => api.instabilityMap(body));
   const chosen = RULES.find((r) => r.value === rule) ?? RULES[0];
   return (
-    <section className={styles.card} aria-label="Instability map">
+    <section className="card essay" aria-label="Instability map">
       <h2>Where is the rule unstable?</h2>
-      <p className={styles.advice}>
+      <p className="note">
         One gain adapted on k/(s² + b₁s + 1) under a sine. In orange the error grows, in blue it decays. Each point
         shows how fast the worst solution grows, by Floquet's theorem.
       </p>
@@ -65,11 +65,11 @@ export function Instability() {
           data={RULES.map(({ value, label }) => ({ value, label }))}
           onChange={(e) => setRule(e.currentTarget.value as Rule)}
         />
-        <span className={styles.field}>
+        <span className="line note">
           damping b₁
           <NumberField label="Damping b1" unit="" value={b1} minimum={0.001} maximum={10} onCommit={setB1} />
         </span>
-        <span className={styles.field}>
+        <span className="line note">
           gains up to
           <NumberField
             label="Highest gain"
@@ -84,14 +84,14 @@ export function Instability() {
       </div>
       <Formula latex={chosen.latex} />
       {refusal && (
-        <p role="alert" className={styles.wrong}>
+        <Box component="p" role="alert" className="wrong" my={4}>
           {refusal.body.message}
-        </p>
+        </Box>
       )}
       {answer ? (
         <div className={styles.answer} data-waiting={waiting}>
           <MapPicture map={answer} name={chosen.label} />
-          <p className={styles.advice}>
+          <p className="note">
             {unstableShare(answer)} of the map is unstable.{" "}
             {answer.critical_gain_constant === null
               ? "Under a constant input the rule is stable at every gain of the map."
@@ -99,7 +99,7 @@ export function Instability() {
           </p>
         </div>
       ) : (
-        !refusal && <p className={styles.advice}>Working out {formatCount(CELLS * CELLS, "point")}.</p>
+        !refusal && <p className="note">Working out {formatCount(CELLS * CELLS, "point")}.</p>
       )}
     </section>
   );
@@ -107,23 +107,23 @@ export function Instability() {
 
 function MapPicture({ map, name }: { map: InstabilityMap; name: string }) {
   const [at, setAt] = useState<ReturnType<typeof cellAt>>(undefined);
-  const paint = useCallback((pen: Pen, box: Box, look: Look) => paintMap(pen, box, map, look), [map]);
+  const paint = useCallback((pen: Pen, box: Paper, look: Look) => paintMap(pen, box, map, look), [map]);
   return (
     <>
-      <div className={styles.map}>
+      <Box h={340} style={{ cursor: "crosshair" }}>
         <Painted
           label={`${name}: growth over frequency and gain; ${unstableShare(map)} unstable`}
           paint={paint}
           onPoint={(point, plot) => setAt(point && cellAt(map, plot, point))}
         />
-      </div>
-      <p className={styles.reading}>
+      </Box>
+      <Box component="p" mih="1.4em" mb={4} pl={44} fz="sm" fw={560}>
         {at
           ? `ω = ${formatNumber(at.frequency, 2)}, gain ${formatSi(at.gain, "", 3)}: ${
               at.growth > STILL ? `grows by e every ${formatSi(1 / at.growth, "", 3)}` : "settles"
             }`
           : "Point at the map to read it"}
-      </p>
+      </Box>
     </>
   );
 }

@@ -10,7 +10,7 @@ import { CANVAS } from "../ui/palette";
 const FIRST = 0.58;
 const forbidden = (alarm: string) => `${alarm}1c`;
 
-/** Re G(jw) over frequency; what lies below zero is marked. */
+/** Re G(jw) over frequency; the part below zero is marked. */
 export function paintOverFrequency(pen: Pen, box: Box, { frequency, real }: PositiveReal, look: Look): void {
   const points = pairs(frequency, real);
   const ends: Range = [Math.min(...points.x), Math.max(...points.x)];
@@ -75,7 +75,7 @@ function paintCurve(
   });
 }
 
-/** Points of which both numbers are known. */
+/** Points with both numbers known. */
 function pairs(x: readonly (number | null)[], y: readonly (number | null)[]): { x: number[]; y: number[] } {
   const known = x.flatMap((value, i) => {
     const other = y[i];

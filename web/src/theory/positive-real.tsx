@@ -1,10 +1,10 @@
-import { Button, TextInput } from "@mantine/core";
+import { Box, Button, Group, TextInput } from "@mantine/core";
 import { useMemo, useState } from "react";
 import { api } from "../api/api";
 import { useAsked } from "../api/queries";
 import type { PositiveReal as Found } from "../api/types";
 import { Painted } from "../picture/painted";
-import type { Box, Look, Pen } from "../picture/pen";
+import type { Look, Box as Paper, Pen } from "../picture/pen";
 import { PictureMenu } from "../picture/picture-menu";
 import { formatShort, formatSi } from "../ui/format";
 import { Formula } from "../ui/formula";
@@ -33,9 +33,9 @@ export function PositiveReal() {
     api.positiveReal(numerator, denominator),
   );
   return (
-    <section className={styles.card} aria-label="Positive real">
+    <section className="card essay" aria-label="Positive real">
       <h2>Is it positive real?</h2>
-      <p className={styles.advice}>
+      <p className="note">
         A transfer function in s. Lyapunov's rule is proved stable only where it is strictly positive real.
       </p>
       <TextInput
@@ -64,36 +64,23 @@ export function PositiveReal() {
                 : "Not positive real"}
           </p>
           {answer.reasons.length > 0 && (
-            <ul className={styles.reasons}>
+            <Box component="ul" mb={8} pl={18} fz="sm">
               {answer.reasons.map((reason) => (
                 <li key={reason}>{reason}</li>
               ))}
-            </ul>
+            </Box>
           )}
           <dl className={styles.facts}>
-            <div>
-              <dt>poles to the left</dt>
-              <dd>{answer.hurwitz ? "yes" : "no"}</dd>
-            </div>
-            <div>
-              <dt>zeros to the left</dt>
-              <dd>{answer.minimum_phase ? "yes" : "no"}</dd>
-            </div>
-            <div>
-              <dt>relative degree</dt>
-              <dd>{answer.relative_degree}</dd>
-            </div>
-            <div>
-              <dt>least Re G(jω)</dt>
-              <dd>
-                {answer.least_real === null ? "unbounded" : formatShort(answer.least_real, "")}
-                {answer.at === null ? " at infinity" : ` at ω = ${formatSi(answer.at, "")}`}
-              </dd>
-            </div>
+            {factsOf(answer).map(([name, fact]) => (
+              <div key={name}>
+                <dt>{name}</dt>
+                <dd>{fact}</dd>
+              </div>
+            ))}
           </dl>
-          <div className={styles.aside}>
+          <Group justify="flex-end">
             <PictureMenu name="real part" take={() => realPartPicture(answer, text)} />
-          </div>
+          </Group>
           <RealPart found={answer} />
         </div>
       )}
@@ -101,19 +88,28 @@ export function PositiveReal() {
   );
 }
 
-/** Re G(jw) over frequency, and the curve of Nyquist beside it or below. */
+const yes = (is: boolean) => (is ? "yes" : "no");
+const leastWords = ({ least_real }: Found) => (least_real === null ? "unbounded" : formatShort(least_real, ""));
+
+const factsOf = (answer: Found): [string, string][] => [
+  ["poles to the left", yes(answer.hurwitz)],
+  ["zeros to the left", yes(answer.minimum_phase)],
+  ["relative degree", String(answer.relative_degree)],
+  ["least Re G(jω)", leastWords(answer) + (answer.at === null ? " at infinity" : ` at ω = ${formatSi(answer.at, "")}`)],
+];
+
+/** Re G(jw) over frequency, and the Nyquist curve next to it or below. */
 function RealPart({ found }: { found: Found }) {
   const [overFrequency, nyquist] = useMemo(
     () =>
       [paintOverFrequency, paintNyquist].map(
-        (paint) => (pen: Pen, box: Box, look: Look) => paint(pen, box, found, look),
+        (paint) => (pen: Pen, box: Paper, look: Look) => paint(pen, box, found, look),
       ),
     [found],
   );
-  const least = found.least_real === null ? "unbounded" : formatShort(found.least_real, "");
   return (
     <div className={styles.plots}>
-      <Painted label={`Real part over frequency; least ${least}`} paint={overFrequency} />
+      <Painted label={`Real part over frequency; least ${leastWords(found)}`} paint={overFrequency} />
       <Painted label="Nyquist curve: imaginary over real part" paint={nyquist} />
     </div>
   );

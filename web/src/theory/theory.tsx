@@ -1,3 +1,4 @@
+import { Box } from "@mantine/core";
 import type { ReactNode } from "react";
 import { PageHead } from "../bench/page-head";
 import { openPlace, useView } from "../bench/view-store";
@@ -6,16 +7,15 @@ import { EquationIndex } from "./equation-index";
 import { Excitation } from "./excitation";
 import { Instability } from "./instability";
 import { PositiveReal } from "./positive-real";
-import styles from "./theory.module.css";
 
 /** A calculator by its title, or the equations that the place names. */
 function Paper({ title, children }: { title?: string; children: ReactNode }) {
   const asked = useView((s) => s.item);
   return (
-    <div className={styles.page}>
-      <header className={styles.top}>
+    <div className="paper">
+      <Box component="header" className="card" p="8px 16px">
         <PageHead name="Theory" item={title ?? asked} />
-      </header>
+      </Box>
       {children}
     </div>
   );

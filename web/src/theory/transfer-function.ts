@@ -1,7 +1,7 @@
 import { add, isZero, multiply, type Polynomial, polynomialLatex } from "./polynomial";
 
 /** A ratio of polynomials in s. */
-export interface TransferFunction {
+interface TransferFunction {
   numerator: Polynomial;
   denominator: Polynomial;
 }
@@ -10,7 +10,7 @@ const MOST_POWER = 20;
 const ONE: Polynomial = [1];
 const TOKEN = /\s*(?:(\d+\.?\d*(?:[eE][-+]?\d+)?|\.\d+(?:[eE][-+]?\d+)?)|([sSpP])|([-+*/^()]))/y;
 
-/** What is wrong with what was typed. */
+/** The error in a typed transfer function. */
 export class NotRational extends Error {}
 
 /**

@@ -9,7 +9,7 @@ interface ConfusionProps {
   counts: number[][];
 }
 
-/** What was said while what was true: shares of each row, the diagonal is right. */
+/** Verdicts over truths: shares of each row, with the right verdicts on the diagonal. */
 export function Confusion({ title, names, counts }: ConfusionProps) {
   return (
     <table className={styles.confusion}>

@@ -1,4 +1,4 @@
-/** Copy a text; without TLS a browser has no clipboard for pages but on this machine, and copies what is selected. */
+/** Copy a text; a page of another machine without TLS has no clipboard, so it copies a selected field. */
 export async function copyText(text: string): Promise<void> {
   try {
     await navigator.clipboard.writeText(text);

@@ -1,15 +1,25 @@
+import { Anchor, Group } from "@mantine/core";
 import styles from "./ui.module.css";
 
 /** Files of one thing in several formats. */
 export function Downloads({ href, formats }: { href: (format: string) => string; formats: readonly string[] }) {
   return (
-    <span className={styles.downloads}>
+    <Group component="span" className={styles.downloads} display="inline-flex" gap="4px 12px">
       {formats.map((format) => (
-        <a key={format} href={href(format)} download title={`Download as ${format.toUpperCase()}`}>
+        <Anchor
+          key={format}
+          href={href(format)}
+          download
+          title={`Download as ${format.toUpperCase()}`}
+          c="var(--accent)"
+          fz="sm"
+          fw={560}
+          underline="hover"
+        >
           {format.toUpperCase()}
-        </a>
+        </Anchor>
       ))}
-    </span>
+    </Group>
   );
 }
 

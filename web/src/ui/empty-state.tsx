@@ -1,7 +1,7 @@
 import type { ReactNode } from "react";
 import styles from "./ui.module.css";
 
-/** What an empty panel says: what would fill it, and an offer to do so. */
+/** The text of an empty panel: its future contents, and a button that creates them. */
 export function EmptyState({ title, children, action }: { title: string; children: ReactNode; action?: ReactNode }) {
   return (
     <div className={`column ${styles.empty}`}>

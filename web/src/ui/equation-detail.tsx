@@ -1,39 +1,45 @@
+import { Box, Stack } from "@mantine/core";
+import type { ReactNode } from "react";
 import type { Equation } from "../api/types";
-import styles from "./equation-detail.module.css";
 import { Formula } from "./formula";
 import { Prose } from "./prose";
 
-/** An erratum: what was printed, what works, and why. */
+/** An erratum: the printed equation, the working one, and the reason. */
 export function EquationDetail({ equation }: { equation: Equation }) {
   return (
-    <div className={styles.printed}>
-      <div>
-        <h3>As printed</h3>
+    <Stack gap={8}>
+      <Part name="As printed">
         <Printed text={equation.printed ?? ""} />
-      </div>
-      <div>
-        <h3>As it works</h3>
+      </Part>
+      <Part name="As it works">
         <Formula latex={equation.latex} />
-      </div>
+      </Part>
       {equation.why && (
-        <div>
-          <h3>Why</h3>
-          <p>
-            <Prose text={equation.why} />
-          </p>
-        </div>
+        <Part name="Why">
+          <Words text={equation.why} />
+        </Part>
       )}
+    </Stack>
+  );
+}
+
+function Part({ name, children }: { name: string; children: ReactNode }) {
+  return (
+    <div>
+      <Box component="h3" mb={2} c="dimmed" fz="xs">
+        {name}
+      </Box>
+      {children}
     </div>
   );
 }
 
-/** What was printed is an equation, or words about one. */
-function Printed({ text }: { text: string }) {
-  return /[\\^_=]/.test(text) ? (
-    <Formula latex={text} />
-  ) : (
-    <p>
-      <Prose text={text} />
-    </p>
-  );
-}
+const Words = ({ text }: { text: string }) => (
+  <Box component="p" fz="sm">
+    <Prose text={text} />
+  </Box>
+);
+
+/** The printed text is an equation, or words about an equation. */
+const Printed = ({ text }: { text: string }) =>
+  /[\\^_=]/.test(text) ? <Formula latex={text} /> : <Words text={text} />;

@@ -54,12 +54,12 @@ export function formatPercent(share: number, decimals = 1): string {
   return formatPart(share * 100, 100, "%", decimals);
 }
 
-/** A share as a part of one, told from 0 and 1 in the same way. */
+/** A share as a part of 1, distinguished from 0 and 1 in the same way. */
 export function formatShare(share: number, decimals = 4): string {
   return formatPart(share, 1, "", decimals);
 }
 
-/** A measured figure by the name of its metric, none as a dash: what is whole, such as a count, is written whole. */
+/** A measured figure by the name of its metric, a missing one as a dash; a whole figure, such as a count, has no decimals. */
 export function formatFigure(metric: string, value: number | null | undefined, digits = 4, unit = ""): string {
   if (value === null || value === undefined) return NOTHING;
   if (metric.endsWith("_fraction")) return formatShare(value, digits);
@@ -82,7 +82,7 @@ export function formatSpread(metric: string, mean: number, std: number, unit = "
   return pair(formatNumber(shown, decimals), formatLeast(spread, decimals), scale);
 }
 
-/** A value and what it may be off by, with the power of ten and the unit of both. */
+/** A value and its error, with the power of ten and the unit of both. */
 function pair(value: string, spread: string, { exponent, unit }: UnitScale): string {
   const both = `${value}${PLUS_MINUS}${spread}`;
   return withUnit(exponent ? `(${both})${exponent}` : both, unit);
@@ -101,7 +101,7 @@ function formatLeast(value: number, decimals: number): string {
   return isLess ? `<${SPACE}${formatNumber(10 ** -decimals, decimals)}` : formatNumber(value, decimals);
 }
 
-/** A part of a whole; one that would read as none or all of it gets up to two more decimals, then a bound. */
+/** A part of a whole; a part that would read as none or all of it gets up to two more decimals, then a bound. */
 export function formatPart(part: number, whole: number, unit: string, decimals: number): string {
   const ends = [0, whole];
   const most = decimals + 2;

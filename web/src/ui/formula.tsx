@@ -19,7 +19,7 @@ export function Formula({ latex }: { latex: string }) {
     const element = place.current;
     if (!element) return;
     const observer = new ResizeObserver(() => {
-      // what is longer than its place scrolls, by keys too
+      // a formula longer than its place scrolls, by keys too
       if (element.scrollWidth > element.clientWidth) element.tabIndex = 0;
       else element.removeAttribute("tabindex");
     });

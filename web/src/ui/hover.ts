@@ -25,7 +25,7 @@ export const hover = {
 
 const REST_MS = 120;
 
-/** The tick under a pointer that rests: what is asked of the server for it is not asked at every step of the way. */
+/** The tick under a resting pointer, so that the server is not asked at every move. */
 export function useRestingTick(wanted = true): number | undefined {
   const [rested, setRested] = useState<number | undefined>(undefined);
   useEffect(() => {
@@ -46,7 +46,7 @@ export function useRestingTick(wanted = true): number | undefined {
 }
 
 /** Where the time panels should look: a tick of the past, or live. */
-export type JumpTarget = { tick: number } | "live";
+type JumpTarget = { tick: number } | "live";
 
 const jumpers = new Set<(target: JumpTarget) => void>();
 

@@ -95,7 +95,7 @@ export function Knob(props: KnobProps) {
   );
 }
 
-export interface SliderScale {
+interface SliderScale {
   low: number;
   high: number;
   log: boolean;

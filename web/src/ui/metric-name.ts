@@ -8,21 +8,11 @@ import { plainScale, roundTo } from "./unit-scale";
 const UNITS: Partial<Record<string, string>> = names.units;
 const WORDS: Partial<Record<string, string>> = names.words;
 
-/** A metric in words: "diagnosis.kalman.correct_fraction" reads "kalman correct fraction". */
-export function metricName(metric: string): string {
-  return metric
-    .replace(/^(?:control|device|diagnosis|identify|lateral|sensing)\./, "")
-    .replace(/^twins\.([^.]+)\./, "$1: ")
-    .replaceAll(/[._]/g, " ")
-    .replaceAll(/\bum\b/g, "µm")
-    .replaceAll(/\bpct\b/g, "%");
-}
-
 /** How figures of one metric are shown beside each other. */
 export interface MetricScale {
   /** The metric in words. */
   name: string;
-  /** Of what is shown. */
+  /** The unit of the figures shown. */
   unit: string;
   /** Both: "rms error, µm". */
   title: string;
@@ -59,7 +49,7 @@ function partsOf(metric: string): { name: string; unit: string } {
   const first = said.length;
   let unit = "";
   for (const piece of pieces) {
-    // the number of a step belongs to what is counted
+    // the number of a step belongs to the word before it
     if (/^\d+$/.test(piece) && said.length > first) said[said.length - 1] += ` ${piece}`;
     else {
       const found = withoutUnit(piece);

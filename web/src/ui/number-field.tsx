@@ -78,7 +78,11 @@ export function NumberField({
           }
         }}
       />
-      {unit && <span className={styles.unit}>{unit}</span>}
+      {unit && (
+        <span className="remark" style={{ marginLeft: 5 }}>
+          {unit}
+        </span>
+      )}
       {wrong && (
         <span role="alert" className={styles.wrong}>
           {wrong}
@@ -94,7 +98,7 @@ interface Limits {
   integer: boolean;
 }
 
-/** A typed number, or in words what is wrong with it. */
+/** A typed number, or its error in words. */
 export function parseNumber(text: string, { minimum, maximum, integer }: Limits): number | string {
   const value = Number(text.trim().replace(",", ".").replace("−", "-"));
   if (text.trim() === "" || !Number.isFinite(value)) return "not a number";

@@ -1,13 +1,8 @@
-import { type RefObject, useEffect, useState, useSyncExternalStore } from "react";
-
-const subscribe = (changed: () => void) => {
-  document.addEventListener("visibilitychange", changed);
-  return () => document.removeEventListener("visibilitychange", changed);
-};
+import { useDocumentVisibility } from "@mantine/hooks";
+import { type RefObject, useEffect, useState } from "react";
 
 /** Whether the page is on screen at all: a hidden tab draws nothing and asks for nothing. */
-export const usePageVisible = (): boolean =>
-  useSyncExternalStore(subscribe, () => document.visibilityState === "visible");
+export const usePageVisible = (): boolean => useDocumentVisibility() === "visible";
 
 const ENOUGH = 0.3;
 

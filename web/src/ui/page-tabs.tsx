@@ -27,7 +27,11 @@ export function PageTabs({
         value={value}
         onChange={(next) => next && onShow(next)}
         keepMounted={false}
-        classNames={{ root: styles.tabs, list: styles.list, panel: styles.panel }}
+        className="column"
+        flex={1}
+        miw={0}
+        mih={0}
+        classNames={{ list: styles.list, panel: styles.panel }}
       >
         <header className={`row ${styles.top}`}>
           <Tabs.List aria-label={title}>

@@ -18,19 +18,7 @@ export const HYPOTHESES: readonly number[] = palette.hypotheses;
 export const SIGNALS: Partial<Record<string, readonly number[]>> = palette.signals;
 
 /** Canvas colours that CSS cannot reach; the rest are tokens in theme.css. */
-export const CANVAS: Record<
-  Scheme,
-  {
-    panel: string;
-    text: string;
-    muted: string;
-    grid: string;
-    axis: string;
-    accent: string;
-    alarm: string;
-    event: string;
-  }
-> = {
+export const CANVAS = {
   dark: {
     panel: "#161b21",
     text: "#e8ecf1",
@@ -51,11 +39,11 @@ export const CANVAS: Record<
     alarm: "#c4261d",
     event: "#7a8795",
   },
-};
+} satisfies Record<Scheme, Record<string, string>>;
 
 const parts = (colour: string) => [1, 3, 5].map((at) => Number.parseInt(colour.slice(at, at + 2), 16));
 
-/** How much of a colour is left in what lies behind. */
+/** The share of a colour in a trace behind others. */
 const LEFT = 0.45;
 
 /** The colour of a share from 0 to 1 of a scale: lighter and lighter on dark, darker on light, in every kind of sight. */
@@ -67,17 +55,12 @@ export function rampColour(share: number, scheme: Scheme): string {
   return `rgb(${mixed.join(" ")})`;
 }
 
-/** A colour of what lies behind, on the panels of a scheme. */
+/** The colour of a trace behind others, on the panels of a scheme. */
 export function faded(colour: string, scheme: Scheme): string {
   const ground = parts(CANVAS[scheme].panel);
   const mixed = parts(colour).map((part, i) => Math.round(LEFT * part + (1 - LEFT) * ground[i]));
   return `#${mixed.map((part) => part.toString(16).padStart(2, "0")).join("")}`;
 }
-
-/** A trace's colour on white, whatever it is on the screen. */
-export const onWhite = (colour: string): string =>
-  TRACE_COLOURS.light[TRACE_COLOURS.dark.indexOf(colour)] ??
-  (TRACE_COLOURS.light.includes(colour) ? colour : CANVAS.light.text);
 
 /** Font for text on a canvas, in device pixels. */
 export function fontFor(size: number, ratio: number, weight = 450): string {

@@ -9,7 +9,7 @@ interface SheetProps {
   children: ReactNode;
 }
 
-/** Something to read or choose beside what runs: it covers little and stops nothing. */
+/** A drawer to read or choose in while the bench runs: it covers little of the page. */
 export function Sheet({ opened, title, size, onClose, children }: SheetProps) {
   return (
     <Drawer

@@ -3,12 +3,12 @@ import type { ApiError } from "../api/client";
 
 interface StaleProps {
   error: ApiError | undefined;
-  /** When what is shown was true. */
+  /** The time of the data on the page. */
   since: Date | undefined;
   onRetry(): void;
 }
 
-/** Says that the server has not answered, how old what is shown is, and asks again. */
+/** A notice that the server has not answered, with the age of the data and a button to ask again. */
 export function Stale({ error, since, onRetry }: StaleProps) {
   if (!error) return null;
   return (

@@ -1,14 +1,15 @@
 import { expect, it } from "vitest";
-import { timeLabels, timeSplits, timeUnit } from "./time-axis";
+import { linearTicks } from "./ticks";
+import { timeLabels, timeUnit } from "./time-axis";
 
 it("picks µs, ms or s by the span", () => {
   expect([0.1, 4, 180, 5000].map((s) => timeUnit(s).unit)).toEqual(["µs", "ms", "ms", "s"]);
 });
 
 it("steps by 1, 2 or 5 on round values", () => {
-  expect(timeSplits(184.1, 188.1, 5)).toEqual([185, 186, 187, 188]);
-  expect(timeSplits(0, 0.02, 4).map((x) => +x.toFixed(6))).toEqual([0, 0.005, 0.01, 0.015, 0.02]);
-  expect(timeSplits(3, 3, 5)).toEqual([]);
+  expect(linearTicks(184.1, 188.1, 5)).toEqual([185, 186, 187, 188]);
+  expect(linearTicks(0, 0.02, 4).map((x) => +x.toFixed(6))).toEqual([0, 0.005, 0.01, 0.015, 0.02]);
+  expect(linearTicks(3, 3, 5)).toEqual([]);
 });
 
 it("labels with the decimals the steps need", () => {

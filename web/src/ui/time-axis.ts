@@ -1,6 +1,6 @@
 import { formatShort, labelsOn } from "./format";
 
-export interface TimeUnit {
+interface TimeUnit {
   unit: "µs" | "ms" | "s";
   /** Shown value = ms x factor. */
   factor: number;
@@ -19,9 +19,6 @@ export function timeLabels(splitsMs: readonly number[], spanMs: number): string[
   return labelsOn({ factor, exponent: "" }, splitsMs);
 }
 
-/** Round values across a span of time. */
-export { linearTicks as timeSplits } from "./ticks";
-
 /** Lengths of device time that panels offer, ms. */
 export const TIME_WINDOWS_MS = {
   scope: [0.2, 0.5, 1, 2, 4, 10, 20, 50, 100, 200, 500, 1000],
@@ -29,7 +26,7 @@ export const TIME_WINDOWS_MS = {
   phase: [1, 2, 4, 10, 20, 40],
 } as const satisfies Record<string, readonly number[]>;
 
-/** The items of a menu of lengths; one that is chosen but not usual stands among them. */
+/** The items of a menu of lengths, the chosen length included. */
 export function windowItems(usualMs: readonly number[], chosenMs: number): { value: string; label: string }[] {
   const all = usualMs.includes(chosenMs) ? usualMs : [...usualMs, chosenMs].sort((a, b) => a - b);
   return all.map((ms) => ({ value: String(ms), label: formatShort(ms, "ms") }));

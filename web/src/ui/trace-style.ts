@@ -1,6 +1,6 @@
 import { DASHES, HYPOTHESES, type Scheme, SIGNALS, TRACE_COLOURS } from "./palette";
 
-export interface TraceStyle {
+interface TraceStyle {
   /** Slot in `TRACE_COLOURS`. */
   slot: number;
   /** Index in `DASHES`. */

@@ -1,6 +1,5 @@
 import { Box } from "@mantine/core";
 import { DASHES } from "./palette";
-import styles from "./ui.module.css";
 
 /** A short stroke in a trace's colour and dash. */
 export function TraceSwatch({ colour, dash }: { colour: string; dash: number }) {
@@ -19,11 +18,11 @@ export function TraceSwatch({ colour, dash }: { colour: string; dash: number }) 
   );
 }
 
-/** A signal's name: the block it comes from, then what it is. */
+/** A signal's name: its block, then its quantity. */
 export function SignalName({ name }: { name: string }) {
   const [block, ...rest] = name.split(".");
   return (
-    <span className={styles.signal} title={name}>
+    <span style={{ whiteSpace: "nowrap" }} title={name}>
       <Box component="span" c="dimmed">
         {words(block)}
       </Box>{" "}

@@ -86,8 +86,8 @@ export function unitScale(unit: string, magnitude: number, digits = 4): UnitScal
 }
 
 /**
- * The unit in which figures that stand beside each other read without a power of ten, and the factor to it: their own
- * where it does, else the same with a prefix.
+ * The unit in which several figures read without a power of ten, and the factor to it: their own unit if possible,
+ * else the same unit with a prefix.
  */
 export function plainScale(unit: string, values: readonly number[]): Pick<UnitScale, "factor" | "unit"> {
   const sizes = values.filter(Number.isFinite).map(Math.abs);

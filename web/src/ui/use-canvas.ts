@@ -2,7 +2,7 @@ import { useComputedColorScheme } from "@mantine/core";
 import { useEffect, useRef, useState } from "react";
 import type { Scheme } from "./palette";
 
-export interface CanvasSize {
+interface CanvasSize {
   width: number;
   height: number;
   ratio: number;

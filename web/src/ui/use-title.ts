@@ -1,9 +1,5 @@
-import { useEffect } from "react";
+import { useDocumentTitle } from "@mantine/hooks";
 
 /** Set the title of the window: the parts from the smallest to the page. */
-export function useTitle(...parts: (string | undefined)[]): void {
-  const title = [...parts.filter(Boolean), "CombBench"].join(" | ");
-  useEffect(() => {
-    document.title = title;
-  }, [title]);
-}
+export const useTitle = (...parts: (string | undefined)[]): void =>
+  useDocumentTitle([...parts.filter(Boolean), "CombBench"].join(" | "));

@@ -1,6 +1,7 @@
 import { IconAdjustments, IconCheck, IconChecks, IconCircleHalf2, IconFlask, IconX } from "@tabler/icons-react";
 import styles from "./verdict.module.css";
 
+/** The verdicts from best to worst, and the word for a figure that the dissertation does not claim. */
 const MARKS = {
   reproduced: { tone: "good", icon: <IconCheck size={13} stroke={2.6} /> },
   "reproduced by tuning": { tone: "good", icon: <IconAdjustments size={13} stroke={2.2} /> },
@@ -11,16 +12,18 @@ const MARKS = {
   ours: { tone: "own", icon: <IconFlask size={13} stroke={2.2} /> },
 };
 
+export const VERDICTS = Object.keys(MARKS);
+
 interface VerdictProps {
   verdict: string | null;
-  /** Whether a run bears it out; until then it is only what is claimed, without mark and colour. */
+  /** Whether a run confirms it; an unconfirmed claim has no mark and no colour. */
   borneOut: boolean;
 }
 
 /** The verdict on a claim: a word, a mark of its own shape, a colour. */
 export function Verdict({ verdict, borneOut }: VerdictProps) {
   const known = verdict !== null && verdict in MARKS ? MARKS[verdict as keyof typeof MARKS] : undefined;
-  // what is ours claims nothing
+  // our own experiments are no claims
   if (known && !borneOut)
     return (
       <span className={styles.verdict}>

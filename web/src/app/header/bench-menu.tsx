@@ -42,8 +42,10 @@ export function BenchMenu() {
             ...(slow ? ["The display lags, the simulation is on time."] : []),
           ].join(" ")}
         >
-          <span data-lines={news ? 1 : 2}>{name} </span>
-          <small data-slow={slow}>
+          <span className="cut" data-lines={news ? 1 : 2}>
+            {name}{" "}
+          </span>
+          <small className="cut" data-slow={slow}>
             {news}
             <IconChevronDown size={12} style={{ verticalAlign: -2 }} />
           </small>
@@ -69,7 +71,7 @@ export function BenchMenu() {
             rightSection={b.id === id || !teaches ? undefined : <Remove bench={b} onDone={load} />}
           >
             {b.title}
-            <small className={styles.menuNote}>
+            <small>
               {b.id === ownBench() && "yours · "}
               {b.state} · {b.controller.replaceAll("_", " ")} · {b.watchers} watching
             </small>
@@ -89,7 +91,7 @@ function Lectures() {
       {(value ?? []).map(({ id, title, minutes }) => (
         <Menu.Item key={id} leftSection={<IconSchool size={16} />} onClick={() => void startLecture(id)}>
           {title}
-          <small className={styles.menuNote}>{formatShort(minutes, "min")}, with notes for the speaker</small>
+          <small>{formatShort(minutes, "min")}, with notes for the speaker</small>
         </Menu.Item>
       ))}
       <Menu.Divider />
@@ -99,7 +101,7 @@ function Lectures() {
 
 function Remove({ bench, onDone }: { bench: Bench; onDone(): void }) {
   return (
-    // biome-ignore lint/a11y/useSemanticElements: a button may not stand inside the menu item's button
+    // biome-ignore lint/a11y/useSemanticElements: a button may not contain another button
     <span
       role="button"
       tabIndex={-1}
@@ -120,7 +122,7 @@ function Remove({ bench, onDone }: { bench: Bench; onDone(): void }) {
 const SHOWN_MS = 8000;
 
 /** Whether the server said a moment ago that this page takes frames too slowly. */
-export function useSlowPage(): boolean {
+function useSlowPage(): boolean {
   const notice = useBench((s) => (s.notice?.code === "slow_client" ? s.notice : undefined));
   const [slow, setSlow] = useState(false);
   useEffect(() => {

@@ -1,4 +1,4 @@
-import { Menu, Popover, UnstyledButton } from "@mantine/core";
+import { Box, Menu, Popover, UnstyledButton } from "@mantine/core";
 import { IconSteeringWheel, IconUsers } from "@tabler/icons-react";
 import { useMay, useMe } from "../../api/me";
 import type { Company } from "../../api/types";
@@ -6,7 +6,7 @@ import { changeDriver, drivingWords, nameOf, useCompany } from "../../bench/driv
 import { formatCount } from "../../ui/format";
 import styles from "./header.module.css";
 
-/** Who drives and who looks on, once that is more than one; a menu for those who can do something about it. */
+/** The driver and the onlookers, if there are several people; a menu for everyone who may drive. */
 export function CompanyMenu() {
   const company = useCompany();
   const me = useMe((s) => s.me?.id);
@@ -21,7 +21,9 @@ export function CompanyMenu() {
       title="Who is here"
     >
       {company.is_leased ? <IconSteeringWheel size={17} /> : <IconUsers size={17} />}
-      <span>{words}</span>
+      <Box component="span" className="cut" maw="15ch">
+        {words}
+      </Box>
     </UnstyledButton>
   );
   if (!drives || !company.is_leased)
@@ -48,30 +50,29 @@ export function CompanyMenu() {
 function Here({ company }: { company: Company }) {
   const { driver, drivers, watching, more_watching, links } = company;
   const names = [...watching, ...(more_watching > 0 ? [`${more_watching} more`] : [])];
+  const people = [
+    ...drivers.map((one) => [nameOf(one), one.id === driver?.id && "drives"] as const),
+    ...(names.length > 0 ? [[names.join(", "), names.length === 1 ? "looks on" : "look on"] as const] : []),
+    ...(links > 0 ? [[formatCount(links, "page"), "by links to watch"] as const] : []),
+  ];
   return (
     <>
-      <p className={styles.here}>Who is here</p>
-      {drivers.map((one) => (
-        <p key={one.id} className={styles.here}>
-          <b>{nameOf(one)}</b>
-          {one.id === driver?.id && " drives"}
-        </p>
+      <Box component="p" className="note" p="2px 12px">
+        Who is here
+      </Box>
+      {people.map(([name, does]) => (
+        <Box component="p" key={name} className="note" p="2px 12px" style={{ overflowWrap: "anywhere" }}>
+          <Box component="b" c="var(--text)" fw={560}>
+            {name}
+          </Box>{" "}
+          {does}
+        </Box>
       ))}
-      {names.length > 0 && (
-        <p className={styles.here}>
-          <b>{names.join(", ")}</b> {names.length === 1 ? "looks on" : "look on"}
-        </p>
-      )}
-      {links > 0 && (
-        <p className={styles.here}>
-          <b>{formatCount(links, "page")}</b> by links to watch
-        </p>
-      )}
     </>
   );
 }
 
-/** What the driver can do. */
+/** The items of the driver. */
 function Driver({ company }: { company: Company }) {
   const me = useMe((s) => s.me);
   const others = company.drivers.filter(({ id }) => id !== me?.id);
@@ -84,13 +85,13 @@ function Driver({ company }: { company: Company }) {
       ))}
       <Menu.Item onClick={() => changeDriver("leave")}>
         Drive no longer
-        <small className={styles.menuNote}>The next person who does something drives</small>
+        <small>The next person who does something drives</small>
       </Menu.Item>
     </>
   );
 }
 
-/** What others can do. */
+/** The items of the others. */
 function Others({ company }: { company: Company }) {
   const me = useMe((s) => s.me);
   const teaches = useMay("teach");
@@ -101,7 +102,7 @@ function Others({ company }: { company: Company }) {
     <>
       <Menu.Item disabled={asked} onClick={() => changeDriver("ask")}>
         {asked ? "You have asked to drive" : "Ask to drive"}
-        <small className={styles.menuNote}>{nameOf(driver)} receives your request and can hand over</small>
+        <small>{nameOf(driver)} receives your request and can hand over</small>
       </Menu.Item>
       {(teaches || lent_by === me?.id) && (
         <Menu.Item onClick={() => changeDriver("take")}>{teaches ? "Take the bench" : "Take the bench back"}</Menu.Item>

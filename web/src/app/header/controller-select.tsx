@@ -10,7 +10,7 @@ import { HeaderSelect, useLocked } from "./header-select";
 /**
  * Which controller drives the device, in each slot; the others run in their shadow, so a change is bumpless.
  *
- * A narrow page has room for that of the last slot; the panel of controllers has all.
+ * A narrow page has room for the last slot alone; the panel of controllers has all slots.
  */
 export function ControllerSelect() {
   const slots = useBench(useShallow((s) => s.bench?.slots));

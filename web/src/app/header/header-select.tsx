@@ -38,6 +38,7 @@ export function HeaderSelect({ label, value, choices, locked, onChoose }: Header
       className={styles.choice}
       style={{ "--letters": (shown?.title.length ?? 8) + 6 } as CSSProperties}
       label={label}
+      labelProps={{ display: "block", c: "dimmed", fz: "xs", fw: 450, lh: 1.2 }}
       title={locked ?? shown?.title}
       allowDeselect={false}
       value={value ?? null}
@@ -57,7 +58,7 @@ function Words({ choice }: { choice: Choice | undefined }) {
     choice && (
       <span>
         {choice.title}
-        <small className={styles.menuNote}>
+        <small>
           <Prose text={choice.about} />
         </small>
       </span>

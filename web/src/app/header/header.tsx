@@ -12,7 +12,7 @@ import { TimeScaleControl } from "./time-scale-control";
 import { Tools } from "./tools";
 import { Visitor } from "./visitor";
 
-/** The strip along the top: what runs, how fast, and the few things done all the time. */
+/** The strip along the top: the bench, its speed, and the most common actions. */
 export function Header() {
   const drives = useMay("drive");
   return (

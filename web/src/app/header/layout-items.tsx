@@ -2,7 +2,6 @@ import { Menu } from "@mantine/core";
 import { type LayoutName, useView } from "../../bench/view-store";
 import { FROM_LINK, FROM_TEACHER, isBuiltIn, ownLayouts, resetLayout, setLayout } from "../layouts";
 import { togglePresent } from "../present";
-import styles from "./header.module.css";
 
 const BUILT_IN: [LayoutName, string][] = [
   ["lecture", "Scope, lanes, faults and 3D in large type (1)"],
@@ -10,7 +9,7 @@ const BUILT_IN: [LayoutName, string][] = [
   ["research", "Everything (3)"],
 ];
 
-/** The layouts, built in and of one's own, as items of a menu. */
+/** The built-in layouts and the user's own, as items of a menu. */
 export function LayoutItems() {
   const layout = useView((s) => s.layout);
   const own = ownLayouts().map(({ name }) => name);
@@ -33,7 +32,7 @@ export function LayoutItems() {
       <Menu.Item onClick={() => useView.setState({ dialog: "layouts" })}>Save, rename or share a layout…</Menu.Item>
       <Menu.Item onClick={togglePresent}>
         Present
-        <small className={styles.menuNote}>Panels only, on the whole screen (P); Escape leaves</small>
+        <small>Panels only, on the whole screen (P); Escape leaves</small>
       </Menu.Item>
     </>
   );
@@ -44,7 +43,7 @@ function Item({ name, title, what }: { name: string; title: string; what: string
   return (
     <Menu.Item aria-current={isHere} fw={isHere ? 650 : undefined} onClick={() => !isHere && setLayout(name)}>
       {title}
-      <small className={styles.menuNote}>{what}</small>
+      <small>{what}</small>
     </Menu.Item>
   );
 }

@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button } from "@mantine/core";
 import { IconArrowLeft } from "@tabler/icons-react";
 import { setPage } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
@@ -16,7 +16,9 @@ export function PageHeader() {
       <Button leftSection={<IconArrowLeft size={15} />} onClick={() => setPage("bench")}>
         Back to the bench
       </Button>
-      <strong>{title ?? "No bench"}</strong>
+      <Box component="strong" className="cut" fw={560}>
+        {title ?? "No bench"}
+      </Box>
       <StateBadge />
       <Visitor />
     </header>

@@ -3,7 +3,6 @@ import { IconChevronDown, IconPlayerPauseFilled, IconPlayerPlayFilled } from "@t
 import { actions } from "../../bench/actions";
 import { useBench } from "../../stream/bench-store";
 import { useBoardState } from "../../stream/freshness";
-import styles from "./header.module.css";
 
 const STEP_WORDS = "One tick, one drive period, or back to the start";
 
@@ -45,8 +44,7 @@ export function RunControls() {
             One tick ( . )
           </Menu.Item>
           <Menu.Item disabled={stuck || period === null} onClick={actions.stepPeriod}>
-            One drive period ( , )
-            {period === null && <small className={styles.menuNote}>The drive has no period of its own</small>}
+            One drive period ( , ){period === null && <small>The drive has no period of its own</small>}
           </Menu.Item>
           <Menu.Divider />
           <Menu.Item onClick={actions.reset}>Reset to the start (Shift R)</Menu.Item>

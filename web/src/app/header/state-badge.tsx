@@ -1,27 +1,16 @@
 import { useBench } from "../../stream/bench-store";
 import { useBoardState, useStaleSince } from "../../stream/freshness";
-import styles from "./header.module.css";
+import { StateDot } from "../../ui/state-dot";
 
-const WORDS = { running: "running", paused: "paused", tripped: "tripped" } as const;
-
-/** What the board does right now, or that we do not know. */
+/** The present state of the board, or of the connection while it is unknown. */
 export function StateBadge() {
   const shown = useBoardState();
   const phase = useBench((s) => s.connection.phase);
   const stale = useStaleSince() !== undefined;
-  const word = shown
-    ? WORDS[shown]
-    : phase === "waiting"
-      ? "reconnecting"
-      : phase === "closed"
-        ? "not connected"
-        : stale
-          ? "silent"
-          : "connecting";
+  const unknown = { waiting: "reconnecting", closed: "not connected" }[phase as string];
   return (
-    <span className={styles.state} data-state={shown ?? "unknown"} data-testid="bench-state">
-      <i aria-hidden="true" />
-      {word}
-    </span>
+    <StateDot state={shown ?? "unknown"} miw="9.5ch" data-testid="bench-state">
+      {shown ?? unknown ?? (stale ? "silent" : "connecting")}
+    </StateDot>
   );
 }

@@ -20,7 +20,7 @@ const set = (value: number | null) => send({ kind: "time_scale", value }, `Time 
 
 const FAST = { quiet_lead: "quiet lead, fast", skip: "skips, fast" };
 
-/** How fast device time runs: halve, double, slide, or let go; beside it what the machine achieves. */
+/** The speed of device time: halve it, double it, slide it, or set no limit; below it the achieved speed. */
 export function TimeScaleControl() {
   const target = useBench((s) => s.bench?.time_scale ?? null);
   const achieved = useBench((s) => s.bench?.achieved_scale ?? 0);
@@ -34,7 +34,7 @@ export function TimeScaleControl() {
   const shown = draft ?? timeScaleToSlider(target);
 
   return (
-    <fieldset className={styles.scale} aria-label="Time scale" disabled={unknown}>
+    <fieldset className="line" style={{ gap: 0 }} aria-label="Time scale" disabled={unknown}>
       <Tooltip label="Half as fast ( [ )">
         <ActionIcon size="md" aria-label="÷2: half as fast" onClick={() => set(stepTimeScale(target, 0.5))}>
           ÷2
@@ -44,7 +44,7 @@ export function TimeScaleControl() {
         <Popover.Target>
           <button type="button" className={styles.target} title={`${againstRealTime(target)}: change it`}>
             <span>{target === null ? "max" : formatTimeScale(target)}</span>
-            <small data-capped={capped} data-idle={!running}>
+            <small data-capped={capped}>
               {capped && <b>CAPPED </b>}
               {unknown
                 ? "not connected"

@@ -30,48 +30,18 @@ export function Tools() {
   const role = useMe((s) => s.me?.role);
   useMay("drive"); // which depends on the bench, too
   const bench: Tool[] = [
-    {
-      label: undo ? `Undo: ${undo} (Ctrl Z)` : "Undo (Ctrl Z)",
-      needs: "drive",
-      run: () => takeBack("undo"),
-    },
-    {
-      label: redo ? `Redo: ${redo} (Ctrl Y)` : "Redo (Ctrl Y)",
-      needs: "drive",
-      run: () => takeBack("redo"),
-    },
-    {
-      label: recording ? "Stop recording (V)" : "Record every signal (V)",
-      needs: "drive",
-      run: actions.record,
-    },
+    { label: undo ? `Undo: ${undo} (Ctrl Z)` : "Undo (Ctrl Z)", needs: "drive", run: () => takeBack("undo") },
+    { label: redo ? `Redo: ${redo} (Ctrl Y)` : "Redo (Ctrl Y)", needs: "drive", run: () => takeBack("redo") },
+    { label: recording ? "Stop recording (V)" : "Record every signal (V)", needs: "drive", run: actions.record },
     { label: "Save this run as a scenario (X)", run: actions.saveScenario },
-    {
-      label: "Fork: a copy of this bench from now on (F)",
-      needs: "teach",
-      run: actions.fork,
-    },
-    {
-      label: "Keep this moment on the timeline (K)",
-      needs: "teach",
-      run: actions.keep,
-    },
-    {
-      label: "Share this experiment by a link (Shift S)",
-      needs: "teach",
-      run: actions.share,
-    },
+    { label: "Fork: a copy of this bench from now on (F)", needs: "teach", run: actions.fork },
+    { label: "Keep this moment on the timeline (K)", needs: "teach", run: actions.keep },
+    { label: "Share this experiment by a link (Shift S)", needs: "teach", run: actions.share },
     ...show,
   ];
   const page: Tool[] = [
-    {
-      label: narrates ? "Narrator off (Q)" : "Narrator on: describe events in sentences (Q)",
-      run: toggleNarrator,
-    },
-    {
-      label: scheme === "dark" ? "Light theme (D)" : "Dark theme (D)",
-      run: () => themeSwitch.flip(),
-    },
+    { label: narrates ? "Narrator off (Q)" : "Narrator on: describe events in sentences (Q)", run: toggleNarrator },
+    { label: scheme === "dark" ? "Light theme (D)" : "Dark theme (D)", run: () => themeSwitch.flip() },
     { label: "Keyboard ( ? )", run: actions.keys },
   ];
   return (

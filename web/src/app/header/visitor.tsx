@@ -5,7 +5,7 @@ import { announce } from "../../bench/announce";
 import { showError } from "../../bench/send";
 import styles from "./header.module.css";
 
-/** Who is at the page, if not the teacher: a student by name with a hand to raise, or somebody who watches. */
+/** The person at the page: a student by name with a hand to raise, or a watcher; the teacher sees nothing here. */
 export function Visitor() {
   const me = useMe((s) => s.me);
   if (!me || me.role === "teacher") return null;
@@ -18,10 +18,11 @@ export function Visitor() {
   return (
     <div className={`line ${styles.visitor}`}>
       <p title={`${me.name}, ${me.class_name}`}>
-        <b>{me.name}</b>
-        <small>{me.class_name}</small>
+        <b className="cut">{me.name}</b>
+        <small className="cut">{me.class_name}</small>
       </p>
       <Button
+        flex="none"
         variant={me.hand ? "filled" : "default"}
         aria-pressed={me.hand}
         leftSection={<IconHandStop size={16} />}

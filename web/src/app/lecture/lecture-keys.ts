@@ -2,15 +2,9 @@ import { actions } from "../../bench/actions";
 import { cueBefore, nextCue } from "../../bench/lecture";
 import { askCue, revealVote } from "../../bench/vote";
 import { askLatest } from "../../bench/why";
-import type { KeyBinding } from "../keymap";
+import { type KeyBinding, keyOf } from "../key-binding";
 
-const key = (name: string, shown: string, does: string, run: () => void): KeyBinding => ({
-  key: name,
-  shown,
-  does,
-  group: "Run",
-  run,
-});
+const key = keyOf("Run");
 
 /** The keys of a lecture, in the window of the bench and in the window of the notes; a clicker sends Page Down and Page Up. */
 export const LECTURE_KEYS: KeyBinding[] = [

@@ -1,16 +1,19 @@
-import { ActionIcon, Button, Menu, Popover } from "@mantine/core";
+import { ActionIcon, Button, Group, Menu, Popover } from "@mantine/core";
 import { IconChevronLeft, IconChevronRight, IconExternalLink, IconList, IconNotes, IconX } from "@tabler/icons-react";
 import { useEffect, useRef } from "react";
 import { useDock } from "../../bench/dock";
-import { cueBefore, goTo, nextCue, useLecture } from "../../bench/lecture";
+import { cueBefore, goTo, leaveLecture, nextCue, useLecture } from "../../bench/lecture";
 import { setPage, useView } from "../../bench/view-store";
 import { askCue } from "../../bench/vote";
 import { useBench } from "../../stream/bench-store";
-import { leave } from "./leave";
+import { setLayout } from "../layouts";
 import styles from "./lecture.module.css";
 import { LectureClock, Notes } from "./notes";
 import { openPresenter, usePresenter } from "./presenter";
 import { showCue } from "./show-cue";
+
+/** The bench and the layout are then as before the lecture. */
+const leave = () => leaveLecture().then((before) => before && setLayout(before.layout));
 
 /** The cues of a lecture in the strip under the panels. The notes have a window of their own; here they open on request. */
 export function LectureStrip() {
@@ -41,10 +44,10 @@ export function LectureStrip() {
   const count = `${at + 1} of ${lecture.script.length}`;
   if (present)
     return (
-      <section className={styles.audience} aria-label="Lecture">
+      <Group component="section" flex="none" gap={12} wrap="nowrap" align="baseline" fz="md" aria-label="Lecture">
         <strong>{cue.title}</strong>
-        <span>{count}</span>
-      </section>
+        <span style={{ color: "var(--muted)" }}>{count}</span>
+      </Group>
     );
   return (
     <section ref={place} className={styles.lecture} aria-label="Lecture" aria-busy={busy} tabIndex={-1}>
@@ -68,8 +71,8 @@ export function LectureStrip() {
         Next
       </Button>
       <p className={styles.where} title={cue.title}>
-        <span>{count}</span>
-        <strong>{cue.title}</strong>
+        <span className="note">{count}</span>
+        <strong className="cut">{cue.title}</strong>
       </p>
       {cue.vote && (
         <Button variant="light" title="Open the vote of this cue (A)" onClick={() => void askCue()}>

@@ -1,3 +1,4 @@
+import { Box } from "@mantine/core";
 import { useEffect, useState } from "react";
 import type { Cue } from "../../api/types";
 import { plannedTo, useLecture } from "../../bench/lecture";
@@ -6,8 +7,13 @@ import styles from "./lecture.module.css";
 
 const TICK_MS = 5000;
 
-/** What the speaker says, asks and can promise at a cue. */
+/** The words, questions and predictions of the speaker at a cue. */
 export function Notes({ cue, next }: { cue: Cue; next: string | undefined }) {
+  const others = [
+    ["Ask", cue.ask],
+    ["Watch for", cue.see],
+    ["Vote (A opens it, X reveals it)", cue.vote?.text],
+  ];
   return (
     // biome-ignore lint/a11y/noNoninteractiveTabindex: notes longer than their place are scrolled by keys
     <section className={styles.notes} aria-label="Notes of the speaker" tabIndex={0}>
@@ -15,29 +21,20 @@ export function Notes({ cue, next }: { cue: Cue; next: string | undefined }) {
         {cue.say.split("\n").map((line) => (
           <p key={line}>{line}</p>
         ))}
-        {cue.ask && (
-          <p>
-            <b>Ask: </b>
-            {cue.ask}
-          </p>
-        )}
-        {cue.see && (
-          <p>
-            <b>Watch for: </b>
-            {cue.see}
-          </p>
-        )}
-        {cue.vote && (
-          <p>
-            <b>Vote (A opens it, X reveals it): </b>
-            {cue.vote.text}
-          </p>
+        {others.map(
+          ([name, text]) =>
+            text && (
+              <p key={name}>
+                <b>{name}: </b>
+                {text}
+              </p>
+            ),
         )}
         {next && (
-          <p className={styles.next}>
+          <Box component="p" c="dimmed">
             <b>Next: </b>
             {next}
-          </p>
+          </Box>
         )}
       </div>
     </section>
@@ -55,7 +52,7 @@ export function LectureClock() {
 
 export function ClockFace({ used, planned, whole }: { used: number; planned: number; whole: number }) {
   return (
-    <p className={styles.clock} data-late={used > planned}>
+    <p className={`note ${styles.clock}`} data-late={used > planned}>
       {formatIn(used, "min", 1)} used
       <span>
         , {formatIn(planned, "min", 1)} planned to the end of this cue, {formatIn(whole, "min", 1)} in all

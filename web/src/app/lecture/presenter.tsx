@@ -1,4 +1,4 @@
-import { Button } from "@mantine/core";
+import { Box, Button, Group } from "@mantine/core";
 import { type ReactNode, useEffect, useState } from "react";
 import { lectures } from "../../api/lectures";
 import { useAsked } from "../../api/queries";
@@ -35,7 +35,7 @@ const RUNNING = "1";
 
 const notesAsked = (): string => new URLSearchParams(window.location.search).get(PARAMETER) || RUNNING;
 
-/** Whether this window is that of the speaker. */
+/** Whether this window belongs to the speaker. */
 export const isPresenter = (): boolean => new URLSearchParams(window.location.search).has(PARAMETER);
 
 export const openPresenter = () =>
@@ -111,13 +111,13 @@ function Following() {
     );
   return (
     <Page now={now} turn={(by) => channel.postMessage({ key: by > 0 ? "PageDown" : "PageUp" })}>
-      <p className={styles.keys}>
+      <Group component="p" className="note" gap="0 16px">
         {LECTURE_KEYS.map(({ shown, does }) => (
           <span key={shown}>
-            <kbd>{shown}</kbd> {does}{" "}
+            <kbd>{shown}</kbd> {does}
           </span>
         ))}
-      </p>
+      </Group>
     </Page>
   );
 }
@@ -132,7 +132,7 @@ function Alone({ id }: { id: string }) {
   const turn = (by: number) => setAt(Math.max(0, Math.min(lecture.script.length - 1, at + by)));
   return (
     <Page now={toldOf({ lecture, at, began })} turn={turn}>
-      <p className={styles.keys}>These notes turn by hand; the bench does not follow.</p>
+      <p className="note">These notes turn by hand; the bench does not follow.</p>
     </Page>
   );
 }
@@ -148,18 +148,21 @@ function Page({ now, turn, children }: PageProps) {
   return (
     <main className={`column ${styles.presenter}`}>
       <h1>
-        <span>{now.place}</span> {now.cue?.title}
+        <Box component="span" c="dimmed" fw={400}>
+          {now.place}
+        </Box>{" "}
+        {now.cue?.title}
       </h1>
       <ClockFace used={used} planned={now.planned} whole={now.whole} />
       {now.cue && <Notes cue={now.cue} next={now.next} />}
-      <p className={`row ${styles.bar}`}>
+      <Group gap={10}>
         <Button size="sm" onClick={() => turn(-1)}>
           Back
         </Button>
         <Button variant="filled" size="sm" onClick={() => turn(1)}>
           Next
         </Button>
-      </p>
+      </Group>
       {children}
     </main>
   );

@@ -6,7 +6,7 @@ import { pickSample, weighingDiagnosers } from "../../bench/why";
 import { scopeConfig } from "../../stream/scope-config";
 import { layOutForScript } from "../layouts";
 
-/** Among these a view opens that no panel has; the first that is there. */
+/** A view without a panel opens among the first of these that is open. */
 const BESIDE = ["lanes", "why", "faults", "view3d"];
 
 interface Place {
@@ -14,7 +14,7 @@ interface Place {
   tick: number;
 }
 
-/** The views an audience sees, besides those that a cue names. */
+/** The views for an audience, besides the views that a cue names. */
 const FOR_AUDIENCE = ["time", "lanes", "view3d"];
 
 /**

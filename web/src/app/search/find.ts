@@ -1,5 +1,5 @@
 /** The groups of results, in their order. */
-export const GROUPS = ["Places", "Panels", "Scenarios", "Devices", "Settings", "Equations"] as const;
+const GROUPS = ["Places", "Panels", "Scenarios", "Devices", "Settings", "Equations"] as const;
 
 export interface Entry {
   group: (typeof GROUPS)[number];
@@ -15,15 +15,20 @@ export interface Entry {
 /** Most entries of a group that are shown. */
 const MOST = 6;
 
-/** The entries with every word that was asked for, those with all in the title first; without words places and panels. */
+/** The entries that match a query, by group; without a query the places and the panels. */
 export function find(entries: readonly Entry[], asked: string): [Entry["group"], Entry[]][] {
+  const found = ranked(entries, asked);
+  const isAll = asked.trim() === "";
+  return GROUPS.slice(0, isAll ? 2 : GROUPS.length)
+    .map((name): [Entry["group"], Entry[]] => [name, found.filter(({ group }) => group === name)])
+    .map(([name, all]): [Entry["group"], Entry[]] => [name, isAll ? all : all.slice(0, MOST)])
+    .filter(([, all]) => all.length > 0);
+}
+
+/** The entries with every word of a query, the entries with all words in the title first. */
+export function ranked<T extends Pick<Entry, "title" | "about" | "words">>(entries: readonly T[], asked: string): T[] {
   const words = asked.toLowerCase().split(/\s+/).filter(Boolean);
   const has = (text: string) => words.every((word) => text.toLowerCase().includes(word));
   const found = entries.filter(({ title, about, words: more = "" }) => has(`${title} ${about} ${more}`));
-  const ranked = [...found.filter(({ title }) => has(title)), ...found.filter(({ title }) => !has(title))];
-  const shown = words.length > 0 ? GROUPS : GROUPS.slice(0, 2);
-  return shown
-    .map((name): [Entry["group"], Entry[]] => [name, ranked.filter(({ group }) => group === name)])
-    .map(([name, all]): [Entry["group"], Entry[]] => [name, words.length > 0 ? all.slice(0, MOST) : all])
-    .filter(([, all]) => all.length > 0);
+  return [...found.filter(({ title }) => has(title)), ...found.filter(({ title }) => !has(title))];
 }

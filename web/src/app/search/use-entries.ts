@@ -13,7 +13,8 @@ import { parameterTitle } from "../../panels/card/parameter-title";
 import { useBench } from "../../stream/bench-store";
 import { entriesOf } from "../../theory/equations";
 import { isOffered, PAGES } from "../pages";
-import { PANELS, panelsOn, VIEW, viewsOn } from "../panels";
+import { VIEW } from "../panels";
+import { viewEntries } from "../view-entries";
 import type { Entry } from "./find";
 
 /** All that can be found on the page of a person. */
@@ -32,18 +33,14 @@ export function useEntries(): Entry[] {
       const { name, title } = PAGES[page];
       return { group: "Places", key: page, title: name, about: title, open: () => setPage(page) };
     }),
-    ...panelsOn(bench).flatMap((panel) =>
-      viewsOn(panel, bench).map((view, index): Entry => {
-        const of = PANELS[panel].title;
-        const isWhole = index === 0;
-        return {
-          group: "Panels",
-          key: view,
-          title: isWhole ? of : VIEW[view].title,
-          about: isWhole ? PANELS[panel].about : `A view of ${of}`,
-          words: VIEW[view].title,
-          open: () => openView(view, hasSeveral(panel)),
-        };
+    ...viewEntries(bench).map(
+      ({ panel, view, title, about }): Entry => ({
+        group: "Panels",
+        key: view,
+        title,
+        about,
+        words: VIEW[view].title,
+        open: () => openView(view, hasSeveral(panel)),
       }),
     ),
     ...(scenarios ?? []).map(
@@ -95,7 +92,7 @@ export function useEntries(): Entry[] {
   ];
 }
 
-/** Bring a view of a panel to the front; from another page once the panels are there. */
+/** Bring a view of a panel to the front; from another page after the dock has opened. */
 function openView(view: ViewName, another = false): void {
   const show = () => {
     if (another) addPanel(view);

@@ -15,18 +15,18 @@ import { useBench } from "../../stream/bench-store";
 import { layOutForScript, setLayout } from "../layouts";
 import { forgetRun, type Tour, type TourStep } from "./tours";
 
-/** Bubbles beside what they point at need this much, px. */
+/** The width that the bubbles of a tour need, px. */
 export const TOUR_PX = 700;
-/** Longest wait for what a step is to show; it appears then all the same. */
+/** The longest wait for the condition of a step; the step appears then in any case. */
 const PATIENCE_MS = 12_000;
 const SEEN = "combbench.tours.seen";
 
 /** Whether a tour is under way. */
 export const useTour = create<{ runs: boolean }>(() => ({ runs: false }));
 
-/** Whether somebody has been offered a tour already, or has taken one. */
+/** Whether a tour was already offered or taken in this browser. */
 export const tourSeen = (): boolean => localStorage.getItem(SEEN) !== null;
-export const noteTourSeen = (): void => localStorage.setItem(SEEN, "yes");
+const noteTourSeen = (): void => localStorage.setItem(SEEN, "yes");
 
 /** Drive the page through a tour on a bench of its own, and put all back when it ends or is left. */
 export async function startTour(tour: Tour): Promise<void> {
@@ -47,7 +47,7 @@ export async function startTour(tour: Tour): Promise<void> {
     setPage("bench");
     openBench(bench, true);
     await until(() => useBench.getState().bench?.id === bench);
-    layOutForScript(tour.layout);
+    layOutForScript("lab");
     await guide(driver, tour);
   } catch (error) {
     showError(error);
@@ -93,7 +93,7 @@ function guide(driver: (config: object) => Driver, tour: Tour): Promise<void> {
         else leave();
       },
       onPrevClick: () => shown.movePrevious(),
-      // the hook for afterwards is left out where what the last bubble points at has gone
+      // driver.js does not call its last hook if the target of the last bubble has gone
       onDestroyStarted: () => leave(),
     });
     void prepare(tour.steps[0])
@@ -107,7 +107,7 @@ async function prepare({ does, until: met, at }: TourStep): Promise<void> {
   await until(() => (met?.() ?? true) && at() !== undefined);
 }
 
-/** Wait for something on the page, but not for ever. */
+/** Wait for a condition of the page, for a limited time. */
 async function until(met: () => boolean): Promise<void> {
   const end = Date.now() + PATIENCE_MS;
   while (!met() && Date.now() < end) await new Promise((again) => setTimeout(again, 50));

@@ -21,7 +21,7 @@ export function TourList() {
       </p>
       <Group gap={6}>
         {TOURS.map((tour) => (
-          <Button key={tour.id} disabled={narrow} onClick={() => void startTour(tour)}>
+          <Button key={tour.title} disabled={narrow} onClick={() => void startTour(tour)}>
             {tour.title}
           </Button>
         ))}
@@ -30,7 +30,7 @@ export function TourList() {
   );
 }
 
-/** The first tour, offered once beside the hints to who is new. */
+/** The first tour, offered once with the hints to a new user. */
 export function OfferTour() {
   const { width } = useViewportSize();
   if ((width || window.innerWidth) < TOUR_PX) return null;

@@ -3,26 +3,24 @@ import { unless } from "../../api/client";
 import type { Command } from "../../api/types";
 import { dockNow, panelWith, showPanel } from "../../bench/dock";
 import { send } from "../../bench/send";
-import { type LayoutName, setPage } from "../../bench/view-store";
+import { setPage } from "../../bench/view-store";
 import { askLatest } from "../../bench/why";
 import { isActive } from "../../runs/jobs";
 import { useBench } from "../../stream/bench-store";
 import { currentEvents } from "../../stream/event-log";
 
-/** One bubble of a tour: what it points at, and what is done on the page before it appears. */
+/** One bubble of a tour: its target, and an action on the page before it appears. */
 export interface TourStep {
   title: string;
   text: string;
   at(): Element | undefined;
   does?(): unknown;
-  /** What is waited for after that, on the bench of the tour. */
+  /** A condition of the bench to wait for after that. */
   until?(): boolean;
 }
 
 export interface Tour {
-  id: string;
   title: string;
-  layout: LayoutName;
   steps: TourStep[];
 }
 
@@ -45,7 +43,7 @@ async function startRun(): Promise<string | undefined> {
   return there.some((one) => one.id === id) ? undefined : id;
 }
 
-/** What a tour has left on the server is gone with it. */
+/** Remove the run of a tour from the server. */
 export async function forgetRun(): Promise<void> {
   const left = await run?.catch(() => undefined); // said already
   run = undefined;
@@ -59,9 +57,7 @@ export async function forgetRun(): Promise<void> {
 
 export const TOURS: Tour[] = [
   {
-    id: "first",
     title: "First look round",
-    layout: "lab",
     steps: [
       {
         title: "A bench that runs",
@@ -98,9 +94,7 @@ export const TOURS: Tour[] = [
     ],
   },
   {
-    id: "faults",
     title: "Faults",
-    layout: "lab",
     steps: [
       {
         title: "The list of faults",
@@ -136,9 +130,7 @@ export const TOURS: Tour[] = [
     ],
   },
   {
-    id: "controllers",
     title: "Controllers",
-    layout: "lab",
     steps: [
       {
         title: "A device that has changed",
@@ -174,9 +166,7 @@ export const TOURS: Tour[] = [
     ],
   },
   {
-    id: "diagnosis",
     title: "Diagnosis",
-    layout: "lab",
     steps: [
       {
         title: "Six hypotheses",
@@ -211,9 +201,7 @@ export const TOURS: Tour[] = [
     ],
   },
   {
-    id: "runs",
     title: "Runs and claims",
-    layout: "lab",
     steps: [
       {
         title: "From live to headless",

@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { logEntry } from "../../stream/log-entry.fixture";
+import { logEntry } from "../../testing/log-entry";
 import { meanDelay, racePlaces, truthSwitches } from "./delays";
 
 const entry = (tick: number, kind: string, text: string, old: unknown, fresh: unknown) =>

@@ -1,10 +1,10 @@
 import { screen, waitFor } from "@testing-library/react";
 import { beforeEach, expect, it } from "vitest";
 import type { Bench, Command, LogEntry } from "../../api/types";
-import { logEntry } from "../../stream/log-entry.fixture";
 import { server } from "../../testing/fake-server";
 import { connect } from "../../testing/fake-transport";
 import { drawOnce } from "../../testing/jsdom-gaps";
+import { logEntry } from "../../testing/log-entry";
 import { recordedAnswer, recordedBench } from "../../testing/recorded";
 import { penOf } from "../../testing/recording-pen";
 import { mount } from "../../testing/render";

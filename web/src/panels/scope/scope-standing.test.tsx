@@ -1,10 +1,10 @@
 import { act, screen } from "@testing-library/react";
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
-import { logEntry } from "../../stream/log-entry.fixture";
 import { scopeConfig } from "../../stream/scope-config";
 import { server } from "../../testing/fake-server";
 import { connect } from "../../testing/fake-transport";
 import { drawOnce } from "../../testing/jsdom-gaps";
+import { logEntry } from "../../testing/log-entry";
 import { recordedBench } from "../../testing/recorded";
 import { penOf } from "../../testing/recording-pen";
 import { mount } from "../../testing/render";

@@ -9,7 +9,7 @@ export interface BodeCurve {
   deg: number[];
 }
 
-/** Where responses may lie. */
+/** A band of responses. */
 export interface BodeBand {
   name: string;
   hertz: number[];
@@ -17,7 +17,7 @@ export interface BodeBand {
   deg: { low: number[]; high: number[] };
 }
 
-/** Tones as measured, with what the magnitude may be off by. */
+/** Measured tones with the error of the magnitude. */
 export interface BodePoints {
   name: string;
   /** In `TRACE_COLOURS`. */

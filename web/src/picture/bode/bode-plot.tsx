@@ -1,3 +1,4 @@
+import { Box as Place } from "@mantine/core";
 import { useCallback, useState } from "react";
 import { formatIn, formatSi } from "../../ui/format";
 import { useScheme } from "../../ui/use-canvas";
@@ -36,7 +37,7 @@ export function BodePlot({ label, shown }: { label: string; shown: BodeShown }) 
           <PictureMenu name={label} take={take} />
         </li>
       </Legend>
-      <div className={styles.stage}>
+      <Place flex={1} mih={180}>
         <Painted
           label={label}
           paint={paint}
@@ -47,7 +48,7 @@ export function BodePlot({ label, shown }: { label: string; shown: BodeShown }) 
             setRead(isWithin ? nearest(hertz, hertz[0] * (hertz[hertz.length - 1] / hertz[0]) ** share) : undefined);
           }}
         />
-      </div>
+      </Place>
     </div>
   );
 }

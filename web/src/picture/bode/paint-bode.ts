@@ -11,7 +11,7 @@ export interface BodeShown {
   curves: BodeCurve[];
   band?: BodeBand;
   points?: BodePoints;
-  /** What the phase may span. */
+  /** The range of the phase. */
   degrees?: Range;
 }
 
@@ -30,7 +30,7 @@ export function bodeEntries({ curves, points, band }: BodeShown, scheme: Scheme)
   ];
 }
 
-/** Magnitude over phase, on one logarithmic axis of frequency; upright, what is read. */
+/** Magnitude over phase, on one logarithmic axis of frequency; an upright line marks the reading. */
 export function paintBode(pen: Pen, box: Box, shown: BodeShown, look: Look, read?: number): Plot {
   const { curves, band, points, degrees = WHOLE_TURN } = shown;
   const hertz = curves[0].hertz;

@@ -1,6 +1,6 @@
 import type { LogEntry } from "../api/types";
 
-/** An event with what matters to a test; for tests only. */
+/** An event with the given parts, for tests. */
 export function logEntry(part: Partial<LogEntry>): LogEntry {
   return {
     seq: 1,
