@@ -13,7 +13,6 @@ from server.api.deps import RateLimited, ServiceDep
 from server.api.joining import address_of, give_session
 from server.api.students import student_of, students_of
 from server.bench.commands import Command
-from server.classroom import join_addresses
 from server.errors import REFUSED, why
 from server.people.classes import Class
 from server.people.person import Person
@@ -193,6 +192,8 @@ def _addressed(group: Class, service: Service, request: Request) -> Class:
         return group
     found = [f"{service.public}{group.path}"] if service.public.origin else []
     if service.settings.classroom:
+        from server.classroom import join_addresses
+
         pages = join_addresses(service.settings.host, request.scope["server"][1])
         found = [f"{page}{group.path.removeprefix('/join')}" for page in pages]
     return group.model_copy(update={"addresses": found})

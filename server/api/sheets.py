@@ -9,7 +9,6 @@ from fastapi import APIRouter, Path, Query, Response
 from pydantic import BaseModel, Field
 
 from core.format import format_short
-from scenarios.report.sheet import sheet_html
 from scenarios.sheets.sheet import Sheet
 from server.api.bodies import Body, StrictRoute
 from server.api.classes import Outcomes
@@ -230,6 +229,8 @@ async def get_report_of(class_id: Id, sheet_id: Id, member_id: Id, service: Serv
 
 
 async def _report(service: Service, person: Person, sheet: Sheet) -> Response:
+    from scenarios.report.sheet import sheet_html  # loads Markdown, mathematics and templates
+
     work = next((work for work in service.sheets.works(person.id) if work.sheet_id == sheet.id), None)
     if work is None:
         raise ApiError(409, "conflict", "the sheet has not been begun", "sheet", "begin it first")
