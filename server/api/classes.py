@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import asyncio
 
-from fastapi import APIRouter, Request, Response
+from fastapi import Request, Response
 from pydantic import BaseModel, Field
 
 from server.api.benches import NewBench
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import RateLimited, ServiceDep
 from server.api.joining import address_of, give_session
+from server.api.router import Router
 from server.api.students import student_of, students_of
 from server.bench.commands import Command
 from server.errors import REFUSED, why
@@ -20,7 +21,7 @@ from server.people.sheet_work import brief
 from server.people.tile import Tile, tile_of
 from server.service import Service
 
-router = APIRouter(prefix="/classes", tags=["classes"], route_class=StrictRoute)
+router = Router(prefix="/classes", tags=["classes"])
 
 LONGEST_H = 24.0 * 14
 

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import PersonDep, ServiceDep
+from server.api.router import Router
 from server.errors import ApiError
 from server.people.person import Role
 from server.people.votes import OpenVote
 
-router = APIRouter(prefix="/me", tags=["classes"], route_class=StrictRoute)
+router = Router(prefix="/me", tags=["classes"])
 
 
 class Me(BaseModel):

@@ -5,14 +5,15 @@ from __future__ import annotations
 import asyncio
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Path, Query, Response
+from fastapi import Path, Query, Response
 from pydantic import BaseModel, Field
 
 from core.format import format_short
 from scenarios.sheets.sheet import Sheet
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.classes import Outcomes
 from server.api.deps import PersonDep, RateLimited, ServiceDep
+from server.api.router import Router
 from server.api.students import student_of, students_of
 from server.errors import REFUSED, ApiError, not_found, why
 from server.people.grades import Grade, grades_csv, grades_of
@@ -22,7 +23,7 @@ from server.people.sheet_work import SheetBrief, brief
 from server.service import Service
 from server.store.recordings import Recording
 
-router = APIRouter(tags=["sheets"], route_class=StrictRoute)
+router = Router(tags=["sheets"])
 
 Id = Annotated[str, Path(max_length=80)]
 
