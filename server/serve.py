@@ -174,7 +174,7 @@ def serve(settings: Settings) -> None:
         try:
             keep_private(settings.data)
             stack.enter_context(lock(settings.data, "data"))
-            gc.disable()  # until everything is there: the collector would go through it many times and find nothing
+            gc.disable()  # loading makes many objects and no garbage; `startup` turns it on again
             from server.app import create_app  # this import loads everything; wrong settings are reported before it
 
             app = create_app(settings)

@@ -64,7 +64,7 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 FIRST_PAGE_S = 3.0
-"""How long processes for later requests are not started, each of which loads for a second."""
+"""Time before the processes for requests are started; loading takes a second of a processor for each process."""
 
 
 class Service:
