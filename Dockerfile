@@ -37,7 +37,7 @@ ENV COMBBENCH_KERNEL_CACHE=/app/kernels
 RUN .venv/bin/uv venv --quiet /audit \
  && .venv/bin/uv pip install --quiet --python /audit/bin/python -c requirements.lock cyclonedx-bom pip-audit
 RUN .venv/bin/uv pip install --quiet --no-deps --editable . \
- && .venv/bin/python -m compileall -q core scenarios server .venv/lib \
+ && .venv/bin/python -m compileall -q -j 0 core scenarios server .venv/lib \
  && .venv/bin/python -m scenarios.kernels && chmod -R a+rX kernels \
  && .venv/bin/python -m server.runs.build_figures \
  && .venv/bin/python -m pip uninstall --quiet --yes uv pip setuptools \

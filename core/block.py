@@ -35,7 +35,7 @@ LEAST, MOST = 1e-60, 1e100
 class BlockParams(Table):
     """Parameters of a block."""
 
-    model_config = ConfigDict(frozen=True, validate_default=False)
+    model_config = ConfigDict(frozen=True, validate_default=False, defer_build=True)
 
     @model_validator(mode="after")
     def _of_a_size_to_compute_with(self) -> Self:

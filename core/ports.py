@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from inspect import get_annotations
-from typing import Any, ClassVar, Protocol, get_type_hints
+from typing import Any, ClassVar, Protocol
 
 from core.record import Record, Records, record_of
 
@@ -160,12 +160,11 @@ class BlockPorts:
     def __init_subclass__(cls) -> None:
         """Give every port its place: ports of the bases first, then its own, a port declared anew at its old place."""
         ports = {port.name: port for base in cls.__bases__ for port in getattr(base, "declared", ())}
-        hints = get_type_hints(cls)
-        for name in get_annotations(cls):
+        for name, hint in get_annotations(cls, eval_str=True).items():
             port = cls.__dict__.get(name)
             if not isinstance(port, Port):
                 raise TypeError(f"{cls.__qualname__}.{name}: declare reads(...), output(...) or tap(...)")
-            vector, record = hints[name] is not float, record_of(hints[name])
+            vector, record = hint is not float, record_of(hint)
             ports[name] = replace(port, name=name, vector=vector, record=record)
         cls.declared = tuple(sorted(ports.values(), key=lambda port: KINDS.index(port.kind)))
         for place, port in enumerate(cls.declared):

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from inspect import get_annotations
-from typing import Annotated, Any, ClassVar, Generic, Self, TypeVar, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, ClassVar, Generic, Self, TypeVar, get_args, get_origin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -138,9 +138,8 @@ class Record:
     def __init_subclass__(cls) -> None:
         """Lay the fields out: fields of the bases first, then its own."""
         declared = {name: many for base in cls.__bases__ for name, many in getattr(base, "_declared", {}).items()}
-        hints = get_type_hints(cls, include_extras=True)
-        for name in get_annotations(cls):
-            declared[name] = (hints[name], cls.__dict__.get(name))
+        for name, hint in get_annotations(cls, eval_str=True).items():
+            declared[name] = (hint, cls.__dict__.get(name))
         cls._declared, cls._blank = declared, {}
         cls.layout = _laid_out(cls.__qualname__, declared)
         for field in cls.layout.fields:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import importlib
 import pkgutil
 from functools import cache
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import EntryPoint, EntryPoints, entry_points
+from typing import Any
 
 from core.block import LOOP, Block
 from core.cards import BlockCard, card, check_structure, is_live
@@ -47,8 +48,8 @@ def _all(family: str) -> dict[str, type[Block]]:
                 and hasattr(value, "title")  # the bases of families have none
             ):
                 found[value.name] = value
-    for entry in entry_points(group=f"combbench.{family}"):
-        loaded = _installed(entry)
+    for entry in installed(family):
+        loaded = _loaded(entry)
         loaded.name, loaded.family = entry.name, family
         found[entry.name] = loaded
     for loaded in found.values():
@@ -57,7 +58,19 @@ def _all(family: str) -> dict[str, type[Block]]:
     return dict(sorted(found.items()))
 
 
-def _installed(entry: EntryPoint) -> type[Block]:
+def installed(family: str) -> EntryPoints:
+    """Return the blocks of a family in installed packages, as entry points."""
+    found: EntryPoints = _entry_points().select(group=f"combbench.{family}")
+    return found
+
+
+@cache
+def _entry_points() -> Any:
+    """Return all entry points, of a kind that depends on Python; each look reads a file of every installed package."""
+    return entry_points()
+
+
+def _loaded(entry: EntryPoint) -> type[Block]:
     """Return the block that an installed package names.
 
     Raises

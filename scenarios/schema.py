@@ -7,7 +7,6 @@ import operator
 from functools import cached_property
 from typing import Any, Literal
 
-import tomlkit
 from pydantic import Field, ValidationError
 
 from core.board.changes import check
@@ -191,6 +190,8 @@ class Scenario:
 
     def toml(self) -> str:
         """Return the scenario as TOML."""
+        import tomlkit  # it writes TOML; Python itself reads it
+
         return tomlkit.dumps(self.document)
 
 

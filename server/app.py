@@ -55,6 +55,7 @@ from server.api import (
 )
 from server.api.gate import Gate
 from server.api.page import Page
+from server.api.router import API
 from server.security.body import BodyLimit
 from server.security.frames import Frames
 from server.security.headers import SecurityHeaders
@@ -65,7 +66,6 @@ from server.service import Service
 from server.settings import Settings
 from server.version import VERSION
 
-API = "/api/v1"
 ROUTERS = (
     catalog,
     devices,
@@ -143,22 +143,19 @@ def create_app(settings: Settings) -> FastAPI:
         docs_url=None,
         redoc_url=None,
         redirect_slashes=False,
-        generate_unique_id_function=lambda route: route.name,
         servers=[{"url": str(public)}] if public.origin else None,
     )
     app.state.service, app.state.identity = service, identity
     errors.install(app, public.prefix)
     document.install(app)
-    for module in ROUTERS:
-        app.include_router(module.router, prefix=API)
-    for module in (health, metrics, joining, places):
-        app.include_router(module.router)
+    for module in (*ROUTERS, health, metrics, joining, places):
+        app.router.routes += module.router.routes
     if importlib.util.find_spec("server.view3d") is not None:
         from server.api import view3d
 
-        app.include_router(view3d.router)
+        app.router.routes += view3d.router.routes
     if settings.clock == "manual":
-        app.include_router(testing.router, prefix=API)
+        app.router.routes += testing.router.routes
     if settings.lti:
         from server.api import lti
 

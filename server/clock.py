@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import threading
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncGenerator
 from dataclasses import dataclass, field
 
 
@@ -23,7 +23,7 @@ class Clock:
         """Block a thread until the condition is notified or the time has passed."""
         condition.wait(seconds)
 
-    async def every(self, seconds: float) -> AsyncIterator[None]:
+    async def every(self, seconds: float) -> AsyncGenerator[None, None]:
         """Yield again and again, each time after an interval."""
         while True:
             await asyncio.sleep(seconds)
@@ -65,7 +65,7 @@ class ManualClock(Clock):
         """Block a thread until the condition is notified: no time passes meanwhile."""
         condition.wait()
 
-    async def every(self, seconds: float) -> AsyncIterator[None]:
+    async def every(self, seconds: float) -> AsyncGenerator[None, None]:
         """Yield again and again, each time that the clock has been advanced by an interval."""
         while True:
             sleeper = Sleeper(self._now + seconds)

@@ -9,7 +9,6 @@ from http import HTTPStatus
 from typing import Any
 from urllib.parse import urlencode
 
-import pyarrow as pa
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, RedirectResponse, Response
@@ -22,6 +21,7 @@ from starlette.websockets import WebSocketDisconnect
 
 from core.errors import InputError, did_you_mean, either, field_of, one_line
 from core.format import micro
+from scenarios.arrow import pa
 
 log = logging.getLogger(__name__)
 
@@ -223,10 +223,6 @@ def install(app: FastAPI, prefix: str) -> None:
         body = ErrorBody(code="no_space", message=f"the answer cannot be made: {error.strerror}")
         return reply(507, body)
 
-    @app.exception_handler(pa.ArrowException)
-    async def _(_request: Request, error: pa.ArrowException) -> JSONResponse:
-        return unreadable(error)
-
     @app.exception_handler(InputError)
     async def _(_request: Request, error: InputError) -> JSONResponse:
         return reply(422, body_of(error))
@@ -298,9 +294,13 @@ class CatchAll:
             log.info("a client of %s has gone before it was answered", scope["path"])
             if isinstance(gone.__cause__, OSError):
                 raise gone.__cause__ from None  # so that the web server does not miss the answer
-        except Exception:
+        except Exception as error:
+            can_answer = scope["type"] == "http" and not started
+            if can_answer and isinstance(error, pa.ArrowException):  # a handler in `install` would load pyarrow
+                await unreadable(error)(scope, receive, send)
+                return
             log.exception("unexpected error in %s %s", scope["type"], scope.get("path", ""))
-            if started or scope["type"] != "http":
+            if not can_answer:
                 raise
             body = ErrorBody(code="internal", message="the server failed on this request; its log says why")
             await reply(500, body)(scope, receive, send)

@@ -10,8 +10,7 @@ import secrets
 from collections.abc import AsyncIterator, Sequence
 from typing import TYPE_CHECKING
 
-import pyarrow as pa
-
+from scenarios.arrow import pa
 from server.bench.bench import LiveBench
 from server.bench.benches import Benches
 from server.bench.checkpoints import Checkpoints
@@ -61,6 +60,9 @@ if TYPE_CHECKING:
     from server.view3d.viewers import Viewers
 
 log = logging.getLogger(__name__)
+
+FIRST_PAGE_S = 3.0
+"""Time before the processes for requests are started; loading takes a second of a processor for each process."""
 
 
 class Service:
@@ -185,10 +187,10 @@ class Service:
         tasks.append(asyncio.create_task(self.keeping.run(self.clock)))
         lasting = (self.audit, self.checkpoints, self.classes, self.driving, self.reopening, self.sheets)
         tasks += [asyncio.create_task(part.run(self.clock)) for part in lasting]
-        tasks.append(asyncio.create_task(self.queue.warm(self.kernels.compiled)))
-        tasks.append(asyncio.create_task(self.computing.warm(self.kernels.compiled)))
-        # where pandas is installed, pyarrow loads it with the first array, which takes longer than a recording may wait
-        tasks.append(asyncio.create_task(asyncio.to_thread(pa.array, [0.0])))
+        tasks.append(asyncio.create_task(self.queue.warm(self._calm)))
+        tasks.append(asyncio.create_task(self.computing.warm(self._calm)))
+        # pyarrow, and pandas where it is installed, load with the first array: for longer than a recording may wait
+        tasks.append(asyncio.create_task(asyncio.to_thread(lambda: pa.array([0.0]))))
         self.figures.start(self.kernels.compiled)
         self.is_ready = True
         try:
@@ -283,6 +285,12 @@ class Service:
         """Tell every page that the server stops, and close its stream."""
         self.hub.close_all("the server is stopping")
         await asyncio.sleep(0.1)
+
+    async def _calm(self) -> None:
+        """Wait until all kernels are compiled, and until the first page has had the processors for its bench."""
+        await self.kernels.compiled()
+        async with contextlib.aclosing(self.clock.every(FIRST_PAGE_S)) as beats:
+            await anext(beats)
 
     def _present(self, bench_id: str) -> int:
         """Count the pages that watch a bench, those with its 3D view alone too."""

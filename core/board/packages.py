@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib.machinery import ModuleSpec
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import EntryPoint
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from importlib.util import find_spec
@@ -19,7 +19,7 @@ from pydantic import Field, ValidationError
 from core.board.document import Document, defaults, plant_of
 from core.board.library import library_of
 from core.errors import InputError, from_validation, short
-from core.registry import FAMILIES, blocks
+from core.registry import FAMILIES, blocks, installed
 from core.table import Table
 
 TABLE = "packages"
@@ -74,7 +74,7 @@ def packages() -> dict[str, Package]:
     """Return the installed packages with blocks, by name."""
     found: dict[str, list[EntryPoint]] = {}
     for family in FAMILIES:
-        for entry in entry_points(group=f"combbench.{family}"):
+        for entry in installed(family):
             if entry.dist is not None:
                 found.setdefault(_plain(entry.dist.name), []).append(entry)
     return {

@@ -103,7 +103,7 @@ class Consistency(KalmanBank):
         p = cls.filters(cls.Packed.blank(), params, context)
         window.fill(p, params, context, params.window, params.window)
         p.power_limit = chi_square(params.window, params.significance)
-        p.tone_limit = chi_square(2.0, params.significance)
+        p.tone_limit = chi_square(2, params.significance)
         return p
 
     @classmethod

@@ -14,7 +14,7 @@ A9, A10 = -3.65315727442169155270e-02, 1.62858201153657823623e-02
 HALF_HIGH, HALF_LOW = 4.63647609000806093515e-01, 2.26987774529616870924e-17
 ONE_HIGH, ONE_LOW = 7.85398163397448278999e-01, 3.06161699786838301793e-17
 PI_HIGH, PI_LOW = 3.14159265358979311600, 1.22464679914735317723e-16
-"""Arcus tangents of 1/2 and 1, and a half turn, each with what a double lacks."""
+"""Arcus tangents of 1/2 and 1, and a half turn, each with the remainder that a double lacks."""
 BIG, TINY = 3.273390607896142e150, 3.0549363634996047e-151
 """2^500 and 2^-500: points further out or in are scaled, so that no product leaves the range."""
 

@@ -152,7 +152,7 @@ class Score(Block):
 
 def take_turns(p: Turns, n: int, context: Context) -> None:
     """Pack the common fields of a score with this number of hypotheses."""
-    samples = 2.0 * SPAN - 1.0
+    samples = round(2.0 * SPAN) - 1
     p.count, p.every, p.limit = n, context.every, chi_square(samples, CHANCE) / samples
 
 

@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
-import tomlkit
 from pydantic import StringConstraints, ValidationError
 
 from core.errors import InputError, from_validation
@@ -115,6 +114,8 @@ def hidden_list(text: str, tracks: tuple[str, ...]) -> SeedList:
 
 def main() -> None:
     """Print a new hidden list, or the list of a salt: ``python -m scenarios.benchmark.seeds [SALT] > hidden.toml``."""
+    import tomlkit
+
     from scenarios.benchmark.track import tracks
 
     salt = sys.argv[1] if len(sys.argv) > 1 else secrets.token_hex(SALT_BYTES)

@@ -5,26 +5,23 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-import pyarrow as pa
-
+from scenarios.arrow import pa
 from scenarios.campaign.outcome import Diagnosis, Outcome
 from scenarios.campaign.sweep import Sweep
 
 FIXED = {
-    "seed": pa.int64(),
-    "key": pa.string(),
-    "digest": pa.string(),
-    "ticks": pa.int64(),
-    "ok": pa.bool_(),
-    "trip": pa.string(),
-    "error": pa.string(),
-    "warnings": pa.string(),
-    "elapsed_s": pa.float64(),
+    "seed": "int64",
+    "key": "string",
+    "digest": "string",
+    "ticks": "int64",
+    "ok": "bool",
+    "trip": "string",
+    "error": "string",
+    "warnings": "string",
+    "elapsed_s": "float64",
 }
-COUNTS = pa.list_(pa.int32())
-NAMES = pa.list_(pa.string())
-DIAGNOSIS = {"names": NAMES, "confusion": COUNTS, "delays": COUNTS, "healthy": COUNTS, "faulty": COUNTS}
-"""Results of each diagnoser: hypotheses; samples by truth and verdict, row by row; samples until each change of the
+DIAGNOSIS = {"names": "string", "confusion": "int32", "delays": "int32", "healthy": "int32", "faulty": "int32"}
+"""Lists of each diagnoser: hypotheses; samples by truth and verdict, row by row; samples until each change of the
 truth was found, null for a missed change; samples by evidence (`scenarios.campaign.outcome.EVIDENCE`)."""
 ABOUT = b"combbench"
 """The content of a column, stored with its name: an axis, a figure, or the result of a diagnoser."""
@@ -57,7 +54,8 @@ def columns(sweep: Sweep, rows: Iterable[Row]) -> pa.Table:
     for name in sorted({name for outcome in outcomes for name in outcome.diagnosis}):
         said = [outcome.diagnosis.get(name) for outcome in outcomes]
         for part, kind in DIAGNOSIS.items():
-            found[f"diagnosis.{name}.{part}"] = ("diagnosis", pa.array([_part(one, part) for one in said], kind))
+            lists = pa.array([_part(one, part) for one in said], pa.list_(pa.type_for_alias(kind)))
+            found[f"diagnosis.{name}.{part}"] = ("diagnosis", lists)
     schema = pa.schema([pa.field(name, array.type, metadata={ABOUT: about}) for name, (about, array) in found.items()])
     return pa.table([array for _, array in found.values()], schema=schema)
 

@@ -14,10 +14,8 @@ from pathlib import Path
 from typing import BinaryIO, Literal
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
-from pyarrow.csv import CSVWriter
 
+from scenarios.arrow import csv, pa, pq
 from scenarios.campaign.columns import ABOUT, Row, about, columns, fitted, union
 from scenarios.campaign.outcome import Outcome
 from scenarios.campaign.sums import Sums
@@ -191,7 +189,8 @@ def write_runs(parts: Parts, file: BinaryIO, *, kind: Literal["csv", "parquet"])
     names = [name for name in schema.names if about(schema.field(name)) != "diagnosis" and name != "key"]
     names = ["key", *names] if "key" in schema.names else names
     chosen = pa.schema([schema.field(name).remove_metadata() for name in names])
-    with pq.ParquetWriter(file, chosen, compression="zstd") if kind == "parquet" else CSVWriter(file, chosen) as writer:
+    made = pq.ParquetWriter(file, chosen, compression="zstd") if kind == "parquet" else csv.CSVWriter(file, chosen)
+    with made as writer:
         for table in parts.tables(names):
             writer.write_table(table.select(names).replace_schema_metadata().cast(chosen))
             rows += table.num_rows

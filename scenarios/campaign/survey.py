@@ -7,12 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.compute as pc
 from pydantic import BaseModel, Field, TypeAdapter
 
 from core.block import FloatArray, IntArray
 from core.errors import unknown
+from scenarios.arrow import pa, pc
 from scenarios.campaign.columns import named
 from scenarios.campaign.parts import PART, Parts
 from scenarios.campaign.sums import Sums

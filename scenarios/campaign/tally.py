@@ -8,11 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.compute as pc
 from numpy.typing import NDArray
 
 from core.block import FloatArray, IntArray
+from scenarios.arrow import pa, pc
 from scenarios.campaign.columns import DIAGNOSIS, Row, columns, diagnosers, named
 from scenarios.campaign.outcome import EVIDENCE, Outcome
 from scenarios.campaign.points import Labels

@@ -10,7 +10,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Literal
 
 import numpy as np
-import scipy
 from pydantic import BaseModel, Field
 
 from core.block import FloatArray
@@ -136,10 +135,12 @@ def _is_varied(choices: Sequence[object]) -> bool:
 
 def _ranking(values: Mapping[str, FloatArray], means: FloatArray) -> list[Rank]:
     """Return the correlation of means with each number; a constant number has none."""
+    from scipy.stats import spearmanr
+
     found = []
     for name, at in values.items():
         is_flat = len(means) < 3 or np.ptp(at) == 0.0 or np.ptp(means) == 0.0
-        found.append(Rank(name=name, correlation=0.0 if is_flat else float(scipy.stats.spearmanr(at, means)[0])))
+        found.append(Rank(name=name, correlation=0.0 if is_flat else float(spearmanr(at, means)[0])))
     return sorted(found, key=lambda one: -abs(one.correlation))
 
 

@@ -3,31 +3,40 @@
 from __future__ import annotations
 
 from datetime import UTC, datetime
+from functools import cache
 from pathlib import Path
-from typing import Any
-
-import tomlkit
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from typing import TYPE_CHECKING, Any
 
 from core.format import format_number, format_short
 from scenarios.key import code_version
 from scenarios.report.palette import style
 from scenarios.report.svg import paint
 
-TEMPLATES = Environment(
-    loader=FileSystemLoader(Path(__file__).parent / "templates"),
-    autoescape=True,
-    undefined=StrictUndefined,
-    trim_blocks=True,
-    lstrip_blocks=True,
-)
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+
+@cache
+def _templates() -> Environment:
+    """Return the templates; their engine is loaded with the first report."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    templates = Environment(
+        loader=FileSystemLoader(Path(__file__).parent / "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    templates.filters |= {"say": say, "paint": paint}  # the painter escapes the texts in a chart
+    return templates
 
 
 def page(template: str, title: str, **values: Any) -> str:
     """Fill in a template; each of its values must be given."""
     now = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
     common = {"title": title, "style": style(), "version": code_version(), "written": now}
-    return TEMPLATES.get_template(template).render(**common, **values)
+    return _templates().get_template(template).render(**common, **values)
 
 
 def say(value: Any) -> str:
@@ -37,11 +46,10 @@ def say(value: Any) -> str:
     return format_number(value, 0) if isinstance(value, int) else format_short(value, "", 6)
 
 
-TEMPLATES.filters |= {"say": say, "paint": paint}  # the painter escapes the texts in a chart
-
-
 def as_toml(document: dict[str, Any]) -> str:
     """Write a document as TOML, which has no null."""
+    import tomlkit
+
     return tomlkit.dumps(_without_null(document))
 
 

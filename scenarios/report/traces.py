@@ -8,13 +8,12 @@ from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 
 from core.block import FloatArray
 from core.board.board import Board
 from core.board.rows import Rows
 from core.signals import CLOCK, Signal
+from scenarios.arrow import pa, pq
 
 PIECE_TICKS = 1 << 15
 

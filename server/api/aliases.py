@@ -6,18 +6,19 @@ import math
 from typing import Annotated
 
 import numpy as np
-from fastapi import APIRouter, Path
+from fastapi import Path
 from pydantic import BaseModel, Field
 
 from core.block import Oscillator
 from core.diagnose.aliases import AliasMap, alias_map
 from core.diagnose.hypothesis import Hypothesis
 from core.errors import InputError
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import ComputingDep, SessionDep
 from server.api.diagnosers import hypotheses_of, spec_and_section, tones_of
+from server.api.router import Router
 
-router = APIRouter(prefix="/benches/{bench_id}/diagnosers/{name}", tags=["diagnosis"], route_class=StrictRoute)
+router = Router(prefix="/benches/{bench_id}/diagnosers/{name}", tags=["diagnosis"])
 
 Name = Annotated[str, Path(max_length=80, description="Id of the diagnoser; of a twin's: <twin>:<id>")]
 MOST_HYPOTHESES = 16

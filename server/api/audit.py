@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from pydantic import BaseModel
 
-from server.api.bodies import StrictRoute
 from server.api.deps import ServiceDep
+from server.api.router import Router
 from server.classroom.audit import AuditEntry
 
-router = APIRouter(tags=["classes"], route_class=StrictRoute)
+router = Router(tags=["classes"])
 
 Limit = Annotated[int, Query(ge=1, le=10_000)]
 

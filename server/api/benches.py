@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Self
 
-from fastapi import APIRouter, Body, Query, Response
+from fastapi import Body, Query, Response
 from pydantic import BaseModel, Field, model_validator
 
 from core.own.admission import kept
 from scenarios.schema import Scenario
 from server.api.bodies import Body as StrictBody
-from server.api.bodies import StrictRoute
 from server.api.deps import CallerDep, PersonDep, RateLimited, SeenDep, ServiceDep, SessionDep
+from server.api.router import Router
 from server.bench.blind import HINT
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Command
 from server.bench.description import document_of
@@ -22,7 +22,7 @@ from server.errors import ApiError
 
 MAX_NAME = 80
 
-router = APIRouter(prefix="/benches", tags=["benches"], route_class=StrictRoute)
+router = Router(prefix="/benches", tags=["benches"])
 
 
 class NewBench(StrictBody):

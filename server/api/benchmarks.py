@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from functools import cache
 
-from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from scenarios.benchmark import results
 from scenarios.benchmark.results import Cost, LeftOut, Row
 from scenarios.benchmark.seeds import BENCHMARK, COMMITMENT, LISTS
 from scenarios.benchmark.track import tracks
-from server.api.bodies import StrictRoute
+from server.api.router import Router
 from server.errors import not_found
 
-router = APIRouter(prefix="/benchmarks", tags=["benchmarks"], route_class=StrictRoute)
+router = Router(prefix="/benchmarks", tags=["benchmarks"])
 TITLE = "How soon and how honestly a fault is noticed and named"
 
 

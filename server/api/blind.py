@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from typing import Any
 
-from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.classes import Outcomes
 from server.api.deps import PersonDep, RateLimited, ServiceDep, SessionDep
+from server.api.router import Router
 from server.api.students import students_of
 from server.bench.blind import HiddenQuestion
 from server.classroom.blind_class import begin_for
 from server.classroom.blinds import Answer
 from server.errors import REFUSED, ApiError, why
 
-router = APIRouter(tags=["blind"], route_class=StrictRoute)
+router = Router(tags=["blind"])
 
 BENCH = "/benches/{bench_id}/blind"
 CLASS = "/classes/{class_id}/blind"

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from server.api.bodies import StrictRoute
 from server.api.deps import SeenDep, ServiceDep
+from server.api.router import Router
 from server.bench.captures import CaptureSet
 from server.stream.wire import CaptureMark
 
-router = APIRouter(prefix="/benches", tags=["trace"], route_class=StrictRoute)
+router = Router(prefix="/benches", tags=["trace"])
 
 
 class TriggerCaptures(BaseModel):

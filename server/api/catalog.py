@@ -5,16 +5,16 @@ from __future__ import annotations
 import gzip
 from functools import cache
 
-from fastapi import APIRouter, Request, Response
+from fastapi import Request, Response
 from pydantic import BaseModel
 
 from core.cards import BlockCard
 from core.registry import catalog
-from server.api.bodies import StrictRoute
 from server.api.compression import takes_gzip
+from server.api.router import Router
 from server.version import VERSION
 
-router = APIRouter(tags=["catalogue"], route_class=StrictRoute)
+router = Router(tags=["catalogue"])
 
 
 class Catalogue(BaseModel):

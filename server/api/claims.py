@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import asyncio
 
-from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from scenarios.claims import Claim, Mark, claims, marks
 from scenarios.expectation import Verdict, overall
 from scenarios.knobs import Knob, knobs
-from server.api.bodies import StrictRoute
 from server.api.deps import ServiceDep, SessionDep
+from server.api.router import Router
 from server.bench.measuring import Run
 from server.version import VERSION
 
-router = APIRouter(prefix="/benches/{bench_id}", tags=["claims"], route_class=StrictRoute)
+router = Router(prefix="/benches/{bench_id}", tags=["claims"])
 
 
 class BenchClaim(Claim):

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import asyncio
 
-from fastapi import APIRouter, Request, Response
+from fastapi import Request, Response
 from pydantic import BaseModel, Field
 
 from server.api.benches import NewBench
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import RateLimited, ServiceDep
 from server.api.joining import address_of, give_session
+from server.api.router import Router
 from server.api.students import student_of, students_of
 from server.bench.commands import Command
-from server.classroom.addresses import join_addresses
 from server.classroom.classes import Class
 from server.classroom.sheet_work import brief
 from server.classroom.tile import Tile, tile_of
@@ -21,7 +21,7 @@ from server.errors import REFUSED, why
 from server.security.person import Person
 from server.service import Service
 
-router = APIRouter(prefix="/classes", tags=["classes"], route_class=StrictRoute)
+router = Router(prefix="/classes", tags=["classes"])
 
 LONGEST_H = 24.0 * 14
 
@@ -193,6 +193,8 @@ def _addressed(group: Class, service: Service, request: Request) -> Class:
         return group
     found = [f"{service.public}{group.path}"] if service.public.origin else []
     if service.settings.classroom:
+        from server.classroom.addresses import join_addresses
+
         pages = join_addresses(service.settings.host, request.scope["server"][1])
         found = [f"{page}{group.path.removeprefix('/join')}" for page in pages]
     return group.model_copy(update={"addresses": found})

@@ -6,7 +6,6 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
-from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from core import registry
@@ -18,10 +17,11 @@ from core.device.quantities import QUANTITIES
 from core.device.spread import Tolerances
 from core.table import Words
 from scenarios.design import Statistics, bode_band, designed, device_figures, process, sensitivities
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import ComputingDep
+from server.api.router import Router
 
-router = APIRouter(prefix="/devices", tags=["devices"], route_class=StrictRoute)
+router = Router(prefix="/devices", tags=["devices"])
 
 
 class DeviceCard(BaseModel):

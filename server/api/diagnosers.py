@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any, cast
 
 import numpy as np
-from fastapi import APIRouter, Query
+from fastapi import Query
 
 from core.board.ensemble import Ensemble
 from core.board.explain import Account, Turn, explain, last_turn, signals_of
@@ -16,12 +16,12 @@ from core.diagnose.hypothesis import Hypothesis, names_of
 from core.diagnose.hypothesis import hypotheses_of as factors_of
 from core.errors import InputError, unknown
 from core.reference.waveform import Waveform
-from server.api.bodies import StrictRoute
 from server.api.deps import SessionDep
+from server.api.router import Router
 from server.bench.bench import LiveBench
 from server.bench.tape import Tape
 
-router = APIRouter(prefix="/benches/{bench_id}/diagnosers/{name}", tags=["diagnosers"], route_class=StrictRoute)
+router = Router(prefix="/benches/{bench_id}/diagnosers/{name}", tags=["diagnosers"])
 
 
 @router.get("/explain")

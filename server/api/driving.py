@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Literal, Self
 
-from fastapi import APIRouter
 from pydantic import BaseModel, Field, model_validator
 
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import PersonDep, RateLimited, ServiceDep, SessionDep
+from server.api.router import Router
 from server.bench.status import Company
 
-router = APIRouter(prefix="/benches/{bench_id}/driving", tags=["classes"], route_class=StrictRoute)
+router = Router(prefix="/benches/{bench_id}/driving", tags=["classes"])
 
 
 class DrivingTurn(Body):

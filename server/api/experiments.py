@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Annotated, Any, TypeVar
 
 import numpy as np
-from fastapi import APIRouter, Query
+from fastapi import Query
 from pydantic import BaseModel, Field
 
 from core.board.board import Board
@@ -22,15 +22,16 @@ from core.units import UM_PER_M
 from scenarios.measure.plant_cost import PlantCost, plant_costs
 from scenarios.measure.sweep_sine import sweep_sine
 from scenarios.measure.unstable_region import unstable_region
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import RateLimited, SeenDep, ServiceDep, SessionDep
+from server.api.router import Router
 from server.bench.bench import LiveBench
 from server.bench.hiding import BlindView
 from server.bench.tape import REFUSAL
 from server.computing.computing import LONGEST_S
 from server.service import Service
 
-router = APIRouter(prefix="/benches/{bench_id}", tags=["experiments"], route_class=StrictRoute)
+router = Router(prefix="/benches/{bench_id}", tags=["experiments"])
 
 MOST_TICKS = 3_000_000
 """Ticks of one pass of a sweep: some seconds of this machine."""

@@ -12,11 +12,11 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Any, BinaryIO, cast
 
-import pyarrow as pa
 from fastapi import Depends, Query
 from fastapi.responses import FileResponse, Response, StreamingResponse
 from pydantic import Field
 
+from scenarios.arrow import pa
 from server.service import Service
 from server.store.traces import MEDIA_TYPES, Cut, Format, read_cut, write
 

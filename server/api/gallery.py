@@ -7,7 +7,7 @@ import fnmatch
 from functools import cache
 from typing import Annotated
 
-from fastapi import APIRouter, Query, Response
+from fastapi import Query, Response
 from pydantic import BaseModel, Field
 
 from core.board.commands import Inject, Switch
@@ -18,14 +18,15 @@ from scenarios.expectation import Verdict, overall
 from scenarios.library import ids, is_demo, library
 from scenarios.report.svg import with_style
 from scenarios.schema import Scenario
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import SVG
+from server.api.router import Router
 from server.errors import not_found
 from server.runs.figures import Figure, Figures
 from server.runs.listing import Run
 
-router = APIRouter(prefix="/gallery", tags=["gallery"], route_class=StrictRoute)
+router = Router(prefix="/gallery", tags=["gallery"])
 
 
 First = Annotated[list[str], Query(max_length=64, description="Ids of cards in sight: their figures come first")]

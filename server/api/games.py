@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Query
+from fastapi import Path, Query
 from pydantic import BaseModel, Field
 
 from core.cards import EquationCard, ParameterCard, equation_card, parameter_cards
 from scenarios.games import GAMES
 from scenarios.games.game import MOST
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import PersonDep, RateLimited, ServiceDep
+from server.api.router import Router
 from server.classroom.games import ClassGame, Play
 from server.errors import ApiError
 from server.security.person import Person
 
-router = APIRouter(tags=["games"], route_class=StrictRoute)
+router = Router(tags=["games"])
 
 GameId = Annotated[str, Path(max_length=40)]
 Seed = Annotated[int, Query(ge=0, le=MOST, description="Each student of a class has a game of their own at it")]

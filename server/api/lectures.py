@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import asyncio
 
-from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from scenarios.lecture import Cue, Lecture, Question, State
 from scenarios.lectures import lecture, lecture_ids
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import CallerDep, PersonDep, RateLimited, ServiceDep
+from server.api.router import Router
 from server.bench.status import Bench
 from server.errors import ApiError, not_found
 
-router = APIRouter(prefix="/lectures", tags=["lectures"], route_class=StrictRoute)
+router = Router(prefix="/lectures", tags=["lectures"])
 
 
 class LectureCard(BaseModel):

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
 from pydantic import Field
 
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.classes import Outcomes
 from server.api.deps import PersonDep, RateLimited, ServiceDep
+from server.api.router import Router
 from server.api.students import student_of, students_of
 from server.bench.recording import Layout
 from server.classroom.lesson import GivenLayout
 from server.classroom.together import start_together
 from server.errors import ApiError, not_found
 
-router = APIRouter(tags=["classes"], route_class=StrictRoute)
+router = Router(tags=["classes"])
 
 
 class Shown(Body):

@@ -5,11 +5,12 @@ from __future__ import annotations
 import asyncio
 from typing import Any, Literal
 
-from fastapi import APIRouter, Response
+from fastapi import Response
 from pydantic import BaseModel, Field
 
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import IdentityDep, PersonDep, RateLimited, ServiceDep
+from server.api.router import Router
 from server.bench.build import prepare
 from server.bench.experiment import beginning_of, experiment_of
 from server.bench.pacing import usual_scale
@@ -18,7 +19,7 @@ from server.bench.status import Bench
 from server.errors import ApiError
 from server.store.links import Content, Link, LinkDetail
 
-router = APIRouter(prefix="/links", tags=["links"], route_class=StrictRoute)
+router = Router(prefix="/links", tags=["links"])
 
 LONGEST_TITLE, LONGEST_NOTE = 200, 2000
 

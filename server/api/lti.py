@@ -83,8 +83,7 @@ def install(app: FastAPI, service: Service) -> Frames:
         Once[Launch](CHOICE_S),
         Buckets(LAUNCHES_PER_S, LAUNCHES_AT_ONCE, clock=service.clock),
     )
-    app.include_router(router)
-    app.include_router(pages)
+    app.router.routes += [*router.routes, *pages.routes]
     return frames
 
 

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import PersonDep, ServiceDep
+from server.api.router import Router
 from server.classroom.votes import OpenVote
 from server.errors import ApiError
 from server.security.person import Role
 
-router = APIRouter(prefix="/me", tags=["classes"], route_class=StrictRoute)
+router = Router(prefix="/me", tags=["classes"])
 
 
 class Me(BaseModel):

@@ -7,8 +7,9 @@ from fastapi.responses import PlainTextResponse, Response
 from prometheus_client import CONTENT_TYPE_LATEST
 
 from server.api.deps import ServiceDep
+from server.api.router import name_of
 
-router = APIRouter(tags=["health"])
+router = APIRouter(tags=["health"], generate_unique_id_function=name_of)
 
 
 @router.get("/metrics", response_class=PlainTextResponse)

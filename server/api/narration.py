@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from pydantic import BaseModel, Field
 
 from scenarios.narrator.sentence import Sentence
-from server.api.bodies import StrictRoute
 from server.api.deps import SeenDep
+from server.api.router import Router
 from server.bench.narration import Mark
 
-router = APIRouter(prefix="/benches", tags=["benches"], route_class=StrictRoute)
+router = Router(prefix="/benches", tags=["benches"])
 
 
 class NarrationList(BaseModel):

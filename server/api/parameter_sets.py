@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from pydantic import BaseModel, Field
 
 from core.board.commands import Set
 from core.board.tuning import absent, difference, tuned
 from server.api.benches import CommandResult
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import CallerDep, PersonDep, RateLimited, ServiceDep, SessionDep
+from server.api.router import Router
 from server.classroom.access import Need
 from server.errors import ApiError
 from server.store.parameter_sets import ParameterSet, ParameterSetDetail
 
-router = APIRouter(tags=["parameter sets"], route_class=StrictRoute)
+router = Router(tags=["parameter sets"])
 
 
 class SetName(Body):

@@ -6,7 +6,6 @@ import math
 from typing import Any, cast
 
 import numpy as np
-from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from core.errors import unknown
@@ -14,10 +13,10 @@ from core.rate.drift import DriftParams
 from core.readout.allan import OCTAVES, Allan
 from core.theory.rate_noise import UNITS, fit
 from core.units import DEG_H_PER_DEG_S
-from server.api.bodies import StrictRoute
 from server.api.deps import SessionDep
+from server.api.router import Router
 
-router = APIRouter(prefix="/benches/{bench_id}/readouts", tags=["readouts"], route_class=StrictRoute)
+router = Router(prefix="/benches/{bench_id}/readouts", tags=["readouts"])
 
 
 class Octave(BaseModel):

@@ -5,12 +5,13 @@ from __future__ import annotations
 import asyncio
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Query, Response
+from fastapi import Query, Response
 from pydantic import BaseModel, Field
 
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import CallerDep, PersonDep, RateLimited, ServiceDep, SessionDep
 from server.api.files import FORMAT_RESPONSES, CutDep, stored_trace
+from server.api.router import Router
 from server.bench.recording import Wanted
 from server.bench.status import Bench
 from server.errors import not_found
@@ -20,7 +21,7 @@ from server.store.compare import Comparison, compare
 from server.store.recordings import Recording, RecordingDetail
 from server.store.traces import Format
 
-router = APIRouter(tags=["recordings"], route_class=StrictRoute)
+router = Router(tags=["recordings"])
 
 
 class Replay(Body):

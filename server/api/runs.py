@@ -5,22 +5,23 @@ from __future__ import annotations
 import asyncio
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Response
+from fastapi import Query, Response
 from fastapi.responses import FileResponse
 from pydantic import BaseModel, Field
 
 from core.board.spec import MOST_SEED
 from core.errors import InputError
 from scenarios.seeds import parse_seeds
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import FORMAT_RESPONSES, HTML, PYTHON, SVG, CutDep, file_name, report_response, stored_trace
+from server.api.router import Router
 from server.bench.build import prepare
 from server.runs.compare import MOST, RunComparison, RunTraces, compare_runs, traces
 from server.runs.listing import Run, RunFilter, clean_label
 from server.store.traces import Format
 
-router = APIRouter(prefix="/runs", tags=["runs"], route_class=StrictRoute)
+router = Router(prefix="/runs", tags=["runs"])
 
 FilterDep = Annotated[RunFilter, Query()]
 Ids = Annotated[list[str], Query(min_length=2, max_length=MOST, description="Runs, the one to compare with first")]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from fastapi import APIRouter, Response
+from fastapi import Response
 from pydantic import BaseModel, Field
 
 from core.board.document import plant_of
@@ -13,13 +13,14 @@ from scenarios.claims import check_marks
 from scenarios.expectation import Verdict
 from scenarios.library import get, ids, library
 from scenarios.schema import Scenario
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import ComputingDep
+from server.api.router import Router
 from server.bench.build import prepare
 from server.classroom.blind_class import check as check_hidden
 from server.errors import not_found
 
-router = APIRouter(prefix="/scenarios", tags=["scenarios"], route_class=StrictRoute)
+router = Router(prefix="/scenarios", tags=["scenarios"])
 
 
 class ScenarioCard(BaseModel):

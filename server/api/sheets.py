@@ -5,15 +5,15 @@ from __future__ import annotations
 import asyncio
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Path, Query, Response
+from fastapi import Path, Query, Response
 from pydantic import BaseModel, Field
 
 from core.format import format_short
-from scenarios.report.sheet import sheet_html
 from scenarios.sheets.sheet import Sheet
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.classes import Outcomes
 from server.api.deps import PersonDep, RateLimited, ServiceDep
+from server.api.router import Router
 from server.api.students import student_of, students_of
 from server.classroom.grades import Grade, grades_csv, grades_of
 from server.classroom.sheet_view import SheetView
@@ -23,7 +23,7 @@ from server.security.person import Person
 from server.service import Service
 from server.store.recordings import Recording
 
-router = APIRouter(tags=["sheets"], route_class=StrictRoute)
+router = Router(tags=["sheets"])
 
 Id = Annotated[str, Path(max_length=80)]
 
@@ -230,6 +230,8 @@ async def get_report_of(class_id: Id, sheet_id: Id, member_id: Id, service: Serv
 
 
 async def _report(service: Service, person: Person, sheet: Sheet) -> Response:
+    from scenarios.report.sheet import sheet_html  # loads Markdown, mathematics and templates
+
     work = next((work for work in service.sheets.works(person.id) if work.sheet_id == sheet.id), None)
     if work is None:
         raise ApiError(409, "conflict", "the sheet has not been begun", "sheet", "begin it first")

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import CallerDep, PersonDep, RateLimited, ServiceDep, SessionDep
+from server.api.router import Router
 from server.bench.status import Bench, Snapshot
 
-router = APIRouter(prefix="/benches/{bench_id}/snapshots", tags=["snapshots"], route_class=StrictRoute)
+router = Router(prefix="/benches/{bench_id}/snapshots", tags=["snapshots"])
 
 
 class NewSnapshot(Body):

@@ -8,13 +8,14 @@ import logging
 import re
 from typing import Any
 
-from fastapi import APIRouter, WebSocket, WebSocketDisconnect
+from fastapi import WebSocket, WebSocketDisconnect
 from pydantic import BaseModel, ValidationError
 
 from core.errors import InputError
 from core.format import format_short
 from server.api.bodies import strict_json
 from server.api.deps import SocketServiceDep, rate_limited
+from server.api.router import Router
 from server.bench.bench import LiveBench, Seen
 from server.bench.events import Event
 from server.classroom.access import Need
@@ -45,7 +46,7 @@ from server.stream.wire import (
     Unsubscribe,
 )
 
-router = APIRouter(tags=["stream"])
+router = Router(tags=["stream"])
 log = logging.getLogger(__name__)
 
 CLOSE_VERSION, CLOSE_FLOOD = 4001, 1008

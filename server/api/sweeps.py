@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from typing import Annotated, Any, BinaryIO, Literal
 
-from fastapi import APIRouter, Query, Response
+from fastapi import Query, Response
 from pydantic import BaseModel, Field
 
 from core.nesting import read_toml
@@ -15,9 +15,10 @@ from scenarios.campaign.tally import PointTally
 from scenarios.narrator.words import diagnosis_words
 from scenarios.report.campaign_picture import CampaignPicture, surveyed_picture
 from scenarios.report.script import campaign_script
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import HTML, PYTHON, file_name, report_response, written_response
+from server.api.router import Router
 from server.api.runs import Ended, FilterDep, NewLabel, Removed
 from server.errors import ApiError
 from server.runs.listing import clean_label
@@ -36,7 +37,7 @@ RUNS = {
     },
 }
 
-router = APIRouter(prefix="/sweeps", tags=["sweeps"], route_class=StrictRoute)
+router = Router(prefix="/sweeps", tags=["sweeps"])
 
 
 class NewSweep(Body):

@@ -7,18 +7,18 @@ from __future__ import annotations
 
 from typing import Annotated, Self, cast
 
-from fastapi import APIRouter
 from pydantic import BaseModel, Field, model_validator
 
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import ServiceDep
+from server.api.router import Router
 from server.bench.bench import LiveBench
 from server.bench.engine import PERIOD_S
 from server.clock import ManualClock
 from server.errors import ApiError
 from server.service import Service
 
-router = APIRouter(prefix="/testing", route_class=StrictRoute, include_in_schema=False)
+router = Router(prefix="/testing", include_in_schema=False)
 
 
 class Advance(Body):

@@ -6,7 +6,6 @@ import math
 from typing import Any, Literal
 
 import numpy as np
-from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from core.diagnose.aliases import AliasMap, alias_map, hidden_um
@@ -17,10 +16,11 @@ from core.theory.gain_adaptation import RULES, GainLoop, critical_gain, instabil
 from core.theory.persistency import excitation, gram_of_tones
 from core.theory.positive_real import nyquist, polynomial, positive_real
 from scenarios.design import designed
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import ComputingDep
+from server.api.router import Router
 
-router = APIRouter(prefix="/theory", tags=["theory"], route_class=StrictRoute)
+router = Router(prefix="/theory", tags=["theory"])
 
 POINTS = 400
 DECADES = 3.0

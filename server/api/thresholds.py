@@ -5,16 +5,17 @@ from __future__ import annotations
 import asyncio
 from typing import Any, Self
 
-from fastapi import APIRouter, Response
+from fastapi import Response
 from pydantic import Field, model_validator
 
 from scenarios.campaign.halving import Wanted
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import PersonDep, RateLimited, ServiceDep
+from server.api.router import Router
 from server.bench.build import prepare
 from server.runs.thresholds import ThresholdRun
 
-router = APIRouter(prefix="/thresholds", tags=["thresholds"], route_class=StrictRoute)
+router = Router(prefix="/thresholds", tags=["thresholds"])
 
 
 class NewThreshold(Body, Wanted):

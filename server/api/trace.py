@@ -5,14 +5,14 @@ from __future__ import annotations
 import asyncio
 from typing import Annotated
 
-from fastapi import APIRouter, Query, Response
+from fastapi import Query, Response
 from pydantic import BaseModel
 
 from core.board.history import Float32Array
 from core.errors import InputError
-from server.api.bodies import StrictRoute
 from server.api.deps import SeenDep, ServiceDep
 from server.api.files import Signals, Tick, table_response
+from server.api.router import Router
 from server.bench.bench import Seen
 from server.errors import ApiError
 from server.store.traces import MEDIA_TYPES, Format, asked, schema_of, table_of
@@ -20,7 +20,7 @@ from server.stream.view import Span
 from server.stream.wire import MAX_COLUMNS
 from server.version import VERSION
 
-router = APIRouter(prefix="/benches/{bench_id}/trace", tags=["trace"], route_class=StrictRoute)
+router = Router(prefix="/benches/{bench_id}/trace", tags=["trace"])
 
 
 class Extremes(BaseModel):

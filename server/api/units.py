@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Path
+from fastapi import Path
 from pydantic import BaseModel, Field
 
 from core.board.library import IDENTIFIER
@@ -18,12 +18,13 @@ from core.own.text import UnitError
 from core.own.unit import Unit, unit
 from scenarios.own import copies
 from scenarios.starters import starters
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import ComputingDep, RateLimited, ServiceDep
+from server.api.router import Router
 from server.bench.build import prepare
 from server.errors import not_found
 
-router = APIRouter(prefix="/units", tags=["units"], route_class=StrictRoute)
+router = Router(prefix="/units", tags=["units"])
 
 USUAL = "first-look"
 Origin = Literal["starter", "library", "folder", "command line"]

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from scenarios.lecture import Span
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import PersonDep, RateLimited, ServiceDep
+from server.api.router import Router
 from server.classroom.votes import Asked, Ballot, OpenVote, Vote
 from server.errors import ApiError
 
-router = APIRouter(tags=["votes"], route_class=StrictRoute)
+router = Router(tags=["votes"])
 
 MOST_WORDS, MOST_LANES = 6, 12
 

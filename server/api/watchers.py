@@ -8,15 +8,15 @@ from __future__ import annotations
 from datetime import datetime, timedelta
 from urllib.parse import urlencode
 
-from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from server.api.bodies import Body, StrictRoute
+from server.api.bodies import Body
 from server.api.deps import IdentityDep, RateLimited, ServiceDep, SessionDep
+from server.api.router import Router
 from server.errors import SHARD, ApiError, not_found
 from server.store.base import now
 
-router = APIRouter(prefix="/benches/{bench_id}/watchers", tags=["classes"], route_class=StrictRoute)
+router = Router(prefix="/benches/{bench_id}/watchers", tags=["classes"])
 
 MOST = 20
 

@@ -8,12 +8,11 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
-import pyarrow.parquet as pq
-
 from core.board.log import LogEntry
 from core.board.rows import Rows
 from core.errors import InputError
 from core.own.admission import kept
+from scenarios.arrow import pq
 from scenarios.narrator.narrator import Narrator
 from scenarios.narrator.sentence import Sentence
 from scenarios.run import build

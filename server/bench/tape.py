@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
-import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from core.board.board import Board
@@ -17,6 +16,7 @@ from core.board.rows import Rows
 from core.board.spec import Section, Spec
 from core.errors import InputError
 from core.signals import Signal, SignalTable
+from scenarios.arrow import pq
 from server.store.recording import first_tick
 
 REFUSAL = "this bench plays a recording"

@@ -16,7 +16,6 @@ from urllib.parse import quote
 import uvicorn
 
 from core.errors import InputError
-from server.classroom.addresses import notice
 from server.cli import logs
 from server.connection import Connection
 from server.security.identity import fits_header
@@ -63,8 +62,8 @@ class Server(uvicorn.Server):
         await super().startup(sockets)
         if self.started and self._address:
             # All objects loaded by now stay. A collection that went through them would stop all benches for 0.1 s.
-            gc.collect()
             gc.freeze()
+            gc.enable()
             sys.setswitchinterval(SWITCH_S)
             try:
                 sys.stdout.write(f"CombBench is at {self._address}\n{self._notice}")
@@ -175,6 +174,7 @@ def serve(settings: Settings) -> None:
         try:
             keep_private(settings.data)
             stack.enter_context(lock(settings.data, "data"))
+            gc.disable()  # loading makes many objects and no garbage; `startup` turns it on again
             from server.app import create_app  # this import loads everything; wrong settings are reported before it
 
             app = create_app(settings)
@@ -187,7 +187,12 @@ def serve(settings: Settings) -> None:
         page = settings.public_origin or f"http://{shown}:{port}"
         here = f"shard={settings.shard}&" if settings.shard else ""
         address = f"{page}/?{here}token={quote(app.state.identity.token, safe='')}"
-        server = make_server(settings, app, address, notice(settings, port) if settings.classroom else "")
+        notice = ""
+        if settings.classroom:
+            from server import classroom
+
+            notice = classroom.notice(settings, port)
+        server = make_server(settings, app, address, notice)
         # uvicorn raises the signal again at its end; a stop by signal is no failure.
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, lambda *_: None)

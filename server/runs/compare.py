@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import pyarrow.parquet as pq
 from pydantic import BaseModel, Field
 
 from core.errors import unknown
 from core.signals import CLOCK
+from scenarios.arrow import pq
 from scenarios.report.svg import thin
 from server.errors import ApiError
 from server.runs.listing import Run

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import pyarrow.parquet as pq
 from numpy.typing import NDArray
 from pydantic import BaseModel, Field
 
 from core.errors import InputError, unknown
+from scenarios.arrow import pq
 
 
 class SignalDifference(BaseModel):

@@ -15,10 +15,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import pyarrow as pa
-import pyarrow.parquet as pq
-
 from core.errors import InputError
+from scenarios.arrow import pa, pq
 from scenarios.report.traces import packing
 
 PART, EVENTS = ".arrows", ".events"

@@ -12,11 +12,11 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import pyarrow as pa
 from pydantic import AfterValidator, BaseModel, ConfigDict
 from sqlalchemy import Update, delete, select, update
 from sqlalchemy.exc import DBAPIError
 
+from scenarios.arrow import pa
 from scenarios.key import code_version
 from server.errors import ApiError, not_found
 from server.store.database import Database, reason_of

@@ -9,13 +9,11 @@ from pathlib import Path
 from typing import Any, BinaryIO, Literal, cast
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.csv
-import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from core.errors import InputError, unknown
 from core.signals import CLOCK
+from scenarios.arrow import csv, pa, pq
 from scenarios.report.matlab import variables
 from scenarios.report.traces import packing
 
@@ -123,7 +121,7 @@ def write(table: pa.Table, file: BinaryIO, kind: Format) -> None:
         pq.write_table(table, file, **packing(table.schema))
         return
     if kind == "csv":
-        pyarrow.csv.write_csv(table, file)
+        csv.write_csv(table, file)
         return
     arrays = {name: table.column(name).to_numpy() for name in table.column_names}
     if kind == "npz":

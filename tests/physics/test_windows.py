@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.special import chdtri
 from scipy.stats import chi2
 
+from core.diagnose.chance import DIGITS, chi_square
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import build
@@ -249,6 +251,13 @@ def test_false_alarms_of_both_tests_are_as_many_as_was_asked_for(hz):
                 count += rows.count
     assert count > 590_000
     assert np.all((beyond / count > 0.5e-3) & (beyond / count < 1.6e-3)), beyond / count
+
+
+def test_bounds_of_chance_are_those_of_scipy_to_the_last_of_their_digits():
+    chances = [0.5, 0.1, 0.02, 1e-3, 5e-4, 1e-5, 1e-6, 1e-9, 1e-12, 1e-30, 1e-300]
+    for freedom in (2, 3, 4, 5, 7, 10, 49, 50, 51, 64, 101, 500, 1023, 4096):
+        for chance in chances:
+            assert chi_square(freedom, chance) == float(f"{chdtri(freedom, chance):.{DIGITS}g}"), (freedom, chance)
 
 
 def test_matched_filter_gives_the_chi_squares():

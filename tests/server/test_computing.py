@@ -16,7 +16,6 @@ from typing import Any
 
 import httpx
 import pytest
-from tests.server.classroom.group import join, open_class
 
 from core.errors import InputError
 from core.own.offered import PYTHON
@@ -28,6 +27,7 @@ from server.computing.computing import BUDGET_S, EARNED, Computing
 from server.errors import ApiError
 from server.security.person import Person
 from tests.core.own.texts import PI, odd
+from tests.server.classroom.group import join, open_class
 from tests.server.conftest import Live
 from tests.server.forks import Forks
 

@@ -23,11 +23,11 @@ from schemathesis.specs.openapi.checks import (
     response_schema_conformance,
     status_code_conformance,
 )
-from tests.server.classroom.group import join, watcher
 
 from scenarios.benchmark.seeds import BENCHMARK
 from scenarios.edit import with_values
 from scenarios.library import get
+from tests.server.classroom.group import join, watcher
 from tests.server.conftest import TOKEN, Live, serving
 from tests.server.runs.test_runs import wait
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import psutil
 import pytest
-from tests.server.classroom.group import join, open_class
 
+from tests.server.classroom.group import join, open_class
 from tests.server.conftest import serving
 
 MANY = pytest.param(50, 8, marks=[pytest.mark.long, pytest.mark.timeout(900)])

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from tests.server.classroom.group import join, open_class
 
 from core.board.commands import Heal
 from scenarios.library import get
@@ -14,6 +13,7 @@ from server.bench.blind import ACTOR, OF_A_DIAGNOSER, SIGNALS, hide
 from server.bench.commands import parse
 from server.bench.narration import Mark
 from tests.server.bench.test_session import advance, session
+from tests.server.classroom.group import join, open_class
 
 
 def narration(live: Any, bench: str, **query: Any) -> dict[str, Any]:

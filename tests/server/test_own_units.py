@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.server.classroom.group import join, open_class
 from typer.testing import CliRunner
 
 from core.compile import code
@@ -24,6 +23,7 @@ from scenarios.speed import units
 from server.cli.main import app
 from tests.core.own.price import PRICE_NS, priced
 from tests.core.own.texts import PI, ROOT, odd
+from tests.server.classroom.group import join, open_class
 from tests.server.runs.test_runs import wait
 
 LOOK = get("first-look").document

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.server.classroom.group import Somebody, join, open_class, the_teacher, watcher
 
 from server.store.models import RequestRow
+from tests.server.classroom.group import Somebody, join, open_class, the_teacher, watcher
 
 HTML = {"Accept": "text/html,*/*"}
 OPEN = (

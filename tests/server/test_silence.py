@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.server.classroom.group import join, open_class
-from tests.server.classroom.test_blind import hide
 
 from core.board.stored import revived
 from scenarios.run import run
 from scenarios.schema import Scenario
 from server.bench import watchdog
 from tests.server.bench.test_engine import until
+from tests.server.classroom.group import join, open_class
+from tests.server.classroom.test_blind import hide
 from tests.server.conftest import Live
 from tests.server.test_metrics import metrics
 

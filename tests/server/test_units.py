@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.server.classroom.group import join, open_class
 from typer.testing import CliRunner
 
 from core.own.unit import unit
@@ -19,6 +18,7 @@ from scenarios.run import run
 from server.cli.main import app
 from tests.core.own.test_own_units import COPIED, source_of, with_unit
 from tests.core.own.texts import PI, ROOT, odd
+from tests.server.classroom.group import join, open_class
 from tests.server.runs.test_runs import wait
 
 DOOR = "/api/v1/units"

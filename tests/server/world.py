@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 from sqlalchemy.exc import OperationalError
-from tests.server.classroom.group import Somebody, join, open_class, the_teacher
 
 from server.classroom.access import API
 from server.store.base import Base
 from server.store.database import Database
+from tests.server.classroom.group import Somebody, join, open_class, the_teacher
 from tests.server.conftest import Live
 
 SHEET = (Path(__file__).parents[2] / "scenarios" / "sheets" / "blind-diagnosis.md").read_text()

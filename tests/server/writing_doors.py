@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from tests.server.classroom.group import Somebody
-
 from server.bench.commands import Step
 from server.classroom.access import API, BENCH, CLASS, DOORS
+from tests.server.classroom.group import Somebody
 from tests.server.conftest import Live
 from tests.server.world import ASKED, CASE, World
 

@@ -17,12 +17,14 @@ TEMPLATE = ROOT / "docs" / "template"
 ANSWERS = """
 import importlib, json, sys, traceback
 from contextlib import redirect_stdout
+from core import registry
 from core.board.packages import packages
 
 said = sys.stdout
 for line in sys.stdin:
     code, words = json.loads(line)
     importlib.invalidate_caches()
+    registry._entry_points.cache_clear()
     packages.cache_clear()
     found = {"words": words}
     try:

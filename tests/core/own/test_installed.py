@@ -67,7 +67,7 @@ def test_pytest_runs_the_test_of_the_template(installed: Installed) -> None:
 def test_a_package_that_cannot_be_loaded_is_refused_by_its_name() -> None:
     entry = EntryPoint("none", "no_such_module:None", "combbench.control")
     with pytest.raises(InputError) as raised:
-        registry._installed(entry)
+        registry._loaded(entry)
     assert raised.value.field == "combbench.control.none"
     assert "names no_such_module:None, which cannot be loaded" in str(raised.value)
 
@@ -84,7 +84,7 @@ def break_one(folder: Path, family: str) -> None:
 def broken(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
     """The family of such a package, which this Python finds until the end of the test."""
     break_one(tmp_path, request.param)
-    known: list[Any] = [registry._all, registry.blocks, registry.apart, packages]
+    known: list[Any] = [registry._entry_points, registry._all, registry.blocks, registry.apart, packages]
     with pytest.MonkeyPatch.context() as patched:
         patched.syspath_prepend(tmp_path)
         for one in known:

@@ -18,7 +18,6 @@ from server.classroom.access import DOORS, SOCKET, TESTING_DOORS, Need, need_of
 from server.settings import Settings
 from server.stream.wire import SUBPROTOCOL
 from tests.server.classroom.group import Somebody, join, on_loop, open_class, the_teacher, watcher
-from tests.server.security.test_auth import routes
 
 ROLES = ("teacher", "student", "other student", "borrower", "onlooker", "watcher", "other watcher", "stranger")
 ALLOWED = {
@@ -64,7 +63,7 @@ def people(shared: Any) -> Iterator[dict[str, Somebody]]:
 def doors(app: Any) -> set[tuple[str, str]]:
     """All doors of the application."""
     found = set()
-    for route in routes(app):
+    for route in app.routes:
         methods = getattr(route, "methods", None) or {SOCKET}
         path = route.path or route.starlette_route.path
         found |= {(method, path) for method in methods - {"HEAD"}}

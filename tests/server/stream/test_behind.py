@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+
 from tests.server.classroom.group import join, open_class
 
 NAMES = ["plant.displacement", "drive.voltage"]

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from tests.server.classroom.group import join, open_class
 
 from core.board.history import History
 from scenarios.library import get
 from scenarios.run import run
 from scenarios.schema import Scenario
 from server.stream.codec import Frame
+from tests.server.classroom.group import join, open_class
 
 NAMES = ["plant.displacement", "drive.voltage"]
 TRIGGER = {"signal": "reference.voltage", "edge": "rising", "level": 0.0, "hysteresis": 0.1, "position": 0.25}

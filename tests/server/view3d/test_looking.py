@@ -9,13 +9,13 @@ import msgspec
 import numpy as np
 import pytest
 import zstandard
-from tests.server.classroom.group import watcher
 from websockets.exceptions import ConnectionClosed
 
 from server.view3d.gyroscope.pose import GyroscopeObserver
 from server.view3d.layout import UM_PER_UNIT
 from server.view3d.pose import Observer
 from server.view3d.viewers import observer_of
+from tests.server.classroom.group import watcher
 from tests.server.view3d.test_view3d import join
 
 

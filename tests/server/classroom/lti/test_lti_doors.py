@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -70,15 +68,6 @@ def test_without_a_platform_no_door_is_there_and_no_code_is_loaded(
         monkeypatch.delitem(sys.modules, name)
     create_app(Settings(data=tmp_path))
     assert loaded() == []
-
-
-@pytest.mark.long
-def test_a_process_without_a_platform_loads_no_code_of_them() -> None:
-    code = f"import sys, server.app; print([name for name in sys.modules if name.startswith({MODULES!r})])"
-    # with bytecode kept: without it every start compiles all packages
-    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": ""}
-    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
-    assert said.stdout.strip() == "[]"
 
 
 def test_with_a_platform_the_doors_of_the_table_are_there_and_no_other(lab: Live) -> None:
