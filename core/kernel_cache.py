@@ -28,9 +28,9 @@ class Shelf(Protocol):
 _shelves: list[Shelf] = []
 
 
-def keep_on(shelf: Shelf) -> None:
-    """Name the place of compiled kernels; without one each process compiles its own."""
-    _shelves[:] = [shelf]
+def keep_on(*shelves: Shelf) -> None:
+    """Name the places of compiled kernels; without one each process compiles its own."""
+    _shelves[:] = shelves
 
 
 compiled_here: list[str] = []
@@ -50,7 +50,12 @@ def get(name: str) -> bytes | None:
 def put(name: str, code: bytes) -> None:
     """Keep a kernel on the shelf, if there is one."""
     for shelf in _shelves:
-        shelf.put(name, _mark(name, code) + code)
+        shelf.put(name, marked(name, code))
+
+
+def marked(name: str, code: bytes) -> bytes:
+    """Return the file of a kernel: its mark, then its code."""
+    return _mark(name, code) + code
 
 
 MARK = 32

@@ -23,7 +23,7 @@ from core.board.wiring import wire
 from core.compile import code
 from core.compile.machine import WIDTH
 from core.ports import RESERVED
-from scenarios.kernel_cache import COMPLETE, folder, prune
+from scenarios.kernel_cache import COMPLETE, folder, prepare, prune
 from scenarios.key import code_version
 from scenarios.library import get
 from scenarios.run import build
@@ -49,7 +49,7 @@ def load() -> None:
     history.columns([0], 0, 1, 1)
 
 
-def _loop() -> None:
+def loop() -> None:
     """Compile the loop and the history, with a run of no ticks and no blocks."""
     none, nothing = np.zeros(RESERVED), np.zeros((0, 0))
     table, folds, watches = np.zeros((0, program.COLUMNS), np.int64), fold.begin(0), np.zeros((0, 3))
@@ -86,11 +86,11 @@ def compile_all(work: list[Task], told: Callable[[int, int], None], *, abreast: 
 def _compile(task: Task, abreast: bool) -> None:
     family, name = task
     if task == LOOP:
-        _loop()
+        loop()
         return
     block = registry.block(family, name)
     for width in (1, WIDTH) if abreast else (1,):
-        code.kept(block, width)
+        code.step(block, width).kept()
 
 
 def complete() -> Path | None:
@@ -103,6 +103,8 @@ def main() -> None:
     """Compile all kernels; ``first``: only for the first bench, ``behind``: at lower priority than running benches."""
     start = time.monotonic()
     first = "first" in sys.argv
+    if not first:
+        prepare(built=False)  # all are compiled for this very processor
     if "behind" in sys.argv and os.name == "posix":
         os.nice(NICE)
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
+from core.compile.code import borrowed
 from server.bench.benches import Benches
 from server.bench.checkpoints import Checkpoints
 from server.bench.engine import Engine
@@ -187,6 +188,7 @@ class Service:
         # where pandas is installed, pyarrow loads it with the first array, which takes longer than a recording may wait
         tasks.append(asyncio.create_task(asyncio.to_thread(pa.array, [0.0])))
         self.figures.start(self.kernels.compiled)
+        tasks.append(asyncio.create_task(self._use_own_code()))
         self.is_ready = True
         try:
             yield
@@ -210,6 +212,12 @@ class Service:
             await asyncio.to_thread(self.engine.stop)
             for database in self.databases:
                 await asyncio.to_thread(database.close)
+
+    async def _use_own_code(self) -> None:
+        """Take code for this very processor once all of it is compiled, where code for its level has served so far."""
+        await self.kernels.compiled()
+        if borrowed:
+            await self.benches.renew()
 
     async def close_bench(self, session: Session, *, comes_back: bool = False) -> None:
         """Close a bench, its streams and its 3D view; unless it comes back, links to watch it end too."""

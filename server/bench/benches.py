@@ -15,6 +15,7 @@ from typing import Any
 from core.board.board import Board
 from core.board.document import Document
 from core.errors import InputError
+from core.kernel import renew
 from core.own.admission import kept_with
 from scenarios.schema import Scenario
 from server.bench.blind import Blind
@@ -276,6 +277,13 @@ class Benches:
             raise
         self._metrics.commands.labels(kind, "done").inc()
         return event
+
+    async def renew(self) -> None:
+        """Let all benches go on with the code for this very processor, each from its next tick edge on."""
+        await asyncio.to_thread(renew)
+        for session in self.all():
+            if isinstance(session.board, Board):
+                await self._engine.call(session.board.renew)
 
     def count(self) -> None:
         """Bring the gauge of benches up to date."""
