@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -108,8 +109,38 @@ def test_code_of_another_hash_or_with_other_bytes_is_compiled_anew(shelf, monkey
 
 def widest(target: Target, text: str) -> int:
     """Return the bits of the widest register that code for a processor names."""
-    said = machine.machine(target).emit_assembly(machine.improved(text, target, loops=True))
+    said = said_by(target, code.Piece("wide", "", lambda: text, loops=True))
     return next((bits for bits, name in ((512, "%zmm"), (256, "%ymm"), (128, "%xmm")) if name in said), 0)
+
+
+FUSED = re.compile(r"\bv?fn?m(add|sub|la|ls)")
+"""A product and a sum in one instruction, rounded once."""
+TARGETS = [BEST, OTHER, machine.native()]
+
+
+def said_by(target: Target, piece: code.Piece) -> str:
+    """Return the instructions of the processor, as text."""
+    better = machine.improved(piece.write(), target, loops=piece.loops)
+    return str(machine.machine(target).emit_assembly(better))
+
+
+@pytest.mark.parametrize("target", TARGETS, ids=["x86-64-v3", "aarch64", "native"])
+def test_no_product_and_sum_become_one_instruction(target):
+    for name in ("mmae", "consistency"):
+        assert not FUSED.search(said_by(target, code.step(registry.block("diagnose", name))))
+    fused = "declare double @llvm.fma.f64(double, double, double)\ndefine double @step(double %a) {\n"
+    text = fused + "%b = call double @llvm.fma.f64(double %a, double %a, double %a)\nret double %b\n}"
+    assert FUSED.search(said_by(target, code.Piece("fused", "", lambda: text, loops=False))), "it would be seen"
+
+
+@pytest.mark.long
+@pytest.mark.timeout(1200)
+@pytest.mark.parametrize("width", [1, 8])
+def test_no_product_and_sum_of_any_block_become_one_instruction(width):
+    for family in registry.FAMILIES:
+        for name, block in registry.blocks(family).items():
+            for target in TARGETS:
+                assert not FUSED.search(said_by(target, code.step(block, width))), name
 
 
 def test_code_for_a_level_has_its_registers_and_no_wider_ones():
