@@ -56,7 +56,7 @@ def loop() -> None:
     program.run(0, 0, 1.0, table, none, none, none, np.zeros(0, np.int64), nothing, nothing, folds, 0, watches)
     wide, no, wide_folds = np.zeros((RESERVED, WIDTH)), np.zeros(0, np.int64), np.zeros((2, 0, WIDTH), np.uint64)
     rows, trace = np.zeros((WIDTH, 0, WIDTH)), np.zeros((0, WIDTH, 0))
-    abreast.run(0, 0, 1.0, table, wide, wide, wide, no, no, wide_folds, no, rows, no, trace, no, 0)
+    abreast.run(0, 0, 1.0, table, wide, wide, wide, no, 0, wide_folds, no, no, rows, no, trace, 0)
     history = History(1, 1, 1)
     history.append(Rows.of(0, np.zeros((1, 2)), 1))
     history.columns([0], 0, 1, 1)
