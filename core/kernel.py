@@ -102,7 +102,7 @@ def is_kernel(function: object) -> bool:
 def flush_tiny(value: float) -> float:
     """Return ``value``, or zero once it is too small to matter.
 
-    States that decay for ever end as subnormal numbers, on which a processor is ten times slower. NaN passes through
-    so that the guard can trip.
+    A state that decays for ever becomes a subnormal number, and a processor is ten times slower with such numbers. NaN
+    passes through so that the guard can trip.
     """
     return 0.0 if abs(value) < SMALL else value

@@ -1,7 +1,7 @@
 """Keeps compiled kernels, so that each is compiled once.
 
 A kernel is known by a hash of its bytecode, of the constants, layouts and kernels it names, of the compiler and of
-the processor. An edit compiles again what it touches and nothing else; an edit of a comment compiles nothing.
+the processor. After an edit only the edited kernels and their callers are compiled; after an edit of a comment none.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ class Shelf(Protocol):
     """A place for compiled kernels that outlasts the process."""
 
     def get(self, name: str) -> bytes | None:
-        """Return a kernel, if it is there."""
+        """Return a kernel, or nothing."""
 
     def put(self, name: str, code: bytes) -> None:
         """Keep a kernel."""

@@ -82,7 +82,7 @@ def write(path: Path = BUILT) -> int:
 
 
 def main() -> None:
-    """Write the archive and say what is in it."""
+    """Write the archive and print its content."""
     count = write()
     levels = ", ".join(f"{level.triple.partition('-')[0]} {level.processor}" for level in LEVELS)
     sys.stdout.write(f"{count} kernels for {levels}: {BUILT.stat().st_size / 1e6:.1f} MB\n")

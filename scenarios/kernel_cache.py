@@ -52,7 +52,7 @@ BUILT = Path(__file__).with_name("built_kernels.zip")
 
 
 class Built:
-    """The machine code that came with this version, for levels of processors; as trusted as the source beside it."""
+    """The machine code of an image or a wheel, for levels of processors; it is trusted like the source beside it."""
 
     def __init__(self, path: Path = BUILT) -> None:
         self._path = path
@@ -65,7 +65,7 @@ class Built:
             return None
 
     def get(self, name: str) -> bytes | None:
-        """Return a kernel, if it is there and whole."""
+        """Return a kernel if the archive has it undamaged."""
         try:
             return self._archive.read(name) if self._archive is not None else None
         except (KeyError, BadZipFile, zlib.error):
@@ -116,7 +116,7 @@ def _is_ours(path: Path) -> bool:
 
 
 def prepare(*, built: bool = True) -> None:
-    """Keep compiled kernels, and use those that came with this version unless told otherwise.
+    """Keep compiled kernels; unless told otherwise, also use the kernels of the image or the wheel.
 
     Without a folder that can be written, what did not come with it is compiled anew at every start.
     """

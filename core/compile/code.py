@@ -154,12 +154,12 @@ def _written(block: Block, kinds: Kinds, width: int, *, lanes: bool) -> tuple[ir
 
 
 def _seen(port: Any) -> Any:
-    """Return what a step sees behind a port: a number, a vector, or records of a layout."""
+    """Return how a step sees the signal behind a port: as a number, a vector, or records of a layout."""
     return port.record.layout if port.record else port.vector
 
 
 def begun(kinds: list[Any]) -> tuple[ir.Module, ir.IRBuilder, tuple[Any, ...]]:
-    """Return a module with a function of such arguments, which lie apart, a builder at its beginning, the arguments."""
+    """Return a module with a function of arguments in separate memory, a builder at its start, and the arguments."""
     module = ir.Module(NAME)
     function = ir.Function(module, ir.FunctionType(ir.VoidType(), kinds), NAME)
     for argument in function.args:
@@ -168,7 +168,7 @@ def begun(kinds: list[Any]) -> tuple[ir.Module, ir.IRBuilder, tuple[Any, ...]]:
 
 
 def hash_of(block: Block, *others: Any) -> str:
-    """Return a hash of a step, of what it sees, of this compiler and of all else that is given."""
+    """Return a hash of a step, its records and ports, this compiler, and the other arguments."""
     ports = [(port.name, _seen(port)) for port in block.Ports.declared]
     return digest(key(block.step), block.Packed.layout, block.State.layout, ports, compiler(), others)
 

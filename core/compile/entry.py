@@ -2,7 +2,7 @@
 
 What Python gives is known by kinds: of a number its name, of an array its elements, dimensions and whether it is
 without gaps, of a record its class. The function is written for these kinds alone; of other arguments it says that it
-is not made for them. Records are the exception: their addresses are given, and nothing says of which class they are.
+is not made for them. Records are the exception: it takes their addresses, and does not check their class.
 """
 
 from __future__ import annotations
@@ -166,7 +166,7 @@ class _Interface:
         return known or ir.GlobalVariable(self._module, OBJECT.pointee, name)
 
     def at(self, given: Any, offset: int, kind: Any) -> Any:
-        """Return what an object of Python has at an offset."""
+        """Return the value at an offset in an object of Python."""
         place = self._build.gep(given, [ir.Constant(I64, offset)])
         return self._build.load(self._build.bitcast(place, kind.as_pointer()))
 
