@@ -7,12 +7,14 @@ board alone), ``8`` or ``16`` (boards side by side, of which the second is the b
 
 from __future__ import annotations
 
+import atexit
 import hashlib
 import json
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
+from functools import cache
 from typing import Any
 
 import pytest
@@ -22,6 +24,8 @@ from tests.library_pass import ROOT
 
 LEVELS = {level.processor: level for level in machine.LEVELS} | {"native": machine.native()}
 PLAIN, ALONE, WALL = "plain", "1", "wall"
+MOST_CROSSINGS = 1000
+"""Steps of benches behind the wall that are kept for the next bench."""
 Result = dict[str, Any]
 """The digest of a run; ``inner``, a hash of all states and signals at its end, unless boards ran side by side."""
 
@@ -90,10 +94,23 @@ def _behind_the_wall() -> Iterator[None]:
         sizes = Sizes(len(wiring.packed(row)), len(wiring.state_of(instance.key)), tuple(behind))
         return wall.address(instance.block, sizes, width)
 
-    wall._crossings.clear()  # no board that was built before is left
+    if sum(map(len, wall._crossings.values())) > MOST_CROSSINGS:
+        wall._crossings.clear()  # no board that was built before is left
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(steps, "address", address)
+        patch.setattr(wall, "INSTANCES", 1)  # one thread runs them
+        patch.setattr(wall, "module_of", _module_of)
         yield
+
+
+@cache
+def _module_of(code: bytes) -> Any:
+    from core.wall.host import module_of
+
+    return module_of(code)
+
+
+atexit.register(_module_of.cache_clear)  # while the package that deletes them is loaded
 
 
 def main() -> None:
