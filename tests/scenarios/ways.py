@@ -46,11 +46,12 @@ def result(document: dict[str, Any], way: str) -> Result:
     scenario = Scenario.load(document)
     if way not in (PLAIN, ALONE, WALL):
         return _abreast(scenario)
-    from scenarios.run import build
+    from scenarios.run import DEFAULT_SAMPLES, build
 
+    samples = scenario.samples or DEFAULT_SAMPLES
     with _behind_the_wall() if way == WALL else nullcontext():
         board = build(scenario, compiled=way != PLAIN)
-        while board.tick < scenario.samples and board.advance(scenario.samples - board.tick).count:
+        while board.tick < samples and board.advance(samples - board.tick).count:
             pass
     arrays = [array for one in (board, *getattr(board, "twins", {}).values()) for array in (one.wiring.s, one.wiring.w)]
     inner = hashlib.sha256(b"".join(array.tobytes() for array in arrays)).hexdigest()
