@@ -234,7 +234,7 @@ class Ensemble(Board):
         return whole
 
     def renew(self) -> None:
-        """Take the code of all steps that has been loaded, those of twins too."""
+        """Take the code of all steps that has been loaded, also for the twins."""
         super().renew()
         for twin in self.twins.values():
             twin.renew()

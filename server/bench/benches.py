@@ -279,7 +279,7 @@ class Benches:
         return event
 
     async def renew(self) -> None:
-        """Let all benches go on with the code for this very processor, each from its next tick edge on."""
+        """Give all benches the code for this very processor, each at its next tick edge."""
         await asyncio.to_thread(renew)
         for session in self.all():
             if isinstance(session.board, Board):
