@@ -17,7 +17,7 @@ KERNEL_SOURCE := $(shell find core scenarios -name __pycache__ -prune -o -print)
 PAGE_SOURCE   := $(shell find web -name node_modules -prune -o -name dist -prune -o -name e2e -prune -o -name testing -prune -o \
                    -mindepth 1 -not -name '*.test.ts*' -not -name '*.tsbuildinfo' -print)
 
-.PHONY: run classroom setup first-kernels test test-all flakes mutations check fix dev bench load class-load soak page-speed image audit codegen digests lock clean help
+.PHONY: run classroom setup first-kernels test test-all flakes mutations check fix dev bench load class-load soak page-speed wheel image audit codegen digests lock clean help
 
 run: $(PYTHON_STAMP)  ## Set everything up, serve the bench on http://127.0.0.1:8000 and print the link to open
 	@$(MAKE) --no-print-directory -j2 $(PAGE) first-kernels $(LOADED_STAMP)
@@ -65,6 +65,10 @@ class-load: setup  ## A class of 30 students and 60 watchers: joining, effects, 
 
 soak: setup  ## Eight benches and watchers for 30 minutes: memory and timing must stay flat
 	@.venv/bin/python scripts/load.py --benches 8 --watchers 8 --seconds 1800 --flat $(ARGS)
+
+wheel: $(PYTHON_STAMP)  ## Build a wheel with machine code for x86-64-v2, x86-64-v3 and aarch64 Linux, for this version of Python
+	@.venv/bin/python -m scenarios.built_kernels
+	@.venv/bin/uv build --wheel --quiet --out-dir dist
 
 image: ## Build the container image, start it, ask for its health and stop it
 	@scripts/image

@@ -7,12 +7,13 @@ from collections.abc import Callable
 from functools import update_wrapper
 from types import FunctionType
 from typing import Any, TypeVar, cast
+from weakref import WeakSet
 
-from core.compile import entry
+from core.compile import code, entry
 from core.compile.instructions import whole
 from core.record import Record
 
-__all__ = ["SMALL", "Kernel", "flush_tiny", "inlined", "is_kernel", "kernel", "whole"]
+__all__ = ["SMALL", "Kernel", "flush_tiny", "inlined", "is_kernel", "kernel", "renew", "used", "whole"]
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -32,6 +33,7 @@ class Kernel:
         self.py_func = function
         self._last: Callable[..., Any] = _nothing
         self._made: dict[entry.Kinds, Callable[..., Any]] = {}
+        _kernels.add(self)
 
     def __call__(self, *arguments: Any, **named: Any) -> Any:
         """Call the function; it is compiled when it is called first with such arguments."""
@@ -52,6 +54,21 @@ class Kernel:
         self._last = made
         return found
 
+    @property
+    def kinds(self) -> list[entry.Kinds]:
+        """The kinds of arguments that it has been called with."""
+        return list(self._made)
+
+    def renew(self) -> None:
+        """Load its code for this processor in place of code for a level, now that the shelf may have it."""
+        for kinds in self.kinds:
+            if entry.piece(self.py_func, kinds).name in code.borrowed:
+                self._made[kinds] = entry.made(self.py_func, kinds)
+        self._last = _nothing
+
+
+_kernels: WeakSet[Kernel] = WeakSet()
+
 
 def kernel(function: F) -> F:
     """Declare a function that steps may call."""
@@ -60,6 +77,20 @@ def kernel(function: F) -> F:
 
 inlined = kernel
 """The same, by the name that some units know it by."""
+
+
+def used() -> list[Kernel]:
+    """Return the kernels that Python has called in this process, by module and name."""
+    return sorted(
+        (one for one in _kernels if one.kinds), key=lambda one: (one.py_func.__module__, one.py_func.__name__)
+    )
+
+
+def renew() -> None:
+    """Load all code for this processor in place of code for a level; boards take it when they are linked or renewed."""
+    code.renew()
+    for one in used():
+        one.renew()
 
 
 def is_kernel(function: object) -> bool:
@@ -71,7 +102,7 @@ def is_kernel(function: object) -> bool:
 def flush_tiny(value: float) -> float:
     """Return ``value``, or zero once it is too small to matter.
 
-    States that decay for ever end as subnormal numbers, on which a processor is ten times slower. NaN passes through
-    so that the guard can trip.
+    A state that decays for ever becomes a subnormal number, and a processor is ten times slower with such numbers. NaN
+    passes through so that the guard can trip.
     """
     return 0.0 if abs(value) < SMALL else value

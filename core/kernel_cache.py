@@ -1,7 +1,7 @@
 """Keeps compiled kernels, so that each is compiled once.
 
 A kernel is known by a hash of its bytecode, of the constants, layouts and kernels it names, of the compiler and of
-the processor. An edit compiles again what it touches and nothing else; an edit of a comment compiles nothing.
+the processor. After an edit only the edited kernels and their callers are compiled; after an edit of a comment none.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ class Shelf(Protocol):
     """A place for compiled kernels that outlasts the process."""
 
     def get(self, name: str) -> bytes | None:
-        """Return a kernel, if it is there."""
+        """Return a kernel, or nothing."""
 
     def put(self, name: str, code: bytes) -> None:
         """Keep a kernel."""
@@ -28,9 +28,9 @@ class Shelf(Protocol):
 _shelves: list[Shelf] = []
 
 
-def keep_on(shelf: Shelf) -> None:
-    """Name the place of compiled kernels; without one each process compiles its own."""
-    _shelves[:] = [shelf]
+def keep_on(*shelves: Shelf) -> None:
+    """Name the places of compiled kernels; without one each process compiles its own."""
+    _shelves[:] = shelves
 
 
 compiled_here: list[str] = []
@@ -50,7 +50,12 @@ def get(name: str) -> bytes | None:
 def put(name: str, code: bytes) -> None:
     """Keep a kernel on the shelf, if there is one."""
     for shelf in _shelves:
-        shelf.put(name, _mark(name, code) + code)
+        shelf.put(name, marked(name, code))
+
+
+def marked(name: str, code: bytes) -> bytes:
+    """Return the file of a kernel: its mark, then its code."""
+    return _mark(name, code) + code
 
 
 MARK = 32

@@ -8,10 +8,13 @@ import os
 import stat
 import tempfile
 import time
-from functools import cache
+import zlib
+from functools import cache, cached_property
+from io import BytesIO
 from pathlib import Path
+from zipfile import BadZipFile, ZipFile
 
-from core.kernel_cache import keep_on
+from core.kernel_cache import Shelf, keep_on
 
 COMPLETE = "complete-"
 """Beginning of the name of the file that marks all kernels of a version as kept."""
@@ -42,6 +45,34 @@ class Folder:
             with tempfile.NamedTemporaryFile(dir=self._path, delete=False) as part:
                 part.write(code)
             os.replace(part.name, self._path / name)
+
+
+BUILT = Path(__file__).with_name("built_kernels.zip")
+"""Machine code for levels of processors, made for an image or a wheel; a checkout has none."""
+
+
+class Built:
+    """The machine code of an image or a wheel, for levels of processors; it is trusted like the source beside it."""
+
+    def __init__(self, path: Path = BUILT) -> None:
+        self._path = path
+
+    @cached_property
+    def _archive(self) -> ZipFile | None:
+        try:
+            return ZipFile(BytesIO(self._path.read_bytes()))  # forked processes would share the place in a file
+        except (OSError, BadZipFile):
+            return None
+
+    def get(self, name: str) -> bytes | None:
+        """Return a kernel if the archive has it undamaged."""
+        try:
+            return self._archive.read(name) if self._archive is not None else None
+        except (KeyError, BadZipFile, zlib.error):
+            return None
+
+    def put(self, name: str, code: bytes) -> None:
+        """Keep nothing: what came with a version does not change."""
 
 
 def prune(path: Path) -> None:
@@ -84,12 +115,16 @@ def _is_ours(path: Path) -> bool:
     return known.st_uid == os.getuid() and not known.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
 
 
-def prepare() -> None:
-    """Keep compiled kernels; without a writable folder they are compiled anew at every start."""
-    path = folder()
+def prepare(*, built: bool = True) -> None:
+    """Keep compiled kernels; unless told otherwise, also use the kernels of the image or the wheel.
+
+    Without a folder that can be written, what did not come with it is compiled anew at every start.
+    """
+    path, shelves = folder(), list[Shelf]()
     if path is None:
         logging.getLogger(__name__).warning(
             "no folder for compiled kernels that can be written, and by nobody else; set COMBBENCH_KERNEL_CACHE"
         )
     else:
-        keep_on(Folder(path))
+        shelves.append(Folder(path))
+    keep_on(*shelves, *([Built()] if built else []))

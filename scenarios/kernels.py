@@ -23,7 +23,7 @@ from core.board.wiring import wire
 from core.compile import code
 from core.compile.machine import WIDTH
 from core.ports import RESERVED
-from scenarios.kernel_cache import COMPLETE, folder, prune
+from scenarios.kernel_cache import COMPLETE, folder, prepare, prune
 from scenarios.key import code_version
 from scenarios.library import get
 from scenarios.run import build
@@ -49,14 +49,14 @@ def load() -> None:
     history.columns([0], 0, 1, 1)
 
 
-def _loop() -> None:
+def loop() -> None:
     """Compile the loop and the history, with a run of no ticks and no blocks."""
     none, nothing = np.zeros(RESERVED), np.zeros((0, 0))
     table, folds, watches = np.zeros((0, program.COLUMNS), np.int64), fold.begin(0), np.zeros((0, 3))
     program.run(0, 0, 1.0, table, none, none, none, np.zeros(0, np.int64), nothing, nothing, folds, 0, watches)
     wide, no, wide_folds = np.zeros((RESERVED, WIDTH)), np.zeros(0, np.int64), np.zeros((2, 0, WIDTH), np.uint64)
     rows, trace = np.zeros((WIDTH, 0, WIDTH)), np.zeros((0, WIDTH, 0))
-    abreast.run(0, 0, 1.0, table, wide, wide, wide, no, no, wide_folds, no, rows, no, trace, no, 0)
+    abreast.run(0, 0, 1.0, table, wide, wide, wide, no, 0, wide_folds, no, no, rows, no, trace, 0)
     history = History(1, 1, 1)
     history.append(Rows.of(0, np.zeros((1, 2)), 1))
     history.columns([0], 0, 1, 1)
@@ -86,11 +86,11 @@ def compile_all(work: list[Task], told: Callable[[int, int], None], *, abreast: 
 def _compile(task: Task, abreast: bool) -> None:
     family, name = task
     if task == LOOP:
-        _loop()
+        loop()
         return
     block = registry.block(family, name)
     for width in (1, WIDTH) if abreast else (1,):
-        code.kept(block, width)
+        code.step(block, width).kept()
 
 
 def complete() -> Path | None:
@@ -103,6 +103,8 @@ def main() -> None:
     """Compile all kernels; ``first``: only for the first bench, ``behind``: at lower priority than running benches."""
     start = time.monotonic()
     first = "first" in sys.argv
+    if not first:
+        prepare(built=False)  # all are compiled for this very processor
     if "behind" in sys.argv and os.name == "posix":
         os.nice(NICE)
 

@@ -106,7 +106,7 @@ def main() -> None:
         kept(block)  # as WebAssembly alone
     else:
         for width in (1, WIDTH):
-            code.kept(block, width)
+            code.step(block, width).kept()
 
 
 if __name__ == "__main__":

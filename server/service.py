@@ -10,6 +10,7 @@ import secrets
 from collections.abc import AsyncIterator, Sequence
 from typing import TYPE_CHECKING
 
+from core.compile.code import borrowed
 from scenarios.arrow import pa
 from server.bench.bench import LiveBench
 from server.bench.benches import Benches
@@ -192,6 +193,7 @@ class Service:
         # pyarrow, and pandas where it is installed, load with the first array: for longer than a recording may wait
         tasks.append(asyncio.create_task(asyncio.to_thread(lambda: pa.array([0.0]))))
         self.figures.start(self.kernels.compiled)
+        tasks.append(asyncio.create_task(self._use_own_code()))
         self.is_ready = True
         try:
             yield
@@ -216,6 +218,12 @@ class Service:
             await asyncio.to_thread(self.engine.stop)
             for database in self.databases:
                 await asyncio.to_thread(database.close)
+
+    async def _use_own_code(self) -> None:
+        """Take code for this very processor once all of it is compiled, where code for its level has served so far."""
+        await self.kernels.compiled()
+        if borrowed:
+            await self.benches.renew()
 
     async def close_bench(self, session: LiveBench, *, comes_back: bool = False) -> None:
         """Close a bench, its streams and its 3D view; unless it comes back, links to watch it end too."""

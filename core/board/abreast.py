@@ -30,9 +30,9 @@ from core.board.pending import Queue
 from core.board.program import EVERY, walk
 from core.board.spec import Spec
 from core.board.wiring import Wiring
+from core.compile.folding import folding
 from core.compile.instructions import address_of, call
 from core.compile.machine import WIDTH
-from core.compile.rows import folding, keeping, sorting
 from core.kernel import kernel
 from core.ports import RESERVED, TICK, TIME_MS
 
@@ -50,13 +50,13 @@ def run(
     s: FloatArray,
     w: FloatArray,
     io: IntArray,
-    tail: IntArray,
+    fold: int,
     folds: Words,
     folded: IntArray,
+    sizes: IntArray,
     rows: FloatArray,
     columns: IntArray,
     trace: FloatArray,
-    sizes: IntArray,
     trip: int,
 ) -> int:
     """Run up to ``n`` ticks of all boards; return how many, fewer when one of them trips at the last of them.
@@ -65,35 +65,32 @@ def run(
     ----------
     p, s, w : ndarray, shape (numbers, WIDTH)
         Parameters, states and signals, a column for each board.
-    tail : ndarray
-        Addresses of what folds a tick, of what keeps it, and of what sorts the ticks kept (``core.compile.rows``).
-    folds, folded : ndarray
-        The folds, and the places of the outputs that count.
+    fold : int
+        Address of the code that folds a tick (``core.compile.folding``).
+    folds, folded, sizes : ndarray
+        The folds, the places of the outputs that count, and how many these are and all outputs.
     rows, columns : ndarray
         Where signals are kept, shape (WIDTH, kept, WIDTH), and their places.
     trace : ndarray, shape (kept, WIDTH, ticks)
         Where they go, sorted by board, ``WIDTH`` ticks at a time; the last few ticks stay in ``rows``.
-    sizes : ndarray
-        How many outputs count, how many there are, how many signals are kept; the four numbers of ``sorting``.
     """
     p_address, s_address, w_address, io_address = address_of(p), address_of(s), address_of(w), address_of(io)
-    first_row, row_bytes = address_of(rows), 8 * WIDTH * len(columns)
-    trace_address, row = address_of(trace), first_row
-    fold_address, folded_address = address_of(folds), address_of(folded)
-    column_address, size_address = address_of(columns), address_of(sizes)
+    fold_address, folded_address, size_address = address_of(folds), address_of(folded), address_of(sizes)
     for i in range(n):
         tick = first_tick + i
         for k in range(WIDTH):
             w[TICK, k] = tick
             w[TIME_MS, k] = tick * dt_ms
         walk(table, tick, WIDTH, p_address, s_address, w_address, io_address)
-        call(int(tail[0]), w_address, fold_address, folded_address, size_address)
-        call(int(tail[1]), w_address, row, column_address, size_address + 16)
-        row += row_bytes
-        if i % WIDTH == WIDTH - 1:
-            sizes[6] = tick + 1 - WIDTH
-            call(int(tail[2]), first_row, trace_address, column_address, size_address + 24)
-            row = first_row
+        call(fold, w_address, fold_address, folded_address, size_address)
+        row = i % WIDTH
+        for c in range(len(columns)):
+            rows[row, c] = w[columns[c]]
+        if row == WIDTH - 1:
+            for c in range(len(columns)):
+                for k in range(WIDTH):
+                    for t in range(WIDTH):
+                        trace[c, k, tick - row + t] = rows[t, c, k]
         tripped = False
         for k in range(WIDTH):
             tripped = tripped or w[trip, k] != 0.0
@@ -135,10 +132,8 @@ class Abreast:
         self._trace = np.empty((len(columns), WIDTH, samples))
         self._rows = np.empty((WIDTH, len(columns), WIDTH))
         self._folded = pattern.folded + RESERVED
-        outputs = self._folds.shape[1]
-        sizes = len(self._folded), outputs, len(columns), len(columns), WIDTH, samples, 0
-        self._sizes = np.array(sizes, dtype=np.int64)
-        self._tail = np.array([folding((A, B), SHIFTS, NONE, RESERVED), keeping(), sorting()], dtype=np.int64)
+        self._sizes = np.array([len(self._folded), self._folds.shape[1]], dtype=np.int64)
+        self._fold = folding((A, B), SHIFTS, NONE, RESERVED)
         self._names, self._trip = list(columns), wiring.trip
         self.boards: list[Lane] = []
         self._leaders: list[Lane] = []
@@ -227,8 +222,8 @@ class Abreast:
         return {name: self._trace[column, lane, : self.tick] for column, name in enumerate(self._names)}
 
     def _run(self, n: int) -> int:
-        arrays = (self._table, self._p, self._s, self._w, self._io, self._tail, self._folds, self._folded)
-        kept = self._rows, self._columns, self._trace, self._sizes
+        arrays = (self._table, self._p, self._s, self._w, self._io, self._fold, self._folds, self._folded, self._sizes)
+        kept = self._rows, self._columns, self._trace
         ran = int(run(n, self.tick, self.boards[0].dt_ms, *arrays, *kept, self._trip))
         end, rest = self.tick + ran, ran % WIDTH
         self._trace[:, :, end - rest : end] = self._rows[:rest].transpose(1, 2, 0)

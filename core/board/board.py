@@ -227,6 +227,11 @@ class Board:
         else:
             self._steps = [wiring.bound(row) for row in running]
 
+    def renew(self) -> None:
+        """Take the code of all steps that `core.kernel.renew` has loaded; at a tick edge, and no bit changes."""
+        self._linked = None
+        self.link()
+
     def _allocate(self) -> None:
         """Make room for the rows of a chunk; the signals of a board never change, so once is enough."""
         self._outputs = np.zeros((CHUNK, self.wiring.signals.outputs))

@@ -233,6 +233,12 @@ class Ensemble(Board):
         whole.parts.update(twins=twins, _own=self._own, mirrored=self.mirrored, warned=set(self.warned))
         return whole
 
+    def renew(self) -> None:
+        """Take the code of all steps that has been loaded, also for the twins."""
+        super().renew()
+        for twin in self.twins.values():
+            twin.renew()
+
     def _revive(self) -> None:
         self.twins = {name: Board.restore(kept) for name, kept in self.twins.items()}  # type: ignore[arg-type]
         self.warned = set(self.warned)

@@ -58,14 +58,6 @@ def fold(folds: Words, samples: Words) -> None:
         folds[1, c] = b ^ (b >> S29)
 
 
-def fold_uncompiled(folds: Words, samples: Words) -> None:
-    """Do the same in plain numpy."""
-    samples = alike(samples[: folds.shape[1]])
-    a = (folds[0] ^ samples) * FACTOR_A
-    b = (folds[1] + samples) * FACTOR_B
-    folds[0], folds[1] = a ^ (a >> S32), b ^ (b >> S29)
-
-
 def alike(samples: Words) -> Words:
     """Return the bits of samples, the same for every NaN."""
     return np.where(samples & UNSIGNED > INFINITE, NO_NUMBER, samples)

@@ -12,11 +12,12 @@ from typing import Any
 import numpy as np
 
 from core.block import Block, FloatArray, IntArray
-from core.board.fold import Words, fold, fold_uncompiled
+from core.board.fold import Words, fold
 from core.compile import code
 from core.compile.instructions import address_of, call
 from core.kernel import kernel
 from core.own.apart import compiled_apart
+from core.plain import rebound
 from core.ports import RESERVED, TICK, TIME_MS
 from core.wall import wall
 
@@ -102,40 +103,17 @@ def run(
 
 
 @np.errstate(all="ignore")  # numbers overflow as quietly as in compiled code
-def run_uncompiled(
-    steps: list[Callable[[], None]],
-    n: int,
-    first_tick: int,
-    dt_ms: float,
-    table: IntArray,
-    p: FloatArray,
-    s: FloatArray,
-    w: FloatArray,
-    io: IntArray,
-    outputs: FloatArray,
-    taps: FloatArray,
-    folds: Words,
-    trip: int,
-    watches: FloatArray,
-) -> tuple[int, int]:
+def run_uncompiled(steps: list[Callable[[], None]], *arguments: Any) -> tuple[int, int]:
     """Run the same loop in plain Python: the oracle, and a way out where nothing can be compiled.
 
-    ``steps`` are those of the rows of the table, bound to their arrays.
+    ``steps`` are the steps of the rows of the table, bound to their arrays.
     """
-    first_tap = RESERVED + outputs.shape[1]
-    for i in range(n):
-        tick = first_tick + i
-        w[TICK] = tick
-        w[TIME_MS] = tick * dt_ms
+
+    def walked(table: IntArray, tick: int, *_: int) -> None:
         for step, row in zip(steps, table, strict=True):
             if tick % row[EVERY] == 0:
                 step()
-        outputs[i] = w[RESERVED:first_tap]
-        taps[i] = w[first_tap : first_tap + taps.shape[1]]
-        fold_uncompiled(folds, w.view(np.uint64)[RESERVED:])
-        if w[trip] != 0.0:
-            return i + 1, TRIPPED
-        for index, sign, threshold in watches:
-            if sign * (w[int(index)] - threshold) > 0.0:
-                return i + 1, WATCHED
-    return n, DONE
+
+    loop = rebound(run, lambda value: walked if value is getattr(walk, "py_func", walk) else value)
+    ran: tuple[int, int] = loop(*arguments)
+    return ran

@@ -6,6 +6,7 @@ import hashlib
 import inspect
 import sys
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -13,14 +14,14 @@ from llvmlite import ir
 
 from core.compile.arrays import counted
 from core.compile.frames import Kinds
-from core.compile.machine import compiled, loaded, target
+from core.compile.machine import Target, compiled, levels, loaded, native
 from core.compile.numbers import DOUBLE, I64, NAME, Unsupported
 from core.compile.places import PortsView, RecordView
 from core.compile.translate import Translation
 from core.kernel_cache import compiled_here, get, key, put
 
 MOST_PASSES = 30
-OTHERS = {"core.compile.rows"}
+OTHERS = {"core.compile.folding"}
 """Modules beside the translator, which some processes load and some do not."""
 POINTER, PLACES = DOUBLE.as_pointer(), I64.as_pointer()
 
@@ -31,27 +32,72 @@ Block = Any
 _addresses: dict[tuple[Block, int], int] = {}
 
 
+@dataclass(frozen=True)
+class Piece:
+    """A function that can become machine code.
+
+    Attributes
+    ----------
+    name : str
+        Its name on the shelf, without the part that differs with the code and the processor.
+    hash : str
+        Of all that the code depends on but the processor.
+    write : callable
+        Returns its instructions.
+    loops : bool
+        Whether its loops become vector code where they can.
+    """
+
+    name: str
+    hash: str
+    write: Callable[[], str]
+    loops: bool
+
+    def name_for(self, target: Target) -> str:
+        """Return its name on the shelf for a processor."""
+        return f"{self.name}-{digest(self.hash, target)}"
+
+    def kept(self) -> bytes:
+        """Return its machine code from the shelf: for this very processor, else for a level that the processor has.
+
+        Where the shelf has neither, the code is compiled for this processor and put there.
+        """
+        for target in (native(), *levels()):
+            code = get(self.name_for(target))
+            if code is not None:
+                if target != native():
+                    borrowed.add(self.name)
+                return code
+        name, code = self.name_for(native()), compiled(self.write(), loops=self.loops)
+        compiled_here.append(name)
+        put(name, code)
+        return code
+
+
+borrowed: set[str] = set()
+"""Names of pieces whose code in this process was for a level of the processor when it was loaded first."""
+
+
 def address(block: Block, width: int = 1) -> int:
     """Return where the C function of the step of a block is: pointers to parameters, state, all signals, and places."""
     found = _addresses.get((block, width))
     if found is None:
-        found = _addresses[block, width] = loaded(kept(block, width))
+        found = _addresses[block, width] = loaded(step(block, width).kept())
     return found
 
 
-def kept(block: Block, width: int = 1) -> bytes:
-    """Return the machine code of a step; it is compiled, and put on the shelf, if it is not there."""
-    return kept_as(name_of(block, width), lambda: translated(block, width)[0], loops=width == 1)
+def renew() -> None:
+    """Load the code of steps for this processor in place of code for a level, now that the shelf may have it."""
+    for block, width in list(_addresses):
+        piece = step(block, width)
+        if piece.name in borrowed:
+            _addresses[block, width] = loaded(piece.kept())
 
 
-def kept_as(name: str, write: Callable[[], str], *, loops: bool) -> bytes:
-    """Return the machine code of a name on the shelf. Without it, the instructions are written and compiled."""
-    code = get(name)
-    if code is None:
-        code = compiled(write(), loops=loops)
-        compiled_here.append(name)
-        put(name, code)
-    return code
+def step(block: Block, width: int = 1) -> Piece:
+    """Return the step of a block, for so many boards."""
+    name = f"step-{width}-{block.__module__}"
+    return Piece(name, hash_of(block, width), lambda: translated(block, width)[0], loops=width == 1)
 
 
 def translated(block: Block, width: int) -> tuple[str, bool]:
@@ -108,12 +154,12 @@ def _written(block: Block, kinds: Kinds, width: int, *, lanes: bool) -> tuple[ir
 
 
 def _seen(port: Any) -> Any:
-    """Return what a step sees behind a port: a number, a vector, or records of a layout."""
+    """Return how a step sees the signal behind a port: as a number, a vector, or records of a layout."""
     return port.record.layout if port.record else port.vector
 
 
 def begun(kinds: list[Any]) -> tuple[ir.Module, ir.IRBuilder, tuple[Any, ...]]:
-    """Return a module with a function of such arguments, which lie apart, a builder at its beginning, the arguments."""
+    """Return a module with a function of arguments in separate memory, a builder at its start, and the arguments."""
     module = ir.Module(NAME)
     function = ir.Function(module, ir.FunctionType(ir.VoidType(), kinds), NAME)
     for argument in function.args:
@@ -121,15 +167,10 @@ def begun(kinds: list[Any]) -> tuple[ir.Module, ir.IRBuilder, tuple[Any, ...]]:
     return module, ir.IRBuilder(function.append_basic_block("entry")), function.args
 
 
-def name_of(block: Block, width: int) -> str:
-    """Return the name on the shelf of a step for so many boards, on this machine."""
-    return f"step-{width}-{block.__module__}-{hash_of(block, width, *target())}"
-
-
-def hash_of(block: Block, *machine: Any) -> str:
-    """Return a hash of a step, of what it sees, of this compiler and of what the code is for."""
+def hash_of(block: Block, *others: Any) -> str:
+    """Return a hash of a step, its records and ports, this compiler, and the other arguments."""
     ports = [(port.name, _seen(port)) for port in block.Ports.declared]
-    return digest(key(block.step), block.Packed.layout, block.State.layout, ports, compiler(), machine)
+    return digest(key(block.step), block.Packed.layout, block.State.layout, ports, compiler(), others)
 
 
 def digest(*parts: Any) -> str:

@@ -2,7 +2,7 @@
 
 What Python gives is known by kinds: of a number its name, of an array its elements, dimensions and whether it is
 without gaps, of a record its class. The function is written for these kinds alone; of other arguments it says that it
-is not made for them. Records are the exception: their addresses are given, and nothing says of which class they are.
+is not made for them. Records are the exception: it takes their addresses, and does not check their class.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ import numpy as np
 from llvmlite import ir
 
 from core.compile.arrays import ELEMENTS, ArrayView, contiguous
-from core.compile.code import compiler, digest, kept_as, settled
-from core.compile.machine import loaded, target
+from core.compile.code import Piece, compiler, digest, settled
+from core.compile.machine import loaded
 from core.compile.numbers import BOOL, DOUBLE, FLOAT, I64, INT, NAME, UINT, Number, Unsupported, is_number
 from core.compile.places import RecordView
 from core.compile.translate import Translation
@@ -110,12 +110,16 @@ def plain(value: Any) -> Any:
 
 def made(function: FunctionType, kinds: Kinds) -> Callable[..., Any]:
     """Return what Python calls: the function compiled for arguments of some kinds."""
-    layouts = tuple(kind.layout if isinstance(kind, type) and issubclass(kind, Record) else kind for kind in kinds)
-    mark = digest(key(function), layouts, compiler(), *target())
-    name = f"kernel-{function.__module__}.{function.__name__}-{mark}"
-    address = loaded(kept_as(name, lambda: instructions(function, kinds), loops=True))
+    address = loaded(piece(function, kinds).kept())
     _definitions.append(_Definition(function.__name__.encode(), address, FASTCALL, None))
     return _new(ctypes.byref(_definitions[-1]), None, None)  # type: ignore[no-any-return]
+
+
+def piece(function: FunctionType, kinds: Kinds) -> Piece:
+    """Return the code of a function for arguments of some kinds."""
+    layouts = tuple(kind.layout if isinstance(kind, type) and issubclass(kind, Record) else kind for kind in kinds)
+    name, mark = f"kernel-{function.__module__}.{function.__name__}", digest(key(function), layouts, compiler())
+    return Piece(name, mark, lambda: instructions(function, kinds), loops=True)
 
 
 def instructions(function: FunctionType, kinds: Kinds) -> str:
@@ -162,7 +166,7 @@ class _Interface:
         return known or ir.GlobalVariable(self._module, OBJECT.pointee, name)
 
     def at(self, given: Any, offset: int, kind: Any) -> Any:
-        """Return what an object of Python has at an offset."""
+        """Return the value at an offset in an object of Python."""
         place = self._build.gep(given, [ir.Constant(I64, offset)])
         return self._build.load(self._build.bitcast(place, kind.as_pointer()))
 

@@ -17,7 +17,7 @@ from core.compile.places import Place, PortsView, RecordsView, RecordView, Vecto
 from core.compile.variables import Variables
 
 NEEDED = ast.Call, ast.Subscript, ast.Mod, ast.FloorDiv
-"""What is computed only where its result is needed: it may write, read beyond an end, or divide by 0."""
+"""Expressions that are computed only where needed: they may write, read beyond an end, or divide by 0."""
 
 
 class Expressions(Variables):
@@ -29,7 +29,7 @@ class Expressions(Variables):
 
     @contextmanager
     def told(self, node: ast.expr | ast.stmt) -> Iterator[None]:
-        """Tell the place of what is outside the notation."""
+        """Add the place in the text to an error about the notation."""
         try:
             yield
         except Unsupported as error:
@@ -151,7 +151,7 @@ class Expressions(Variables):
         return not condition.is_lanes and any(isinstance(one, NEEDED) for part in parts for one in ast.walk(part))
 
     def _chosen(self, condition: Number, yes: Callable[[], Any], no: Number | Callable[[], Any]) -> Number:
-        """Return one of two numbers, of which only one is computed."""
+        """Return the first or the second number; the code computes only this one."""
         build = self.builder
         ways, behind = (build.append_basic_block(), build.append_basic_block()), build.append_basic_block()
         build.cbranch(condition.value, *ways)

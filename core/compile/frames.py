@@ -76,7 +76,7 @@ def says(statements: Sequence[ast.AST], kind: type[ast.AST]) -> bool:
 
 @dataclass
 class Loop:
-    """A loop: where it goes on and ends, the branches around it, the boards that are out or skip this round."""
+    """A loop: its next round and its end, the branches around it, the boards that have left or skip a round."""
 
     again: Any
     behind: Any
@@ -88,7 +88,7 @@ class Loop:
 
 @dataclass
 class Frame:
-    """One call: names with what they are bound to, the boards that have returned, the mask within the call."""
+    """One call: names with their values, the boards that have returned, the mask within the call."""
 
     function: FunctionType
     path: str

@@ -23,9 +23,9 @@ def number_of(bits: int) -> float:
 
 
 def whole(n: int) -> int:
-    """Return how many numbers whole vector registers hold, at least ``n``.
+    """Return the size of whole vector registers for ``n`` numbers.
 
-    A loop that fills vectors longer than what is in use may go so far: it has no rest then that goes number by number.
+    A loop over vectors with room for more numbers may run this far: no rest is then computed one by one.
     The numbers after the n-th are unused. Boards abreast fill registers with boards and go to ``n`` alone.
     """
     return (n + 7) >> 3 << 3

@@ -73,7 +73,7 @@ class Loops(Statements):
         self.rejoin(before, [node] if says([node], ast.Return) else [])
 
     def _round(self, node: ast.For | ast.While, loop: Loop, before: Masks, goes_on: Number, names: Any) -> None:
-        """Translate the body of a loop, for the boards that go on."""
+        """Translate the body of a loop, for the boards that take another round."""
         frame = self.frame
         if loop.skipped is not None:
             self.builder.store(ir.Constant(self.arithmetic.type_of(BOOL, is_lanes=True), None), loop.skipped)

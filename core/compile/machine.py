@@ -1,7 +1,8 @@
-"""The machine that code is for: its processor, the way from instructions to machine code and into the process."""
+"""Processors that code is for, the way from instructions to machine code and into the process."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -14,26 +15,64 @@ WIDTH = 16 if llvm.get_host_cpu_features().get("avx512f") else 8
 """Boards side by side: two of the widest vectors or more, so that one computes while another waits for its operands."""
 
 
+@dataclass(frozen=True)
+class Target:
+    """What code is for: a system, a processor with its features; and the version of the compiler."""
+
+    triple: str
+    processor: str
+    features: str = ""
+    compiler: str = llvmlite.__version__
+
+
+X86, ARM = "x86_64-unknown-linux-gnu", "aarch64-unknown-linux-gnu"
+V2 = {"cx16", "popcnt", "sahf", "sse3", "sse4.1", "sse4.2", "ssse3"}
+V3 = V2 | {"avx", "avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe"}
+LEVELS: dict[Target, set[str]] = {
+    Target(X86, "x86-64-v3"): V3,
+    Target(X86, "x86-64-v2"): V2,
+    Target(ARM, "generic"): {"neon"},
+}
+"""Processors for which code may be made before it is known on which machine it runs, with the features they need."""
+
+
 @cache
-def target() -> tuple[str, ...]:
-    """Return what code is for, and who writes it: the target, the processor, its features, the version of LLVM."""
-    features = llvm.get_host_cpu_features().flatten()
-    return llvm.get_process_triple(), llvm.get_host_cpu_name(), features, llvmlite.__version__
+def native() -> Target:
+    """Return the processor of this machine."""
+    return Target(llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten())
 
 
-def compiled(text: str, *, loops: bool = False) -> bytes:
+@cache
+def levels() -> list[Target]:
+    """Return the levels that this machine has, the best first."""
+    return levels_of(native().triple, {name for name, is_there in llvm.get_host_cpu_features().items() if is_there})
+
+
+def levels_of(triple: str, features: set[str]) -> list[Target]:
+    """Return the levels that a machine has by its system and its features, the best first."""
+    return [one for one, needed in LEVELS.items() if _system(one.triple) == _system(triple) and needed <= features]
+
+
+def _system(triple: str) -> tuple[str, str]:
+    """Return the processor and the system of a triple, without the vendor."""
+    architecture, _, *rest = triple.split("-")
+    return architecture, "-".join(rest)
+
+
+def compiled(text: str, target: Target | None = None, *, loops: bool = False) -> bytes:
     """Return the machine code of instructions; where asked for, loops become vector code where they can."""
-    return bytes(machine().emit_object(improved(text, loops=loops)))
+    target = target or native()
+    return bytes(machine(target).emit_object(improved(text, target, loops=loops)))
 
 
-def improved(text: str, *, loops: bool) -> Any:
+def improved(text: str, target: Target, *, loops: bool) -> Any:
     """Return the module of instructions as machine code is made of it."""
-    module = llvm.parse_assembly(text)
+    module, writer = llvm.parse_assembly(text), machine(target)
     module.verify()
-    module.triple, module.data_layout = machine().triple, str(machine().target_data)
+    module.triple, module.data_layout = writer.triple, str(writer.target_data)
     tuning = llvm.create_pipeline_tuning_options(speed_level=3)
     tuning.loop_vectorization, tuning.slp_vectorization = loops, False
-    passes = llvm.create_pass_builder(machine(), tuning)
+    passes = llvm.create_pass_builder(writer, tuning)
     passes.getModulePassManager().run(module, passes)
     return module
 
@@ -45,7 +84,7 @@ _loaded: list[tuple[Any, ...]] = []
 def loaded(code: bytes) -> int:
     """Return the address of the function in machine code."""
     # an engine of its own for each: the constants of a second file in one engine would be read from the wrong place
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine())
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine(native()))
     file = llvm.ObjectFileRef.from_data(code)
     engine.add_object_file(file)
     engine.finalize_object()
@@ -54,10 +93,12 @@ def loaded(code: bytes) -> int:
 
 
 @cache
-def machine() -> Any:
-    """Return the compiler for the processor of this machine."""
+def machine(target: Target) -> Any:
+    """Return the compiler for a processor."""
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
-    triple, processor, features, _ = target()
-    made = llvm.Target.from_triple(triple)
-    return made.create_target_machine(cpu=processor, features=features, opt=3, reloc="pic", jit=True)
+    if target != native():
+        llvm.initialize_all_targets()
+        llvm.initialize_all_asmprinters()
+    made = llvm.Target.from_triple(target.triple)
+    return made.create_target_machine(cpu=target.processor, features=target.features, opt=3, reloc="pic", jit=True)

@@ -34,7 +34,7 @@ class Unsupported(InputError):
     """Outside the notation; what only boards side by side cannot do runs for one board after another."""
 
     def at(self, function: FunctionType, node: ast.stmt | ast.expr) -> Unsupported:
-        """Return the same with its place in the text of a function; one that has a place stays."""
+        """Return this error with its place in the text of a function, or unchanged if it has a place already."""
         if self.field:
             return self
         text, code = inspect.getsource(function), function.__code__
@@ -203,7 +203,7 @@ class Arithmetic:
             return ORDER[sign](left, right)
         left, right = self.alike(left, right)
         if left.kind == FLOAT:
-            # only "not equal" holds for what is not a number
+            # of NaN only "not equal" is true
             compare = self.builder.fcmp_unordered if sign == "!=" else self.builder.fcmp_ordered
         else:
             compare = self.builder.icmp_signed if left.kind == INT else self.builder.icmp_unsigned
@@ -212,7 +212,7 @@ class Arithmetic:
     def binary(self, sign: type[ast.AST], left: Any, right: Any) -> Any:
         """Do arithmetic on two numbers."""
         if not isinstance(left, Number | np.uint64) and not isinstance(right, Number | np.uint64):
-            if sign is ast.Div and right == 0:  # Python stops there; a processor goes on
+            if sign is ast.Div and right == 0:  # Python raises an error; a processor gives infinity or NaN
                 with np.errstate(all="ignore"):
                     return float(np.float64(left) / np.float64(right))
             return PLAIN[sign](left, right)

@@ -45,7 +45,7 @@ class RecordsView(Place):
 
 @dataclass(frozen=True)
 class PortsView:
-    """Ports: all signals, the places of those of the block, what each port is."""
+    """Ports: all signals, the places of the signals of the block, the kind of each port."""
 
     signals: Any
     places: Any
@@ -137,7 +137,7 @@ class Memory:
         return VectorView(place.base, place.shift)
 
     def port(self, ports: PortsView, name: str) -> tuple[Place, Any]:
-        """Return the place of the signal behind a port, and what the port is."""
+        """Return the place of the signal behind a port, and the kind of the port."""
         if name in ("tick", "time_ms"):
             offset = (TICK if name == "tick" else TIME_MS) * self._width
             return Place(self._build.gep(ports.signals, [ir.Constant(I64, offset)])), "shared"

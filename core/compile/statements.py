@@ -57,7 +57,7 @@ class Statements(Expressions):
         return False
 
     def store(self, target: ast.expr, value: Any) -> None:
-        """Write a value to what stands left of an assignment."""
+        """Write a value to the target of an assignment."""
         if isinstance(target, ast.Name):
             self.assign(target.id, value)
         elif isinstance(target, ast.Tuple):
@@ -97,7 +97,7 @@ class Statements(Expressions):
         self._write(place, self.arithmetic.binary(type(node.op), before, self.value(node.value)))
 
     def _place(self, node: ast.expr) -> Any:
-        """Return where a number stands that is written."""
+        """Return the place of a number that is written."""
         if isinstance(node, ast.Attribute):
             owner = self.value(node.value)
             if isinstance(owner, PortsView):

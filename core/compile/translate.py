@@ -1,6 +1,6 @@
 """Translates steps and the helpers they call into instructions, for one board or for boards side by side.
 
-Of Python it knows what steps are written in: assignments, ``if``, loops, ``return``, arithmetic, and calls of other
+Of Python it knows the notation of steps: assignments, ``if``, loops, ``return``, arithmetic, and calls of other
 such functions, which become part of the step. In a condition in which boards differ both branches are translated, each
 under a mask of the boards that take it; a branch that no board takes is skipped.
 """

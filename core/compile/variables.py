@@ -16,14 +16,14 @@ from core.compile.places import Memory
 
 
 class Variables:
-    """What names mean, and for which boards the code runs at this point.
+    """Names and their values, and the boards for which the code runs at this point.
 
     Parameters
     ----------
     builder : ir.IRBuilder
         Where the instructions go.
     kinds : dict
-        What each variable is, as far as earlier translations found out; ``is_complete`` says whether it was enough.
+        The kind of each variable that earlier translations have found; ``is_complete`` tells whether all are known.
     width : int
         Boards side by side.
     lanes : bool
@@ -68,7 +68,7 @@ class Variables:
         self.builder.store(value, slot)
 
     def name(self, name: str) -> Any:
-        """Return what a name means."""
+        """Return the value or the object of a name."""
         frame = self.frame
         if name in frame.names:
             return frame.names[name]
@@ -106,7 +106,7 @@ class Variables:
         self.mask, self.frame.mask = self.within(self.mask, left), self.within(self.frame.mask, left)
 
     def slot(self, value: Any = None) -> Any:
-        """Return a variable of a lane for each board, true or false; nobody at first."""
+        """Return a variable with true or false for each board, false at first."""
         nobody = ir.Constant(self.arithmetic.type_of(BOOL, is_lanes=True), None)
         with self.builder.goto_entry_block():
             slot = self.builder.alloca(nobody.type)

@@ -63,7 +63,7 @@ def gather_voltage(p: ArxBank.Packed, s: ArxBank.State, x: ArxBank.Ports) -> Non
 @kernel
 def between_updates(p: ArxBank.Packed, x: ArxBank.Ports) -> bool:
     """Say whether a bank that runs every N ticks does not run at this one."""
-    return bool(p.every != 1.0 and x.tick % p.every != 0.0)
+    return bool(p.every != 1.0 and int(x.tick) % int(p.every) != 0)
 
 
 @kernel

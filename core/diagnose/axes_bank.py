@@ -216,7 +216,7 @@ class AxesBank(Bank):
         s.forces[5] = x.y_end - x.y_force
         for i in range(n):
             predict(p.models[i], s.filters[i], s.forces)
-        if p.every != 1.0 and x.tick % p.every != 0.0:
+        if p.every != 1.0 and int(x.tick) % int(p.every) != 0:
             return
         winner = winner_of(x.probability, n)
         seen = is_seen(x.x_measured, x.y_measured)

@@ -88,7 +88,7 @@ def between_updates(p: PackedFilters, s: Filters, x: AppliedPorts, low: int, hig
     would be sure of the wrong model. The models from ``low`` to ``high`` run.
     """
     u = push(p, s, x, low, high)
-    between = p.every != 1.0 and x.tick % p.every != 0.0
+    between = p.every != 1.0 and int(x.tick) % int(p.every) != 0
     if between:
         s.drive_sum += u
         drift(p, s, low, high)

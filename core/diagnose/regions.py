@@ -112,7 +112,7 @@ class Regions(Block):
             s.started = 1.0
             x.region = REQUIRED
             x.loss = 0.0
-        if not math.isfinite(y) or (p.every != 1.0 and x.tick % p.every != 0.0):
+        if not math.isfinite(y) or (p.every != 1.0 and int(x.tick) % int(p.every) != 0):
             return
         error = y - s.x
         s.error += error * error

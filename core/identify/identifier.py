@@ -135,7 +135,7 @@ def coefficients(device: Oscillator) -> tuple[float, float, float]:
 @kernel
 def between_updates(p: Identifier.Packed, x: IdentifierPorts) -> bool:
     """Say whether an identifier that runs every N ticks only gathers the voltage of this tick."""
-    return bool(p.every != 1.0 and x.tick % p.every != 0.0)
+    return bool(p.every != 1.0 and int(x.tick) % int(p.every) != 0)
 
 
 @kernel

@@ -114,7 +114,8 @@ class Expressions:
         }
         check = checks.get(type(node))
         if check is None:
-            refuse(node, f"a step has no expression {type(node).__name__}")
+            name = type(node).__name__
+            refuse(node, f"a step has no expression {name}: it has numbers, names, arithmetic, comparisons and calls")
         return check(node)
 
     def _constant(self, node: ast.Constant) -> Checked:

@@ -150,7 +150,7 @@ class Steps(Loops):
                 refuse(node, "computes a value that nobody keeps")
             made.append(ast.Expr(value))
         elif not isinstance(node, ast.Pass):
-            refuse(node, f"a step has no statement {type(node).__name__}")
+            refuse(node, f"a step has no statement {type(node).__name__}: it has assignments, if, for and return")
         return False
 
     def _assign(self, target: ast.expr, value: ast.expr, made: list[ast.stmt]) -> None:

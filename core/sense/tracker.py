@@ -109,7 +109,7 @@ def put_at_rest(s: Filter, params: TrackerParams, context: Context) -> None:
 def between_updates(p: Tracked, drive: Gathered, x: AppliedPorts) -> bool:
     """Gather the voltage of a tick; return whether a sensor that runs every N of them skips this one."""
     gather(p.tick, drive, x.applied, x.middle, x.end)
-    return bool(p.every != 1.0 and x.tick % p.every != 0.0)
+    return bool(p.every != 1.0 and int(x.tick) % int(p.every) != 0)
 
 
 @kernel

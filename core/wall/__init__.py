@@ -1,1 +1,1 @@
-"""The second wall around units of one's own: their steps as WebAssembly, in memory of their own."""
+"""The second wall around user units: their steps as WebAssembly, each in its own memory."""

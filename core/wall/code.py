@@ -61,7 +61,7 @@ def compiled(text: str) -> bytes:
     module.link_in(_aimed(OFFERED, machine))
     for one in (*module.global_variables, *module.functions):
         if not one.is_declaration and one.name != "offered":
-            one.linkage = "internal"  # what nobody needs is left out
+            one.linkage = "internal"  # functions without a caller are left out
     tuning = llvm.create_pipeline_tuning_options(speed_level=2)
     tuning.loop_vectorization = tuning.slp_vectorization = False
     passes = llvm.create_pass_builder(machine, tuning)
@@ -92,6 +92,6 @@ def _machine() -> Any:
 
 
 def name_of(block: type[Block]) -> str:
-    """Return the name of a step on the shelf, with a hash of it, of what it sees, and of this compiler."""
+    """Return the name of a step on the shelf, with a hash of its code, its records and ports, and this compiler."""
     own = inspect.getsource(sys.modules[__name__])
     return f"wall-{block.__module__}-{hash_of(block, own, llvmlite.__version__)}"

@@ -1,8 +1,8 @@
-"""The way through the wall: a C function like that of any step, which lets WebAssembly compute in copies.
+"""The way through the wall: a C function with the arguments of any step, which lets WebAssembly compute in copies.
 
-It copies what the step reads into the memory of an instance, calls it, and copies back what the step may write, so many
-numbers of each as the bench has. A call that fails puts out NaN and leaves the state; the guard trips when that reaches
-the drive. Boards of one structure side by side go one after another.
+It copies the inputs of the step into the memory of an instance, calls the step, and copies back the numbers that the
+step may write, as many as the bench has. A call that fails puts out NaN and leaves the state; the guard trips when NaN
+reaches the drive. Boards of one structure side by side are computed one after another.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ BUSY, CONTEXT, MEMORY, FUNCTION, STACK = range(5)
 
 
 class Behind(NamedTuple):
-    """What is behind a port: a signal, how many numbers, whether the step may write them."""
+    """The signal behind a port: its name, its length, and whether the step may write it."""
 
     signal: str
     size: int
@@ -52,7 +52,7 @@ class Sizes(NamedTuple):
         return self.parameters + self.state + self.signals + len(self.ports)
 
     def offsets(self, room: int) -> list[int]:
-        """Return where parameters, state, signals and places stand in memory."""
+        """Return the addresses of parameters, state, signals and places in memory."""
         numbers = 0, self.parameters, self.state, self.signals
         return [room + 8 * sum(numbers[: i + 1]) for i in range(len(numbers))]
 
@@ -67,7 +67,7 @@ class Sizes(NamedTuple):
 
 
 class Crossing:
-    """A way to instances of one step, of which each call takes one that is free.
+    """A way to the instances of one step; each call takes a free instance.
 
     Parameters
     ----------
@@ -172,12 +172,12 @@ class Crossing:
         self._drop("wasmtime_error_delete", self._call("wasmtime_global_set", context, place, value))
 
     def _drop(self, name: str, made: Any) -> None:
-        """Let go of what a call has made, if it has made anything."""
+        """Delete the object that a call has made, if there is one."""
         with self._builder.if_then(self._builder.icmp_signed("!=", made, _integer(0))):
             self._call(name, made)
 
     def _copy(self, outside: Any, inside: Any, size: int, *, out: bool) -> None:
-        """Copy numbers of a board, which may stand side by side with those of others, in or out."""
+        """Copy numbers of a board in or out; they may be interleaved with the numbers of other boards."""
         with counted(self._builder, _integer(size)) as i:
             far = self._builder.gep(outside, [self._builder.mul(i, _integer(self._width))])
             near = self._builder.gep(inside, [i])

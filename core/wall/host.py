@@ -1,7 +1,7 @@
 """The machine that runs WebAssembly: wasmtime, with nothing lent and a limit on all it can use.
 
-An instance is one step in a memory of its own. A call fills this memory anew with what the step reads, so any instance
-of a unit serves any board.
+An instance is one step in a memory of its own. A call fills this memory anew with the inputs of the step, so any
+instance of a unit serves any board.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from core.errors import InputError
 
 PAGE = 1 << 16
 STACK_BYTES = 1 << 16
-"""Stack of a step in its memory, behind the numbers: one that grows too far writes over these copies."""
+"""Stack of a step in its memory, behind the numbers: if it grows too far, it writes over these copies."""
 HOST_STACK_BYTES = 1 << 18
 MOST_BYTES = 4 << 20
 """Of a module, and of the memory of an instance."""
@@ -38,9 +38,9 @@ class Instance:
     room : int
         From where on memory is free.
     stack_top : int
-        What the place of the stack is between calls.
+        The place of the stack between calls.
     owners : tuple
-        What must live as long.
+        Objects that must live as long.
     """
 
     context: int
@@ -90,7 +90,7 @@ def _engine() -> Any:
     return machine().Engine(config)
 
 
-atexit.register(_engine.cache_clear)  # while the package that lets go of it is still there
+atexit.register(_engine.cache_clear)  # before the package that deletes it is unloaded
 
 
 def module_of(code: bytes) -> Any:
@@ -119,7 +119,7 @@ def module_of(code: bytes) -> Any:
 
 
 def _signature(kind: Any) -> str:
-    """Return the type of a function in a word; nothing for what is none."""
+    """Return the type of a function in a word; an empty text for anything else."""
     if not isinstance(kind, machine().FuncType):
         return ""
     return " ".join([*map(str, kind.params), "->", *map(str, kind.results)])

@@ -1,4 +1,4 @@
-"""Whether steps of units of one's own run behind the wall in this process, and the way to each that does."""
+"""Whether steps of user units run behind the wall in this process, and the way to each of these steps."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ INSTANCES = 4
 _is_demanded = False
 _building = Lock()
 _crossings: MutableMapping[type[Block], dict[tuple[Sizes, int], Crossing]] = WeakKeyDictionary()
-atexit.register(_crossings.clear)  # while the package that lets go of them is still there
+atexit.register(_crossings.clear)  # before the package that deletes them is unloaded
 
 
 def demand(wanted: bool = True) -> None:
@@ -41,9 +41,9 @@ def is_demanded() -> bool:
 
 
 def address(block: type[Block], sizes: Sizes, width: int = 1) -> int:
-    """Return where a C function is that computes a step behind the wall, of boards side by side if need be.
+    """Return the address of a C function that computes a step behind the wall, for so many boards side by side.
 
-    It is there as long as the block.
+    The function exists as long as the block.
 
     Raises
     ------

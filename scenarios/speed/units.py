@@ -1,10 +1,11 @@
-"""Cost of a user unit, measured on a bench that has it, and the additional cost of the wall."""
+"""Cost of a unit, measured on a bench that has it, and the additional cost of the wall."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
-from core.own.unit import Unit
+from core.block import Block
 from core.wall import wall
 from scenarios.edit import with_values
 from scenarios.library import get
@@ -49,20 +50,26 @@ def native_and_walled() -> tuple[Callable[[], float], Callable[[], float]]:
     return lambda: loop_cost(board, ["pid"]), walled
 
 
-def cost_ns(unit: Unit) -> float:
+def cost_ns(block: type[Block]) -> float | None:
     """Return the time of a sample, ns: of a first look with this unit, its step run once more.
+
+    Of a family that a first look has no choice of, such as plants, there is no such time.
 
     Raises
     ------
     InputError
         When a bench cannot have the unit with the parameters it has by itself.
     """
-    values, key = WHERE[unit.family]
-    named = {path.format(name=unit.name): value.format(name=unit.name) for path, value in values.items()}
-    table = {f"units.{unit.name}.source": unit.source, "expect": [], "events": []}
-    base, alive = ("gyro-first-look", gyroscope.ALIVE) if unit.block.axes else ("first-look", ALIVE)
-    board = build(with_values(get(base), table | named))
+    if block.family not in WHERE:
+        return None
+    (values, key), name = WHERE[block.family], block.name
+    table: dict[str, Any] = {path.format(name=name): value.format(name=name) for path, value in values.items()}
+    table |= {"expect": [], "events": []}
+    if block.text:
+        table[f"units.{name}.source"] = block.text
+    base, alive = ("gyro-first-look", gyroscope.ALIVE) if block.axes else ("first-look", ALIVE)
+    board = build(with_values(get(base), table))
     board.advance(WARM_TICKS)
-    instance = key.format(name=unit.name)
+    instance = key.format(name=name)
     cost = block_costs(board, instance, alive=[one for one in alive if one != instance])[instance]
     return max(0.0, cost)

@@ -17,6 +17,7 @@ from core.board.board import Board
 from core.board.document import Document
 from core.errors import InputError
 from core.format import format_count
+from core.kernel import renew
 from core.own.admission import kept_with
 from scenarios.schema import Scenario
 from server.bench.bench import LiveBench
@@ -319,6 +320,13 @@ class Benches:
             raise
         self._metrics.commands.labels(kind, "done").inc()
         return event
+
+    async def renew(self) -> None:
+        """Give all benches the code for this very processor, each at its next tick edge."""
+        await asyncio.to_thread(renew)
+        for session in self.all():
+            if isinstance(session.board, Board):
+                await self._engine.call(session.board.renew)
 
     def count(self) -> None:
         """Bring the gauge of benches up to date."""

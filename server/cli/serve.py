@@ -189,9 +189,9 @@ def serve(settings: Settings) -> None:
         address = f"{page}/?{here}token={quote(app.state.identity.token, safe='')}"
         notice = ""
         if settings.classroom:
-            from server import classroom
+            from server.classroom import addresses
 
-            notice = classroom.notice(settings, port)
+            notice = addresses.notice(settings, port)
         server = make_server(settings, app, address, notice)
         # uvicorn raises the signal again at its end; a stop by signal is no failure.
         for number in (signal.SIGINT, signal.SIGTERM):

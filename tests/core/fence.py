@@ -83,16 +83,7 @@ class FencedBoard(Board):
     def _fenced(self, row: int) -> Callable[[], None]:
         wiring, instance = self.wiring, self.wiring.instances[row]
         block, io = instance.block, wiring.ports(row)
-        names: dict[int, str] = {}
-        for name, place in wiring.index.items():  # of a vector and its first component, the vector
-            if place not in names or len(name) < len(names[place]):
-                names[place] = name
-        inputs = {names[int(place)] for place in io[: len(block.inputs)]}
-        outputs = {signal_name(instance, port.name) for port in (*block.outputs, *block.taps)}
-        assert len(io) == len(block.inputs) + len(outputs), instance.key
-        own = _places(wiring, outputs)
-        readable = {TICK, TIME_MS} | own | _places(wiring, inputs)
-        writable = own | (_places(wiring, inputs) if issubclass(block, Fault) else set())
+        readable, writable = permitted(wiring, row)
         p, s = wiring.packed(row), wiring.state_of(instance.key)
         w = Fence("w", wiring.w, readable, writable)
         whole = set(range(max(len(p), len(s), len(io))))
@@ -101,7 +92,7 @@ class FencedBoard(Board):
             block.State(Fence("s", s, whole, whole)),
             block.Ports(w, Fence("io", io, whole, set())),
         )
-        missing, unfenced = self.unwritten.setdefault(instance.key, own), wiring.bound(row)
+        missing, unfenced = self.unwritten.setdefault(instance.key, own_of(wiring, row)), wiring.bound(row)
 
         def step() -> None:
             if wiring.w[TICK] % FENCED_EVERY:
@@ -113,6 +104,26 @@ class FencedBoard(Board):
             return missing.difference_update(w.written)
 
         return step
+
+
+def permitted(wiring: Wiring, row: int) -> tuple[set[int], set[int]]:
+    """Return the places among all signals that the step of a row may read, and those that it may write."""
+    instance, io = wiring.instances[row], wiring.ports(row)
+    names: dict[int, str] = {}
+    for name, place in wiring.index.items():  # of a vector and its first component, the vector
+        if place not in names or len(name) < len(names[place]):
+            names[place] = name
+    inputs = _places(wiring, {names[int(place)] for place in io[: len(instance.block.inputs)]})
+    own = own_of(wiring, row)
+    return {TICK, TIME_MS} | own | inputs, own | (inputs if issubclass(instance.block, Fault) else set())
+
+
+def own_of(wiring: Wiring, row: int) -> set[int]:
+    """Return the places of the outputs and taps of a row."""
+    instance = wiring.instances[row]
+    outputs = {signal_name(instance, port.name) for port in (*instance.block.outputs, *instance.block.taps)}
+    assert len(wiring.ports(row)) == len(instance.block.inputs) + len(outputs), instance.key
+    return _places(wiring, outputs)
 
 
 def _places(wiring: Wiring, names: set[str]) -> set[int]:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from core import elementary
 from core.compile import entry
-from core.compile.machine import improved, machine
+from core.compile.machine import improved, machine, native
 from core.elementary.bits import bits_of, number_of, product_error, sum_error
 from core.kernel import kernel
 from core.plain import plain
@@ -162,6 +162,6 @@ def test_a_loop_of_them_becomes_vector_code():
 
     vector = "float64", 1, True
     text = entry.instructions(all_of.py_func, (vector, vector))
-    code = machine().emit_assembly(improved(text, loops=True))
+    code = machine(native()).emit_assembly(improved(text, native(), loops=True))
     assert "vmulpd" in code or "mulpd" in code
     assert "callq\texp" not in code and "call\texp" not in code

@@ -41,14 +41,15 @@ OLDER = {
 
 BENCHES = 50
 TICKS = 600
+SEED = 2008
 CHEAP = [{"name": "healthy"}, {"name": "m+5", "mass": 1.05}, {"name": "b+30", "damping": 1.3}]
 
 
 class Draw:
     """Choices of one bench."""
 
-    def __init__(self, number: int, attempt: int) -> None:
-        self._rng = np.random.default_rng([2008, number, attempt])
+    def __init__(self, number: int, attempt: int, seed: int, ticks: int) -> None:
+        self._rng, self._ticks = np.random.default_rng([seed, number, attempt]), ticks
 
     def one(self, *choices: Any) -> Any:
         return choices[int(self._rng.integers(len(choices)))]
@@ -61,12 +62,12 @@ class Draw:
         return round(float(self._rng.uniform(low, high)), 4)
 
     def sample(self) -> int:
-        return int(self._rng.integers(1, TICKS))
+        return int(self._rng.integers(1, self._ticks))
 
 
-def bench(number: int, attempt: int) -> dict[str, Any]:
+def bench(number: int, attempt: int, seed: int, ticks: int) -> dict[str, Any]:
     """Return the scenario of one bench; not all that is drawn fits together."""
-    draw = Draw(number, attempt)
+    draw = Draw(number, attempt, seed, ticks)
     device = draw.one(*(entry for entry in devices() if entry.usual_plant == "linear"))
     natural_hz = device.oscillator().natural_frequency * 1e3 / (2 * np.pi)
     controllers = sorted(set(registry.blocks("control")) - {"gain_adaptation"})
@@ -76,7 +77,7 @@ def bench(number: int, attempt: int) -> dict[str, Any]:
         "schema": 1,
         "id": f"bench-{number}",
         "sample_rate_khz": draw.one(50, 100, 200),
-        "samples": TICKS,
+        "samples": ticks,
         "seed": int(draw.sample()),
         "device": {"id": device.id},
         "plant": {"model": draw.one("linear", "linear", "nonlinear", "slaved_lateral", "planar")},
@@ -111,7 +112,7 @@ def bench(number: int, attempt: int) -> dict[str, Any]:
     for name in draw.some(controllers, 2):
         events.append({"at_sample": draw.sample(), "switch": name})
     if draw.one(True, False):
-        events.append({"at_sample": TICKS - 5, "heal": "all"})
+        events.append({"at_sample": ticks - 5, "heal": "all"})
     document["events"] = sorted(events, key=lambda event: event["at_sample"])
     if draw.one(True, False, False):
         twin = {"controller": {"kind": draw.one(*controllers)}} if controllers else {"plant": {"model": "nonlinear"}}
@@ -119,10 +120,10 @@ def bench(number: int, attempt: int) -> dict[str, Any]:
     return document
 
 
-def draw_bench(number: int) -> dict[str, Any]:
+def draw_bench(number: int, seed: int = SEED, ticks: int = TICKS) -> dict[str, Any]:
     """Return the first bench drawn for a number that fits together."""
     for attempt in range(1000):
-        document = bench(number, attempt)
+        document = bench(number, attempt, seed, ticks)
         try:
             run(Scenario.load(document))
         except InputError:

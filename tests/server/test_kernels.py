@@ -10,9 +10,15 @@ from pathlib import Path
 
 import pytest
 
+from core.compile import code
 from scenarios import kernels
+from scenarios.edit import with_values
+from scenarios.library import get
+from scenarios.run import build
+from server import service
 from server.runs import kernels as module
 from server.runs.kernels import Kernels
+from tests.lab import play
 
 COMPILER = """#!{python} -S
 import os, signal, sys
@@ -111,3 +117,30 @@ def test_nothing_is_compiled_that_is_kept_already(compiler, tmp_path: Path) -> N
 
     asyncio.run(serve())
     assert not pid.exists()
+
+
+def test_benches_go_on_with_code_for_this_processor_once_it_is_compiled(live, monkeypatch) -> None:
+    """A board and its twin take other code of the same steps at a tick edge, and no bit differs."""
+    scenario = with_values(get("first-look"), {"twins.other.controller.kind": "open_loop"})
+    straight = build(scenario)
+    play(straight, 800)
+    bench = live.bench(scenario.document, paused=True)["id"]
+    live.command(bench, "step", ticks=300)
+    board = live.service.benches.get(bench).board
+
+    def addresses() -> set[int]:
+        return {address for one in (board, *board.twins.values()) for address in one._table[:, 0]}
+
+    async def compiled() -> None:
+        assert addresses() == before, "it did not wait"
+
+    before, steps = addresses(), {code.step(one.block).name for one in board.wiring.instances}
+    monkeypatch.setattr(live.service.kernels, "compiled", compiled)
+    for borrowed in (set(), steps):
+        monkeypatch.setattr(code, "borrowed", borrowed)
+        monkeypatch.setattr(service, "borrowed", borrowed)
+        live.on_loop(live.service._use_own_code())
+        assert (addresses() == before) is (not borrowed)
+    assert not addresses() & before
+    live.command(bench, "step", ticks=500)
+    assert board.tick == 800 and board.digest() == straight.digest()

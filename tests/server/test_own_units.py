@@ -23,6 +23,7 @@ from scenarios.speed import units
 from server.cli.main import app
 from tests.core.own.price import PRICE_NS, priced
 from tests.core.own.texts import PI, ROOT, odd
+from tests.core.wall.test_bits import GALLERY
 from tests.server.classroom.group import join, open_class
 from tests.server.runs.test_runs import wait
 
@@ -184,6 +185,27 @@ def test_check_says_what_is_wrong_and_what_it_costs(tmp_path: Path, monkeypatch:
     assert CliRunner().invoke(app, ["run", "first-look", "--unit", str(bad)]).exit_code == 2
     missing = CliRunner().invoke(app, ["run", "first-look", "--unit", str(tmp_path / "none.py")])
     assert missing.exit_code == 2 and "--unit" in missing.stderr
+
+
+OFFERED = [ROOT / "docs" / "template" / "lead.py", *(ROOT / "docs" / "units" / f"{name}.py" for name in GALLERY)]
+
+
+@pytest.mark.parametrize("file", OFFERED, ids=[file.stem for file in OFFERED])
+def test_check_admits_the_units_of_the_documents_and_tells_a_step_outside_the_notation(
+    file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(units, "block_costs", priced)
+    said = CliRunner().invoke(app, ["check", str(file)], catch_exceptions=False)
+    assert said.exit_code == 0 and f"/{file.stem}, " in said.stdout
+    wrong, text = tmp_path / file.name, file.read_text("utf-8")
+    lines = text.split("\n")
+    step = next(i for i, one in enumerate(lines) if one.startswith("    def step("))
+    first = next(i for i in range(step + 1, len(lines)) if lines[i].startswith("        ") and '"""' not in lines[i])
+    lines.insert(first, "        with s:\n            pass")
+    wrong.write_text("\n".join(lines), "utf-8")
+    said = CliRunner().invoke(app, ["check", str(wrong)], catch_exceptions=False)
+    assert said.exit_code == 2 and said.stdout.startswith(f"{wrong}: line {first + 1}, column 9: "), said.stdout
+    assert "if" in said.stdout and "for" in said.stdout, "it says what a step may have"
 
 
 def test_a_campaign_with_a_unit_from_a_file(tmp_path: Path) -> None:

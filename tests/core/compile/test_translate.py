@@ -12,7 +12,7 @@ import pytest
 import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 from core import kernel_cache
 from core.compile import code
-from core.compile.machine import WIDTH, compiled, loaded
+from core.compile.machine import WIDTH, Target, compiled, loaded
 from core.compile.numbers import Unsupported
 from core.elementary import atan2, cos, exp, expm1, floor, log, sin, sin_of_turns, tanh
 from core.kernel import kernel
@@ -284,12 +284,9 @@ def test_what_lanes_cannot_do_runs_one_board_after_another(arrays):
         ("x86_64-unknown-linux-gnu", "x86-64-v2", "+sse2", "2"),
     ],
 )
-def test_code_for_another_machine_has_another_name(other, monkeypatch):
-    here = ("x86_64-unknown-linux-gnu", "x86-64-v2", "+sse2", "1")
-    monkeypatch.setattr(code, "target", lambda: here)
-    name = code.name_of(unit(arithmetic), WIDTH)
-    monkeypatch.setattr(code, "target", lambda: other)
-    assert (code.name_of(unit(arithmetic), WIDTH) == name) is (other == here)
+def test_code_for_another_machine_has_another_name(other):
+    here, piece = ("x86_64-unknown-linux-gnu", "x86-64-v2", "+sse2", "1"), code.step(unit(arithmetic), WIDTH)
+    assert (piece.name_for(Target(*other)) == piece.name_for(Target(*here))) is (other == here)
 
 
 def test_code_for_other_boards_side_by_side_has_another_name_and_is_another_file():
@@ -301,6 +298,6 @@ def test_code_for_other_boards_side_by_side_has_another_name_and_is_another_file
     shelf = Shelf()
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(kernel_cache, "_shelves", [shelf])
-        codes = {code.kept(unit(arithmetic), width) for width in (1, 8, 16)}
+        codes = {code.step(unit(arithmetic), width).kept() for width in (1, 8, 16)}
         assert len(codes) == len(shelf.kept) == 3
-        assert {code.kept(unit(arithmetic), width) for width in (1, 8, 16)} == codes and len(shelf.kept) == 3
+        assert {code.step(unit(arithmetic), width).kept() for width in (1, 8, 16)} == codes and len(shelf.kept) == 3

@@ -114,7 +114,7 @@ def test_units_of_gyroscopes_stand_on_no_other_bench() -> None:
 @pytest.mark.parametrize("name", ["drive", "sense", "mean"])
 def test_its_cost_is_measured_on_a_gyroscope(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(units, "block_costs", priced)
-    assert units.cost_ns(unit("own", {"drive": DRIVE, "sense": SENSE, "mean": MEAN}[name])) == PRICE_NS
+    assert units.cost_ns(unit("own", {"drive": DRIVE, "sense": SENSE, "mean": MEAN}[name]).block) == PRICE_NS
 
 
 SENSE_READS = SENSE.replace("import output, tap", "import output, reads, tap")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -14,6 +15,7 @@ from typer.testing import CliRunner
 
 from core import registry
 from core.board.packages import packages
+from core.compile.numbers import NOTATION
 from core.errors import InputError
 from scenarios.edit import with_values
 from scenarios.library import get
@@ -53,6 +55,41 @@ def test_an_installed_unit_is_in_the_catalogue_and_runs_as_its_text_does(install
 
 def test_the_test_of_the_template_passes_where_it_is_installed(installed: Installed) -> None:
     assert installed.answer(TESTED) == 2
+
+
+def checked(installed: Installed, *words: str) -> subprocess.CompletedProcess[str]:
+    """Ask the command line about the package, in a process that loads it anew."""
+    command = [sys.executable, "-m", "server.cli", "check", *words]
+    return subprocess.run(command, env=installed.environment, capture_output=True, text=True, check=False)
+
+
+def test_an_installed_unit_is_checked_by_the_name_of_its_package(installed: Installed) -> None:
+    ended = checked(installed, "combbench-lead", "--json")
+    (row,) = json.loads(ended.stdout)
+    assert ended.returncode == 0 and row.pop("ns_per_sample") >= 0.0
+    assert row == {"file": "combbench-lead", "family": "control", "name": "lead"}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "says"),
+    [
+        ("        x.error = sum([s.error for _ in range(3)])", "an expression ListComp"),
+        ("        with s:\n            pass", "a statement With"),
+        ("        x.error = np.float128(s.error)", "np is not known at this place"),
+    ],
+)
+def test_a_step_of_a_package_outside_the_notation_is_told_with_its_place_and_the_way_out(
+    installed: Installed, wrong: str, says: str
+) -> None:
+    file, right = installed.source / "lead.py", "        x.error = s.error"
+    text = file.read_text("utf-8")
+    assert text.count(right) == 1
+    file.write_text(text.replace(right, wrong), "utf-8")
+    ended = checked(installed, "combbench-lead")
+    line = 1 + text.split("\n").index(right)
+    column = 9 if "with" in wrong else wrong.index("np" if "np" in wrong else "[") + 1
+    assert ended.returncode == 2 and ended.stderr == ""
+    assert ended.stdout == f"combbench-lead: {file}:{line}:{column}: {says} ({NOTATION})\n"
 
 
 @pytest.mark.long
