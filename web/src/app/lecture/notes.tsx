@@ -1,7 +1,7 @@
 import { useEffect, useState } from "react";
 import type { Cue } from "../../api/types";
 import { plannedTo, useLecture } from "../../bench/lecture";
-import { formatIn } from "../../ui/format";
+import { formatIn, keepUnits } from "../../ui/format";
 import styles from "./lecture.module.css";
 
 const TICK_MS = 5000;
@@ -13,18 +13,18 @@ export function Notes({ cue, next }: { cue: Cue; next: string | undefined }) {
     <section className={styles.notes} aria-label="Notes of the speaker" tabIndex={0}>
       <div className={styles.columns}>
         {cue.say.split("\n").map((line) => (
-          <p key={line}>{line}</p>
+          <p key={line}>{keepUnits(line)}</p>
         ))}
         {cue.ask && (
           <p>
             <b>Ask: </b>
-            {cue.ask}
+            {keepUnits(cue.ask)}
           </p>
         )}
         {cue.see && (
           <p>
             <b>Watch for: </b>
-            {cue.see}
+            {keepUnits(cue.see)}
           </p>
         )}
         {cue.vote && (

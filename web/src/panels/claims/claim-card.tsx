@@ -4,6 +4,7 @@ import { useMay } from "../../api/me";
 import type { Claim, ClaimList } from "../../api/types";
 import { addScope } from "../../bench/dock";
 import { placeIn } from "../../bench/printed";
+import { keepUnits } from "../../ui/format";
 import { Verdict } from "../../ui/verdict";
 import { partnersOf } from "./claim-signals";
 import { claimWords, stateWords } from "./claim-words";
@@ -79,7 +80,7 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
             Not drawn: {text}.
           </p>
         ))}
-        {claim.note && <p className={styles.reading}>Why: {claim.note}.</p>}
+        {claim.note && <p className={styles.reading}>Why: {keepUnits(claim.note)}.</p>}
         {claim.fitted.length > 0 && (
           <p className={styles.reading}>Chosen so that it agrees: {claim.fitted.join(", ")}.</p>
         )}
