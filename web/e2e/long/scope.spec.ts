@@ -52,10 +52,17 @@ test("the strip of captures has room on every screen", async ({ page, openBench 
   await openBench("lab");
   const scope = page.getByRole("region", { name: /^Scope: plant\.displacement/ }).first();
   const trigger = scope.getByRole("button", { name: "Trigger", exact: true });
+  const tools = scope.getByRole("button", { name: "Tools", exact: true });
   for (const screen of SCREENS) {
     await showOn(page, screen);
-    if (await trigger.isHidden()) continue;
-    if ((await trigger.getAttribute("aria-pressed")) === "false") await trigger.click();
+    await expect(trigger.or(tools)).toBeVisible();
+    if (await tools.isVisible()) {
+      await tools.click();
+      const hold = page.getByRole("menuitem", { name: /^Trigger/ });
+      await expect(page.getByRole("menuitem").first()).toBeFocused();
+      if (await hold.isVisible()) await hold.click();
+      else await page.keyboard.press("Escape");
+    } else if ((await trigger.getAttribute("aria-pressed")) === "false") await trigger.click();
     const strip = scope.getByRole("group", { name: "Captures", exact: true });
     await expect(strip).toBeVisible();
     await expect.poll(() => strip.evaluate((box) => box.scrollWidth <= box.clientWidth)).toBe(true);

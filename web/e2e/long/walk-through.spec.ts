@@ -32,7 +32,11 @@ test("the walk-through of the documents can be walked, in as many clicks as it s
     await page.screenshot({ path, type: "jpeg", quality: 82 });
   };
   const button = (name: string | RegExp) => page.getByRole("button", { name }).first();
-  const traces = (within: Page | Locator) => within.getByText(/\d\s(µm|nm)$/).filter({ visible: true }).first();
+  const traces = (within: Page | Locator) =>
+    within
+      .getByText(/\d\s(µm|nm)$/)
+      .filter({ visible: true })
+      .first();
   const benches: string[] = [];
 
   await part("What you see first", "first-page", 0, async () => {

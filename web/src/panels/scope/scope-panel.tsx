@@ -145,7 +145,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
           past={view.kind === "past"}
           onLive={goLive}
           trigger={trigger}
-          exporter={traces.length > 0 && <ExportMenu plot={plot} capture={capture} />}
+          exporter={(tools) => traces.length > 0 && <ExportMenu plot={plot} capture={capture} tools={tools} />}
         >
           {!config.measure && ( // the table names them too, and its rows want the room
             <ScopeLegend

@@ -6,6 +6,7 @@ import { markEvents } from "../../picture/event-marks";
 import type { Field, Look } from "../../picture/pen";
 import { reachMarks } from "../../picture/printed-marks";
 import { tickRoom } from "../../picture/ticked-range";
+import { wrapped } from "../../picture/wrapped";
 import { columnAt, columnTimes, type PanelFrame } from "../../stream/panel-frame";
 import { hover } from "../../ui/hover";
 import { CANVAS, DASHES, faded, fontFor } from "../../ui/palette";
@@ -359,6 +360,8 @@ export class ScopePlot {
     const words = this.frame?.waiting
       ? "Waiting for the trigger"
       : "No data here: the bench has dropped it, or has not come to it yet";
-    ctx.fillText(words, (left + right) / 2, (top + bottom) / 2);
+    const lines = wrapped(ctx, words, right - left);
+    for (const [i, line] of lines.entries())
+      ctx.fillText(line, (left + right) / 2, (top + bottom) / 2 + 1.4 * fontSize * (i - (lines.length - 1) / 2));
   }
 }
