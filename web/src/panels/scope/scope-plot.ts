@@ -3,10 +3,10 @@ import type { PrintedMark } from "../../api/types";
 import { flagWords } from "../../bench/flag-words";
 import type { Marks } from "../../bench/marks";
 import { markEvents } from "../../picture/event-marks";
+import { linesOf } from "../../picture/lines-of";
 import type { Field, Look } from "../../picture/pen";
 import { reachMarks } from "../../picture/printed-marks";
 import { tickRoom } from "../../picture/ticked-range";
-import { wrapped } from "../../picture/wrapped";
 import { columnAt, columnTimes, type PanelFrame } from "../../stream/panel-frame";
 import { hover } from "../../ui/hover";
 import { CANVAS, DASHES, faded, fontFor } from "../../ui/palette";
@@ -360,7 +360,7 @@ export class ScopePlot {
     const words = this.frame?.waiting
       ? "Waiting for the trigger"
       : "No data here: the bench has dropped it, or has not come to it yet";
-    const lines = wrapped(ctx, words, right - left);
+    const lines = linesOf(ctx, words, right - left);
     for (const [i, line] of lines.entries())
       ctx.fillText(line, (left + right) / 2, (top + bottom) / 2 + 1.4 * fontSize * (i - (lines.length - 1) / 2));
   }

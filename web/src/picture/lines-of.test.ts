@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { wrapped } from "./wrapped";
+import { linesOf } from "./lines-of";
 
 const pen = { measureText: (text: string) => ({ width: 10 * text.length }) };
 
@@ -8,5 +8,5 @@ it.each([
   [100, ["the bench", "has", "dropped it"]],
   [30, ["the", "bench", "has", "dropped", "it"]],
 ])("breaks a text into the lines that fit %s px", (width, lines) => {
-  expect(wrapped(pen, "the bench has dropped it", width)).toEqual(lines);
+  expect(linesOf(pen, "the bench has dropped it", width)).toEqual(lines);
 });

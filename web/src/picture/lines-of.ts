@@ -1,7 +1,7 @@
 import type { Pen } from "./pen";
 
 /** A text in lines that fit a width, px; a word that is wider has a line of its own. */
-export function wrapped(pen: Pick<Pen, "measureText">, text: string, width: number): string[] {
+export function linesOf(pen: Pick<Pen, "measureText">, text: string, width: number): string[] {
   const lines: string[] = [];
   for (const word of text.split(" ")) {
     const last = lines.pop();
