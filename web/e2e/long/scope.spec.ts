@@ -129,3 +129,29 @@ test("the phase plane is square at any width", async ({ page, server, openBench 
     await expect.poll(() => canvas.evaluate(outOfSquare)).toBeLessThanOrEqual(2);
   }
 });
+
+test("a lecture has few buttons without words, and room for a plot below a comparison", async ({
+  page,
+  server,
+  openBench,
+}) => {
+  await page.setViewportSize(SCREENS[0]);
+  await openBench("lecture");
+  await server.advance(4);
+  const wordless = () =>
+    page
+      .locator("button:has(svg)")
+      .evaluateAll(
+        (all) =>
+          all.filter(
+            (one) => !one.textContent && one.checkVisibility({ opacityProperty: true, visibilityProperty: true }),
+          ).length,
+      );
+  await expect.poll(wordless).toBeLessThanOrEqual(8);
+  await page.getByRole("button", { name: /^Inject \+5.*Added mass$/ }).click();
+  for (const scope of await page.getByRole("region", { name: /^Scope: / }).all()) {
+    await expect(scope.getByRole("region", { name: "Before and after" })).toContainText("Added mass");
+    const field = scope.locator(".u-over, [data-testid=field]");
+    await expect.poll(() => field.evaluate((plot) => plot.clientHeight)).toBeGreaterThan(175);
+  }
+});
