@@ -71,13 +71,13 @@ function findFaults(within: string): string[] {
     hidden.set(e, is);
     return is;
   };
-  /** Whether a text that is too wide for a box ends in dots: the lines must be its own, not of a block or a flex item in it. */
+  /** Whether a text that is too wide for a box ends in dots: a block or a flex item in it would have no dots. */
   const hasDots = (e: Element, box: Element) => {
     let own: Element | null = e;
     while (own && own !== box && /^(inline|contents)/.test(styleOf(own).display)) own = own.parentElement;
     return styleOf(box).textOverflow === "ellipsis" && own === box && !/flex|grid/.test(styleOf(box).display);
   };
-  /** Whether a box ends in dots after a number of lines, all of which it shows. */
+  /** Whether a box shows all the lines that it may have, and ends in dots. */
   const endsInDots = (e: Element) => {
     const { display, fontSize, lineHeight, webkitLineClamp } = styleOf(e);
     const line = Number.parseFloat(lineHeight) || 1.2 * Number.parseFloat(fontSize);

@@ -32,7 +32,7 @@ const LINK = /^[2-9a-z]{8}$/;
 
 /** Whether the panels stand as for a bench with axes. */
 let axes = false;
-/** Whether the panels stand in a dock with room for a third column; a built-in layout is kept for either case. */
+/** Whether the dock has room for a third column; a built-in layout is kept for either case. */
 let wide = true;
 /** A layout that came before there was a dock to show it in. */
 let coming: { shared: SharedLayout; name: string } | undefined;
