@@ -76,7 +76,10 @@ export function PanelMenu({
 }
 
 /** A menu cannot have a search field; so the frame is a dialog, and the entries in it are the menu. */
-const asDialog = (frame: HTMLElement | null): void => frame?.setAttribute("role", "dialog");
+function asDialog(frame: HTMLElement | null): void {
+  frame?.setAttribute("role", "dialog");
+  frame?.removeAttribute("aria-orientation");
+}
 
 function useEntries(query: string): Entry[] {
   const axes = useBench(useShallow((s) => s.bench?.axes));
