@@ -70,9 +70,10 @@ export function BeforeAfter({ change, isHidden, figures, traces, plot }: BeforeA
 function ComparedList({ compared }: { compared: Compared[] }) {
   const scheme = useScheme();
   const list = useFirstRow<HTMLUListElement>();
+  const told = compared.filter(({ ratio }, i) => i === 0 || ratio);
   return (
     <ul ref={list} className={styles.figures}>
-      {compared.map(({ trace, before, after, ratio, isSettled }) => (
+      {told.map(({ trace, before, after, ratio, isSettled }) => (
         <Fragment key={trace.name}>
           <li>
             <SignalName name={trace.name} /> <b>{isSettled || !ratio ? ratio : `${ratio}, still settling`}</b>
