@@ -86,30 +86,23 @@ async function walkDock(page: Page, key: string, added: string[], look: (where: 
 }
 
 /** Turn the panels in front to their views of a rank; their names, none when no panel has as many. */
-const turnTo = (page: Page, rank: number): Promise<string> =>
-  page.evaluate(async (rank) => {
-    const until = async (isSo: () => boolean) => {
-      while (!isSo()) await new Promise(requestAnimationFrame);
-    };
-    const has = (what: string) => document.querySelector(what) !== null;
-    const turned: (string | null)[] = [];
-    for (const choice of Array.from(
-      document.querySelectorAll<HTMLElement>(".dock-views, .dock-view[aria-haspopup=menu]"),
-    )) {
-      const isRow = choice.matches(".dock-views");
-      if (!isRow) {
-        choice.click();
-        await until(() => has("[role=menuitem]"));
-      }
-      const views = isRow ? choice.querySelectorAll("button") : document.querySelectorAll("[role=menuitem]");
-      const view = views[rank] as HTMLElement | undefined;
-      if (view) turned.push(view.textContent);
-      if (view) view.click();
-      else if (!isRow) choice.click();
-      await until(() => !has("[role=menu]"));
+async function turnTo(page: Page, rank: number): Promise<string> {
+  const turned: string[] = [];
+  for (const choice of await page.locator(".dock-views, .dock-view[aria-haspopup=menu]").all()) {
+    const isRow = (await choice.getAttribute("role")) === "group";
+    if (!isRow) {
+      await choice.click();
+      await expect(page.getByRole("menuitem").first()).toBeFocused();
     }
-    return turned.join(", ");
-  }, rank);
+    const view = (isRow ? choice.getByRole("button") : page.getByRole("menuitem")).nth(rank);
+    if (await view.count()) {
+      turned.push(await view.innerText());
+      await view.click();
+    } else if (!isRow) await page.keyboard.press("Escape");
+    await expect(page.getByRole("menu")).toHaveCount(0);
+  }
+  return turned.join(", ");
+}
 
 /** Every panel that a phone can open. */
 async function walkPhone(page: Page, look: (where: string) => Promise<void>) {
