@@ -129,6 +129,7 @@ for (const [device, bench] of Object.entries({ resonator: RESONATOR, gyroscope: 
 
   for (const scheme of SCHEMES)
     test(`the letters of all panels of a ${device} can be read in the ${scheme} scheme`, async ({ page, server }) => {
+      test.slow(); // axe reads every view
       await openFound(page, server, bench);
       await showOn(page, SCREENS[0]);
       await walkDock(page, "2", ADDED, (where) => expectReadable(page, `${device}: ${where}`, scheme, ".dv-groupview"));
