@@ -103,4 +103,4 @@ def caption(factor: float, turn_factor: float | None, is_strobed: bool) -> str:
     parts.append(f"heights × {format_short(HEIGHTS, '')}, beam widths × {format_short(WIDTHS, '')}")
     if is_strobed:
         parts.append("strobe")
-    return ", ".join(parts)
+    return ", ".join(parts).replace("× ", "×\u00a0")  # no line break parts them

@@ -16,7 +16,7 @@ test("keys alone reach the bench: each menu opens with its first item in focus a
   expect(many).toBeGreaterThan(4);
   for (let at = 0; at < many; at += 1) {
     await menus.nth(at).press("Enter");
-    await expect(page.locator("[role=menu] :is(input, [role=menuitem])").first()).toBeFocused();
+    await expect(page.locator("[data-menu-dropdown] :is(input, [role=menuitem])").first()).toBeFocused();
     await page.keyboard.press("Escape");
     await expect(page.getByRole("menu")).toHaveCount(0);
     await expect(menus.nth(at)).toBeFocused();

@@ -44,7 +44,7 @@ function runByHand(name: string, source: string): Summary {
     try {
       out = execFileSync(join(ROOT, ".venv", "bin", "combbench"), told, { encoding: "utf-8" });
     } catch (error) {
-      out = (error as { stdout: string }).stdout; // other expectations are those of the adaptive law
+      out = (error as { stdout: string }).stdout; // other expectations belong to the adaptive law
     }
     return JSON.parse(out) as Summary;
   } finally {

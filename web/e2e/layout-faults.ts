@@ -71,6 +71,18 @@ function findFaults(within: string): string[] {
     hidden.set(e, is);
     return is;
   };
+  /** Whether a text that is too wide for a box ends in dots: a block or a flex item in it would have no dots. */
+  const hasDots = (e: Element, box: Element) => {
+    let own: Element | null = e;
+    while (own && own !== box && /^(inline|contents)/.test(styleOf(own).display)) own = own.parentElement;
+    return styleOf(box).textOverflow === "ellipsis" && own === box && !/flex|grid/.test(styleOf(box).display);
+  };
+  /** Whether a box shows all the lines that it may have, and ends in dots. */
+  const endsInDots = (e: Element) => {
+    const { display, fontSize, lineHeight, webkitLineClamp } = styleOf(e);
+    const line = Number.parseFloat(lineHeight) || 1.2 * Number.parseFloat(fontSize);
+    return /box|flow-root/.test(display) && boxOf(e).height > (Number(webkitLineClamp) - LEADING) * line;
+  };
   /** Menus and dialogs are meant to cover the page. */
   const layer = (e: Element) => e.closest("[data-portal], [role=dialog], [role=menu]");
 
@@ -94,15 +106,14 @@ function findFaults(within: string): string[] {
           reach.right = Math.min(reach.right, edge.right);
         } else {
           const over = Math.max(edge.left - reach.left, reach.right - edge.right);
-          if (style.textOverflow === "ellipsis" || up.matches("input, select")) ellipsis ||= over > 0;
+          if (hasDots(e, up) || up.matches("input, select")) ellipsis ||= over > 0;
           else across = Math.max(across, over);
         }
         if (/auto|scroll/.test(style.overflowY)) {
           reach.top = Math.max(reach.top, edge.top);
           reach.bottom = Math.min(reach.bottom, edge.bottom);
         } else {
-          // the last line that is left ends in dots
-          if (style.webkitLineClamp !== "none") reach.bottom = Math.min(reach.bottom, edge.bottom);
+          if (endsInDots(up)) reach.bottom = Math.min(reach.bottom, edge.bottom);
           along = Math.max(along, edge.top - reach.top, reach.bottom - edge.bottom);
         }
         seen.left = Math.max(seen.left, edge.left);

@@ -8,7 +8,7 @@ import { sceneOf } from "./scene";
 
 const ROOT = join(import.meta.dirname, "..", "..");
 
-// The course is at 127.0.0.1 and the bench at localhost: two sites, of which the second gets no cookie in a frame. Data
+// The course is at 127.0.0.1 and the bench at localhost: two sites; in a frame the second gets no cookie. Data
 // of pages of the second site is kept apart for each first site, as browsers do; that is off in tests unless a list is
 // given.
 const FLAGS = ["--test-third-party-cookie-phaseout", "--disable-features=HttpsUpgrades,Translate"];

@@ -31,7 +31,7 @@ export async function showOn(page: Page, { width, height }: Screen): Promise<voi
   sessions.set(page, session);
   await session.send("Emulation.setTouchEmulationEnabled", { enabled: width < 1000 });
   await page.setViewportSize({ width, height });
-  await expect.poll(() => dockFollows(page)).toBe(true); // a layout chosen earlier would be that of the screen before
+  await expect.poll(() => dockFollows(page)).toBe(true); // a layout chosen earlier would fit the screen before
 }
 
 /** Whether the panels, if any, are as wide as their place. */

@@ -83,10 +83,12 @@ test("four faults of a gyroscope are injected, found and healed from the page", 
 
   // the device the adaptive law is tuned for; it drives both axes
   await front(page, "Controller", "Choice");
-  const controllers = page.locator("section[aria-label='Controllers']");
+  const controllers = page.locator("section[aria-label='Choice']");
   await controllers.getByRole("radio", { name: "Adaptive control with rate estimate" }).click();
   await expect(controllers.getByText("Waits: Adaptive control with rate estimate")).toBeVisible();
   await page.getByRole("tab", { name: "Angular rate" }).click();
+  // beside Why the scope has room for the names alone
+  await page.locator(".dv-active-group").getByRole("button", { name: "Fill the page with this panel" }).click();
   const estimate = () => reading(legend(page, "rate.rate"), "adaptive rate rate");
   await later(server, async () => Math.abs((await estimate()) - TRUE_DEG_S)).toBeLessThan(50);
   await expect(page.getByTestId("bench-state")).toHaveText("running");
@@ -129,7 +131,7 @@ test("a loop makes something of a fault, and controllers take over from the page
 
   await page.getByRole("tab", { name: "Forces" }).click();
   await front(page, "Controller", "Choice");
-  const panel = page.locator("section[aria-label='Controllers']");
+  const panel = page.locator("section[aria-label='Choice']");
   const force = (axis: string) => () => reading(legend(page, "drive.x.force"), `drive ${axis} force`);
   const choose = async (title: string) => {
     const choice = panel.getByRole("radio", { name: title });
@@ -161,7 +163,7 @@ test("a rate that the motion does not tell is not trusted; the faults of any dev
   const rate = { kind: "constant", deg_per_s: 5000 };
   const id = await openDocument({ ...BENCH, device: { id: "gyro-a" }, rate, controllers: { adaptive_rate: alike } });
   await front(page, "Controller", "Choice");
-  const controllers = page.locator("section[aria-label='Controllers']");
+  const controllers = page.locator("section[aria-label='Choice']");
   const adaptive = page.getByRole("radio", { name: "Adaptive control with rate estimate" });
   const row = controllers.locator("[data-active='true']").filter({ has: adaptive });
   await adaptive.click();

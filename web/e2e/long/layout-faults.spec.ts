@@ -9,6 +9,23 @@ const WRONG: [string, RegExp][] = [
     `<div style="width: 60px; overflow: hidden; white-space: nowrap">cut without a sign</div>`,
     /text .* is cut .* across/,
   ],
+  [
+    `<div style="display: flex; width: 60px; overflow: hidden; white-space: nowrap; text-overflow: ellipsis">cut without dots</div>`,
+    /text .* is cut .* across/,
+  ],
+  [
+    `<div style="width: 60px; overflow: hidden; white-space: nowrap; text-overflow: ellipsis"><p>cut without dots</p></div>`,
+    /text .* is cut .* across/,
+  ],
+  [
+    `<p style="width: 90px; height: 16px; overflow: hidden; -webkit-line-clamp: 1">two lines and no dots at their end</p>`,
+    /is cut .* along/,
+  ],
+  [
+    `<p style="display: -webkit-box; width: 90px; height: 24px; overflow: hidden; -webkit-box-orient: vertical; -webkit-line-clamp: 3">
+      the dots are in a third line, which is below the edge</p>`,
+    /is cut .* along/,
+  ],
   [`<div style="height: 10px; overflow: hidden"><p style="margin: 0">only half as high</p></div>`, /is cut .* along/],
   [`<div style="width: 50px; overflow: hidden"><button style="width: 90px">Cut</button></div>`, /button "Cut" is cut/],
   [`<button style="position: fixed; bottom: -40px; height: 60px">Below</button>`, /button "Below" is cut .* along/],
@@ -37,6 +54,7 @@ const RIGHT = `
   <p style="width: 90px; overflow: hidden; text-overflow: ellipsis; white-space: nowrap">cut with a sign of it</p>
   <p style="display: -webkit-box; width: 90px; overflow: hidden; -webkit-box-orient: vertical; -webkit-line-clamp: 2">
     cut with a sign of it at the end of its second line</p>
+  <p style="width: 90px; overflow: hidden; text-overflow: ellipsis; white-space: nowrap"><b>cut</b> <i>with a sign of it</i></p>
   <div data-portal="true" style="position: absolute; top: 0; background: #fff">a menu over the page</div>`;
 
 test("each fault of a page is found by itself, and nothing else is found", async ({ page }) => {

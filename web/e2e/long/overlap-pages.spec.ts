@@ -108,7 +108,7 @@ test("no menu overlaps or is cut, on any screen", async ({ page, openBench }) =>
 test("no notice overlaps or is cut, on any screen", async ({ page, openBench }) => {
   await openBench("lab");
   const undo = page.locator(".mantine-Notification-root").getByRole("button", { name: "Undo" }).last();
-  const tab = page.getByRole("tab", { name: "Voltage" });
+  const tab = page.getByRole("tab", { name: "Tracking error" });
   for (const screen of SCREENS) {
     await showOn(page, isPhone(screen) ? SCREENS[0] : screen);
     await tab.focus();

@@ -52,10 +52,17 @@ test("the strip of captures has room on every screen", async ({ page, openBench 
   await openBench("lab");
   const scope = page.getByRole("region", { name: /^Scope: plant\.displacement/ }).first();
   const trigger = scope.getByRole("button", { name: "Trigger", exact: true });
+  const tools = scope.getByRole("button", { name: "Tools", exact: true });
   for (const screen of SCREENS) {
     await showOn(page, screen);
-    if (await trigger.isHidden()) continue;
-    if ((await trigger.getAttribute("aria-pressed")) === "false") await trigger.click();
+    await expect(trigger.or(tools)).toBeVisible();
+    if (await tools.isVisible()) {
+      await tools.click();
+      const hold = page.getByRole("menuitem", { name: /^Trigger/ });
+      await expect(page.getByRole("menuitem").first()).toBeFocused();
+      if (await hold.isVisible()) await hold.click();
+      else await page.keyboard.press("Escape");
+    } else if ((await trigger.getAttribute("aria-pressed")) === "false") await trigger.click();
     const strip = scope.getByRole("group", { name: "Captures", exact: true });
     await expect(strip).toBeVisible();
     await expect.poll(() => strip.evaluate((box) => box.scrollWidth <= box.clientWidth)).toBe(true);
@@ -120,5 +127,31 @@ test("the phase plane is square at any width", async ({ page, server, openBench 
     await server.advance(1);
     const canvas = page.locator("section[aria-label='Phase plane'] canvas");
     await expect.poll(() => canvas.evaluate(outOfSquare)).toBeLessThanOrEqual(2);
+  }
+});
+
+test("a lecture has few buttons without words, and room for a plot below a comparison", async ({
+  page,
+  server,
+  openBench,
+}) => {
+  await page.setViewportSize(SCREENS[0]);
+  await openBench("lecture");
+  await server.advance(4);
+  const wordless = () =>
+    page
+      .locator("button:has(svg)")
+      .evaluateAll(
+        (all) =>
+          all.filter(
+            (one) => !one.textContent && one.checkVisibility({ opacityProperty: true, visibilityProperty: true }),
+          ).length,
+      );
+  await expect.poll(wordless).toBeLessThanOrEqual(8);
+  await page.getByRole("button", { name: /^Inject \+5.*Added mass$/ }).click();
+  for (const scope of await page.getByRole("region", { name: /^Scope: / }).all()) {
+    await expect(scope.getByRole("region", { name: "Before and after" })).toContainText("Added mass");
+    const field = scope.locator(".u-over, [data-testid=field]");
+    await expect.poll(() => field.evaluate((plot) => plot.clientHeight)).toBeGreaterThan(175);
   }
 });

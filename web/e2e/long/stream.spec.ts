@@ -25,7 +25,7 @@ test("a hidden page stays connected although it draws nothing and its timers are
   const clock = page.getByRole("timer", { name: "Device time" });
   const before = await clock.innerText();
   await goAway(true);
-  await server.advance(8); // the server lets go of a page that takes nothing for 5 s
+  await server.advance(8); // the server disconnects a page that takes nothing for 5 s
   await goAway(false);
   await server.advance(1);
   await expect(clock).not.toHaveText(before);

@@ -2807,7 +2807,7 @@ export interface paths {
         };
         /**
          * Live
-         * @description Answer as long as the event loop turns.
+         * @description Answer 200 unless the engine hangs for good; then the server has to be restarted.
          */
         get: operations["live"];
         put?: never;
@@ -3285,6 +3285,12 @@ export interface components {
             watchers?: number;
             /** @description Its users; null while it is one person */
             company?: components["schemas"]["Company"] | null;
+            /**
+             * Is Stuck
+             * @description The engine hangs for good: the server has to be restarted
+             * @default false
+             */
+            is_stuck?: boolean;
             /**
              * Loop Lag Ms
              * @description 99th percentile of the event loop's lateness, last minute
@@ -9210,6 +9216,12 @@ export interface components {
              * @default null
              */
             company?: components["schemas"]["Company"] | null;
+            /**
+             * Is Stuck
+             * @description The engine hangs for good: the server has to be restarted
+             * @default false
+             */
+            is_stuck?: boolean;
             /**
              * Loop Lag Ms
              * @description 99th percentile of the event loop's lateness, last minute
@@ -15185,6 +15197,15 @@ export interface operations {
         responses: {
             /** @description Successful Response */
             200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Health"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -1,13 +1,13 @@
 import type { DockviewApi, SerializedDockview } from "dockview-react";
 import { api } from "../api/api";
 import { hasAxes } from "../api/fits";
-import { dockNow, forgetClosed, restoreLayout, type SharedLayout, useDock } from "../bench/dock";
+import { bringBack, dockNow, forgetClosed, inFront, restoreLayout, type SharedLayout, useDock } from "../bench/dock";
 import { inAddress } from "../bench/open-bench";
 import type { PanelName } from "../bench/panel-views";
 import { showError } from "../bench/send";
 import { chooseLayout, type LayoutName, useView } from "../bench/view-store";
 import { useBench } from "../stream/bench-store";
-import { BUILT_IN } from "./built-in-layouts";
+import { BUILT_IN, THREE_COLUMNS_PX } from "./built-in-layouts";
 import { layoutHistory } from "./layout-history";
 import { PANELS } from "./panels";
 import { BUILT_IN_AXES } from "./two-axis-layouts";
@@ -32,12 +32,15 @@ const LINK = /^[2-9a-z]{8}$/;
 
 /** Whether the layout is for a bench with axes. */
 let axes = false;
+/** Whether the dock has room for a third column; a built-in layout is kept for either case. */
+let wide = true;
 /** A layout that came before there was a dock to show it in. */
 let coming: { shared: SharedLayout; name: string } | undefined;
 
 const kind = () => (axes ? "axes." : "");
 const LIST = () => `combbench.layouts.${kind()}own`;
-const storageKey = (name: string) => `combbench.layout.4.${kind()}${isBuiltIn(name) ? "" : "own."}${name}`;
+const room = () => (wide ? "" : "narrow.");
+const storageKey = (name: string) => `combbench.layout.4.${kind()}${isBuiltIn(name) ? room() : "own."}${name}`;
 
 export const isBuiltIn = (name: string): name is LayoutName => name in BUILT_IN;
 
@@ -61,7 +64,10 @@ export function layOutFor(withAxes: boolean): void {
 /** Set the dock to lay out, once it exists. A panel without a title gets the title of its kind. */
 export function attachDock(api: DockviewApi): void {
   useDock.setState({ dock: api });
-  api.onDidAddGroup((group) => group.api.setConstraints({ minimumWidth: LEAST_PX }));
+  api.onDidAddGroup((group) => {
+    group.api.setConstraints({ minimumWidth: LEAST_PX });
+    group.api.onDidDimensionsChange(() => queueMicrotask(fitColumns)); // the dock is in the middle of its own work
+  });
   api.onDidAddPanel((panel) => {
     if (!panel.title || panel.title === panel.id)
       panel.api.setTitle(PANELS[panel.view.contentComponent as PanelName].title);
@@ -73,6 +79,21 @@ export function attachDock(api: DockviewApi): void {
   api.onDidLayoutChange(keepLayout);
   if (coming) showNext(coming.shared, coming.name);
   else if (asked && !known(asked) && LINK.test(asked)) fetchLayout(asked).catch(showError);
+}
+
+/** A dock that is not on the page yet has no width. */
+const widthOf = (api: DockviewApi): number => api.width || window.innerWidth;
+
+const isWide = (api: DockviewApi): boolean => widthOf(api) >= THREE_COLUMNS_PX;
+
+/** Lay a built-in layout out as it is kept for as many columns as the dock has room for now; views in front stay there. */
+function fitColumns(): void {
+  const api = dockNow();
+  const { layout } = useView.getState();
+  if (!api?.width || isWide(api) === wide || !isBuiltIn(layout)) return;
+  const front = inFront();
+  arrange(layout);
+  bringBack(front);
 }
 
 /** Remember the layout with the settings of each panel. */
@@ -192,11 +213,12 @@ function arrange(
   const api = dockNow();
   useView.setState({ layout: name, large });
   if (!api) return;
+  wide = isWide(api);
   forgetClosed();
   const saved = stored(name);
   if (saved && restoreLayout(saved)) return;
   localStorage.removeItem(storageKey(name));
   api.clear();
   const builtIn = (axes ? BUILT_IN_AXES : BUILT_IN)[isBuiltIn(like) ? like : "lab"];
-  builtIn(api, api.width || window.innerWidth, api.height || window.innerHeight);
+  builtIn(api, widthOf(api), api.height || window.innerHeight);
 }

@@ -7,7 +7,7 @@ import type { Bench, Device, Document, LogEntry } from "../api/types";
 import { announce } from "../bench/announce";
 import { titleOf } from "../bench/flag-words";
 import { openInstead } from "../bench/open-bench";
-import { benchOf, gyroscopeBenchOf, isGyroscope } from "../designer/design";
+import { benchOf, firstLookOf, isGyroscope } from "../designer/design";
 import { useBench } from "../stream/bench-store";
 import { currentEvents } from "../stream/event-log";
 
@@ -31,11 +31,12 @@ export async function beginWith(device: Device): Promise<void> {
   notifications.show({ title, message: `Not kept, because it does not suit: ${lost.join(", ")}.`, autoClose: 8000 });
 }
 
-/** A bench with the device: as the one before is set, or the usual one of the device where the plant is for others. */
+/** A bench with the device: as the one before is set, or the first look at such a device where the plant is for others. */
 function make(bench: Bench, device: Device): Promise<Bench> {
   const set = { device: { id: device.id } };
   if (!device.plants.includes(plantOf(bench))) {
-    const usual = (isGyroscope(device) ? gyroscopeBenchOf : benchOf)(set, device.title, device.metrics);
+    if (isGyroscope(device)) return api.createBench(firstLookOf(device));
+    const usual = benchOf(set, device.title, device.metrics);
     return api.createBench({ ...usual, set: { ...usual.set, title: device.title } });
   }
   if (may("teach")) return api.variant(bench.id, set);

@@ -56,6 +56,16 @@ it("lists every panel of a bench in the order of work, each with a line of words
   expect(found.at(-1)).toBe("Close Displacement");
 });
 
+it("is a dialog with a search field and a menu of entries", async () => {
+  const { search } = await openMenu();
+  const frame = screen.getByRole("dialog");
+  expect(frame).toContainElement(search);
+  expect(frame).not.toHaveAttribute("aria-orientation");
+  const menu = screen.getByRole("menu");
+  expect(menu).not.toContainElement(search);
+  expect(menu.querySelectorAll("[role=menuitem]")).toHaveLength(items().length);
+});
+
 it("has Motion and Rate for a gyroscope, and no frequency response", async () => {
   await openMenu(gyroscope);
   const found = items().join("\n");

@@ -39,7 +39,7 @@ export function PanelMenu({
           <IconPlus size={14} />
         </button>
       </Menu.Target>
-      <Menu.Dropdown mah="min(640px, calc(100vh - 80px))">
+      <Menu.Dropdown mah="min(640px, calc(100vh - 80px))" ref={asDialog}>
         <Menu.Search
           size="xs"
           m="4px 4px 8px"
@@ -49,26 +49,34 @@ export function PanelMenu({
           onChange={(event) => setQuery(event.currentTarget.value)}
           onKeyDown={openFirst}
         />
-        {entries.map(({ key, title, about, run }) => (
-          <Menu.Item key={key} onClick={run}>
-            {title}
-            <small>{about}</small>
-          </Menu.Item>
-        ))}
+        <div role={entries.length > 0 ? "menu" : undefined}>
+          {entries.map(({ key, title, about, run }) => (
+            <Menu.Item key={key} onClick={run}>
+              {title}
+              <small>{about}</small>
+            </Menu.Item>
+          ))}
+          {activePanel && !query && (
+            <>
+              <Menu.Divider />
+              <Menu.Item onClick={() => closePanel(activePanel)}>Close {activePanel.title}</Menu.Item>
+            </>
+          )}
+        </div>
         {entries.length === 0 && (
           <Box component="p" m="8px 12px" c="dimmed">
             No panel, view or signal has this name.
           </Box>
         )}
-        {activePanel && !query && (
-          <>
-            <Menu.Divider />
-            <Menu.Item onClick={() => closePanel(activePanel)}>Close {activePanel.title}</Menu.Item>
-          </>
-        )}
       </Menu.Dropdown>
     </Menu>
   );
+}
+
+/** A menu cannot have a search field; so the frame is a dialog, and the entries in it are the menu. */
+function asDialog(frame: HTMLElement | null): void {
+  frame?.setAttribute("role", "dialog");
+  frame?.removeAttribute("aria-orientation");
 }
 
 function useEntries(query: string): Entry[] {
@@ -101,7 +109,7 @@ function openView(view: ViewName, isFirst: boolean, several: boolean): void {
 
 /** Enter opens the first entry; once the arrows have marked another, the menu itself opens that. */
 function openFirst({ key, currentTarget }: KeyboardEvent<HTMLInputElement>): void {
-  const menu = currentTarget.closest("[role=menu]");
+  const menu = currentTarget.closest("[role=dialog]");
   if (key === "Enter" && !menu?.querySelector("[data-menu-active]"))
     menu?.querySelector<HTMLElement>("[role=menuitem]")?.click();
 }

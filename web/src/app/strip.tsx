@@ -13,7 +13,6 @@ import { LectureStrip } from "./lecture/lecture-strip";
 import rest from "./rest.module.css";
 import { Findings, StepBar, useScored } from "./step-bar";
 import styles from "./strip.module.css";
-import { StripButton } from "./strip-button";
 import { TimeBar } from "./time-bar";
 import { HintList, TryThis } from "./try-this";
 import { type TickedHints, useHints } from "./use-hints";
@@ -57,7 +56,14 @@ function Rest({ tips, hasSteps }: { tips: TickedHints | undefined; hasSteps: boo
   return (
     <Popover opened={opened} onChange={setOpened} width="min(640px, 94vw)" position="top-end" shadow="md">
       <Popover.Target>
-        <StripButton icon={<IconChevronUp size={16} />} label={label} onClick={() => setOpened(!opened)} />
+        <Button
+          px={6}
+          rightSection={<IconChevronUp size={16} />}
+          style={{ flex: "none" }}
+          onClick={() => setOpened(!opened)}
+        >
+          {label}
+        </Button>
       </Popover.Target>
       <Popover.Dropdown
         className={`column ${rest.rest}`}

@@ -190,6 +190,36 @@ const EARLIER = [
   ["editor"],
 ];
 
+/** The rows and columns of the panels, without their sizes. */
+const shape = (dock: DockviewApi) =>
+  JSON.stringify(dock.toJSON().grid.root, (key, value) => (key === "size" ? undefined : value));
+
+it("is laid out again when its window becomes too narrow for a third column, and keeps what was arranged for either", async () => {
+  const dock = layOut("lecture");
+  const resize = async (width: number, expected: () => void) => {
+    act(() => dock.layout(width, 700));
+    await act(() => vi.waitFor(expected));
+  };
+  /** A change is kept a moment after it was made. */
+  const isKept = (name: string) =>
+    act(() => vi.waitFor(() => expect(localStorage.getItem(name)).toBe(JSON.stringify(dock))));
+  const [third, behind] = [
+    () => expect(panelWith("view3d")?.group.id).not.toBe(panelWith("faults")?.group.id),
+    () => expect(panelWith("view3d")?.group.id).toBe(panelWith("faults")?.group.id),
+  ];
+  await resize(WIDTHS[0], third);
+  act(() => showAtEdge("labs", 400));
+  await isKept("combbench.layout.4.lecture");
+  const arranged = shape(dock);
+  await resize(WIDTHS[1], behind);
+  expect(inFront(dock)).toEqual(expect.arrayContaining(["labs", "time"])); // it was in front
+  act(() => closePanel(panelWith("faults") as never));
+  await isKept("combbench.layout.4.narrow.lecture");
+  await resize(WIDTHS[0], third);
+  expect(shape(dock)).toBe(arranged);
+  await resize(WIDTHS[1], () => expect(titles(dock)).not.toContain("Faults"));
+});
+
 it("opens a layout of the version before views, each panel once", () => {
   const dock = layOut();
   const groups = EARLIER.map((names, at) => names.map((name, i) => ({ id: `${at}-${i}`, name })));

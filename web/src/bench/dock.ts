@@ -142,6 +142,27 @@ export function turnTo(panel: IDockviewPanel, view: string): void {
   panel.api.updateParameters({ ...panel.params, view });
 }
 
+/** The panel in front of each group, the active one last. */
+export function inFront(): { id: string; view: string }[] {
+  const active = dockNow()?.activePanel;
+  const others = dockNow()?.groups.flatMap(({ activePanel }) => activePanel ?? []) ?? [];
+  return [...others.filter((panel) => panel !== active), ...(active ? [active] : [])].map((panel) => ({
+    id: panel.id,
+    view: viewOf(panel),
+  }));
+}
+
+/** Bring what was in front of another layout to the front of this one; the last of it is opened if no panel has it. */
+export function bringBack(front: ReturnType<typeof inFront>): void {
+  for (const [i, { id, view }] of front.entries()) {
+    const panel = dockNow()?.getPanel(id) ?? panelWith(view);
+    if (panel) {
+      turnTo(panel, view);
+      panel.api.setActive();
+    } else if (i === front.length - 1) addPanel(view);
+  }
+}
+
 /** Move the keyboard to the next group of panels. */
 export function focusNextGroup(): void {
   const groups = dockNow()?.groups ?? [];

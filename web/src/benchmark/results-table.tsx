@@ -85,15 +85,17 @@ export function ResultsTable({ named, rows, costs, label }: Results) {
         <tbody>
           {rows.map((row, i) => (
             <tr key={row.unit}>
-              <td>{row.log_score ? formatNumber(i + 1, 0) : "–"}</td>
+              <td data-title="rank">{row.log_score ? formatNumber(i + 1, 0) : "–"}</td>
               <th scope="row" title={row.unit}>
                 {named(row.unit)}
               </th>
               {COLUMNS.map((column) => (
-                <td key={column.title}>{column.say(row)}</td>
+                <td key={column.title} data-title={column.title}>
+                  {column.say(row)}
+                </td>
               ))}
-              <td>{costs[row.unit] ? costText(costs[row.unit]) : "–"}</td>
-              <td title={row.digest}>
+              <td data-title="time, ns">{costs[row.unit] ? costText(costs[row.unit]) : "–"}</td>
+              <td data-title="digest" title={row.digest}>
                 <code>{row.digest.slice(0, 8)}</code>
               </td>
             </tr>

@@ -97,6 +97,14 @@ export function gyroscopeBenchOf(design: Design, title: string, metrics: Record<
   };
 }
 
+/** The first look at a gyroscope with a device of the catalogue. */
+export const firstLookOf = ({ id, metrics }: Device): NewBench => ({
+  scenario: "gyro-first-look",
+  set: { device: { id }, sample_rate_khz: sampleRate(metrics) },
+  paused: false,
+  quiet_lead: true,
+});
+
 const sampleRate = (metrics: Record<string, number>) =>
   Math.max(100, Math.ceil((SAMPLES_PER_PERIOD * metrics.f0_hz) / 1e3));
 

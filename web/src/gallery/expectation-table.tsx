@@ -1,6 +1,6 @@
 import { useState } from "react";
 import type { GalleryCard } from "../api/types";
-import { formatShort } from "../ui/format";
+import { formatShort, keepUnits } from "../ui/format";
 import { metricScale } from "../ui/metric-name";
 import { TableHead } from "../ui/table-head";
 import { Verdict } from "../ui/verdict";
@@ -84,7 +84,7 @@ export function ExpectationTable({ entries, verdict }: ExpectationTableProps) {
                       <Verdict verdict={entry.verdict} borneOut={entry.ok === true} />
                     </div>
                   )}
-                  {all && remarks(entry).map((text) => <small key={text}>{text}</small>)}
+                  {all && remarks(entry).map((text) => <small key={text}>{keepUnits(text)}</small>)}
                 </th>
                 <td>{expected}</td>
                 <td style={{ fontWeight: 620, color: entry.ok === false ? "var(--alarm)" : undefined }}>

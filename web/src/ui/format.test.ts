@@ -17,6 +17,7 @@ import {
   formatSpread,
   formatTick,
   inTex,
+  keepUnits,
   labelsOn,
   tickLabels,
 } from "./format";
@@ -231,4 +232,12 @@ it("says 0 and 100 % of nothing else, however close", () => {
     }
   }
   expect(wrong).toEqual([]);
+});
+
+it.each([
+  ["with 5 % more mass and 80 % more stiffness", "with 5\u00a0% more mass and 80\u00a0% more stiffness"],
+  ["1.751 at 1 krad/s, 0.145 um after 2 ms", "1.751 at 1\u00a0krad/s, 0.145\u00a0um after 2\u00a0ms"],
+  ["step 3 must come before 4 steps", "step 3 must come before 4 steps"],
+])("keeps a number and its unit on one line: %s", (text, kept) => {
+  expect(keepUnits(text)).toBe(kept);
 });

@@ -156,6 +156,12 @@ export function labelsOn(
   return shown.map((tick) => formatNumber(tick, decimals) + (tick === 0 ? "" : exponent));
 }
 
+/** A number and the unit after it. */
+const WITH_UNIT = /(\d) (?=(?:%|°C?|dB|[kMGmuµnpf]?(?:m|s|V|N|g|K|A|W|F|Pa|Hz|rad|Ω|min|h))(?![\p{L}\d]))/gu;
+
+/** A sentence that no line break parts between a number and its unit. */
+export const keepUnits = (text: string): string => text.replace(WITH_UNIT, `$1${SPACE}`);
+
 /** A text of this file inside an equation. */
 export function inTex(text: string): string {
   return text

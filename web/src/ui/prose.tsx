@@ -1,5 +1,6 @@
 import katex from "katex";
 import { Fragment } from "react";
+import { keepUnits } from "./format";
 
 const MATH = /:math:`([^`]+)`|``([^`]+)``|`([^`]+)`/g;
 
@@ -7,7 +8,7 @@ const MATH = /:math:`([^`]+)`|``([^`]+)``|`([^`]+)`/g;
 export function Prose({ text }: { text: string }) {
   return proseParts(text).map((part, i) => {
     const key = `${i}-${part.text}`;
-    if (part.kind === "words") return <Fragment key={key}>{part.text}</Fragment>;
+    if (part.kind === "words") return <Fragment key={key}>{keepUnits(part.text)}</Fragment>;
     if (part.kind === "name") return <code key={key}>{part.text}</code>;
     const html = katex.renderToString(part.text, { throwOnError: false, strict: "ignore" });
     // biome-ignore lint/security/noDangerouslySetInnerHtml: KaTeX escapes its input, and trust is off

@@ -59,6 +59,16 @@ it("names the device of the bench, and says of each what it is, its resonance an
   expect(screen.queryByRole("option", { name: /^Double integrator/ })).not.toBeInTheDocument();
 });
 
+it("says that the devices are on their way until they have come", async () => {
+  server.on("GET", "/devices", () => new Promise(() => undefined));
+  connect(bench);
+  const { user } = mount(<DeviceSelect />);
+  const menu = screen.getByRole("combobox", { name: "Device" });
+  expect(menu).toHaveAttribute("placeholder", "Loading");
+  await user.click(menu);
+  expect(await screen.findByText("The list is on its way.")).toBeVisible();
+});
+
 it("asks first, and does nothing on Cancel", async () => {
   const { user, menu, choose } = await mountMenus();
   await choose(/^LCR-350/);
@@ -88,7 +98,7 @@ it("leaves the faults of the scenario to the scenario", async () => {
   expect(asked("/benches/next/commands")).toEqual([]);
 });
 
-it("begins the usual bench of a device of another kind, and names in one notice what does not suit it", async () => {
+it("begins the first look at a gyroscope, and names in one notice what does not suit it", async () => {
   server.on("POST", "/benches/next/commands", new Refusal(422, "added_mass is for one displacement"));
   const { user, choose } = await mountMenus();
   await choose(/^Gyroscope C/);
@@ -98,8 +108,8 @@ it("begins the usual bench of a device of another kind, and names in one notice 
   expect(notice).toHaveTextContent("The bench begins with Gyroscope C, dual mass");
   expect(notice).toHaveTextContent("because it does not suit: Open loop, Added mass.");
   expect(asked("/benches")[0]).toMatchObject({
-    scenario: { device: { id: "gyro-c" }, controller: { kind: "force_to_rebalance" } },
-    set: { title: "Gyroscope C, dual mass" },
+    scenario: "gyro-first-look",
+    set: { device: { id: "gyro-c" }, sample_rate_khz: 100 },
   });
 });
 

@@ -52,7 +52,7 @@ export function DeviceSelect() {
           onClose={() => setAsked(undefined)}
         >
           <Text size="sm">
-            {!suits(asked) && "It needs another plant, so its usual bench takes the place of this scenario. "}
+            {!suits(asked) && "It needs another plant, so a first look at it takes the place of this scenario. "}
             Faults, controller and layout are kept where they suit.
             {!teaches && " The bench you have now is gone."}
           </Text>

@@ -42,6 +42,8 @@ export function HeaderSelect({ label, value, choices, locked, onChoose }: Header
       title={locked ?? shown?.title}
       allowDeselect={false}
       value={value ?? null}
+      placeholder="Loading" // the choices come from the server
+      nothingFoundMessage="The list is on its way."
       disabled={locked !== undefined}
       data={groups.length > 1 ? groups.map((group) => ({ group, items: itemsOf(group) })) : itemsOf(groups[0])}
       renderOption={({ option }) => <Words choice={choices.find((one) => one.value === option.value)} />}

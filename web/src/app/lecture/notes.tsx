@@ -2,7 +2,7 @@ import { Box } from "@mantine/core";
 import { useEffect, useState } from "react";
 import type { Cue } from "../../api/types";
 import { plannedTo, useLecture } from "../../bench/lecture";
-import { formatIn } from "../../ui/format";
+import { formatIn, keepUnits } from "../../ui/format";
 import styles from "./lecture.module.css";
 
 const TICK_MS = 5000;
@@ -19,14 +19,14 @@ export function Notes({ cue, next }: { cue: Cue; next: string | undefined }) {
     <section className={styles.notes} aria-label="Notes of the speaker" tabIndex={0}>
       <div className={styles.columns}>
         {cue.say.split("\n").map((line) => (
-          <p key={line}>{line}</p>
+          <p key={line}>{keepUnits(line)}</p>
         ))}
         {others.map(
           ([name, text]) =>
             text && (
               <p key={name}>
                 <b>{name}: </b>
-                {text}
+                {keepUnits(text)}
               </p>
             ),
         )}

@@ -5,6 +5,7 @@ import type { Claim, ClaimList } from "../../api/types";
 import { addScope } from "../../bench/dock";
 import { placeIn } from "../../bench/printed";
 import { Figure } from "../../ui/figure";
+import { keepUnits } from "../../ui/format";
 import { Verdict } from "../../ui/verdict";
 import { partnersOf } from "./claim-signals";
 import { claimWords, stateWords } from "./claim-words";
@@ -70,7 +71,7 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
         {[
           ...(readings.length > 0 ? [`Drawn: ${readings.join("; ")}.`] : []),
           ...problems.map((text) => `Not drawn: ${text}.`),
-          ...(claim.note ? [`Why: ${claim.note}.`] : []),
+          ...(claim.note ? [`Why: ${keepUnits(claim.note)}.`] : []),
           ...(claim.fitted.length > 0 ? [`Chosen so that it agrees: ${claim.fitted.join(", ")}.`] : []),
         ].map((text) => (
           <Box component="p" key={text} className="remark" m="2px 0">

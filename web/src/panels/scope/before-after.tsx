@@ -1,6 +1,6 @@
 import { ActionIcon, Button, Text } from "@mantine/core";
 import { IconX } from "@tabler/icons-react";
-import { type RefObject, useEffect, useRef } from "react";
+import { Fragment, type RefObject, useEffect, useRef } from "react";
 import { usePanelVisible } from "../../api/panel-visible";
 import { useCatalog } from "../../api/use-catalog";
 import { type Change, comparisons, dismissChange } from "../../bench/change";
@@ -51,7 +51,7 @@ export function BeforeAfter({ change, isHidden, figures, traces, plot }: BeforeA
   return (
     <section ref={box} className={styles.change} aria-label="Before and after">
       <Text inherit truncate>
-        <b>{words}</b> at {formatMoment(change.tick * dtMs)}
+        <b>{words}</b> <span className={styles.wide}>at {formatMoment(change.tick * dtMs)}</span>
       </Text>
       {isHidden ? <p className={styles.figures}>{HIDDEN}</p> : <ComparedList compared={compared} />}
       {canSlide && (
@@ -66,19 +66,25 @@ export function BeforeAfter({ change, isHidden, figures, traces, plot }: BeforeA
   );
 }
 
-/** RMS before in the colour of the ghost, RMS after in the colour of the trace. */
+/** RMS before in the colour of the ghost, RMS after in the colour of the trace, as far as a row has room for them. */
 function ComparedList({ compared }: { compared: Compared[] }) {
   const scheme = useScheme();
   const list = useFirstRow<HTMLUListElement>();
+  const told = compared.filter(({ ratio }, i) => i === 0 || ratio);
   return (
     <ul ref={list} className={styles.figures}>
-      {compared.map(({ trace, before, after, ratio, isSettled }) => (
-        <li key={trace.name} title="RMS over whole periods of the drive">
-          <SignalName name={trace.name} /> <b>{isSettled || !ratio ? ratio : `${ratio}, still settling`}</b>
-          <TraceSwatch colour={faded(trace.colour, scheme)} dash={trace.dash} />
-          before {before} → <TraceSwatch colour={trace.colour} dash={trace.dash} />
-          now {after} RMS
-        </li>
+      {told.map(({ trace, before, after, ratio, isSettled }) => (
+        <Fragment key={trace.name}>
+          <li>
+            <SignalName name={trace.name} /> <b>{isSettled || !ratio ? ratio : `${ratio}, still settling`}</b>
+          </li>
+          <li title="RMS over whole periods of the drive">
+            <TraceSwatch colour={faded(trace.colour, scheme)} dash={trace.dash} />
+            <span className={styles.wide}>before</span> {before} →{" "}
+            <TraceSwatch colour={trace.colour} dash={trace.dash} />
+            <span className={styles.wide}>now</span> {after} RMS
+          </li>
+        </Fragment>
       ))}
     </ul>
   );

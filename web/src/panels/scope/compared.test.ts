@@ -25,3 +25,23 @@ it("compares the controller that drives with the one that drove before", () => {
     ["rate.rate", "100 deg/s", "100 deg/s"],
   ]);
 });
+
+it.each([
+  [2.21, 0.5, "shifted by +500 nm"],
+  [2.21, -0.5, "shifted by −500 nm"],
+  [4.3, 0.5, "2.0 times larger"],
+  [2.15, 0.01, "unchanged"],
+])("says a shift where the mean moves more than the RMS changes: %s µm and %s µm", (now, moved, said) => {
+  const figures = { before: [2.15], after: [now], settled: [true], shift: [moved] };
+  const [{ ratio }] = comparedOf([trace("sensor.displacement", { unit: "um" })], figures, 500);
+  expect(spaced(ratio)).toBe(said);
+});
+
+it("puts a shifted trace before one that stays", () => {
+  const figures = { before: [2.15, 2.15], after: [2.15, 2.21], settled: [true, true], shift: [0, 0.5] };
+  const traces = [trace("plant.displacement", { unit: "um" }), trace("sensor.displacement", { unit: "um" })];
+  expect(comparedOf(traces, figures, 500).map((one) => one.trace.name)).toEqual([
+    "sensor.displacement",
+    "plant.displacement",
+  ]);
+});

@@ -1,5 +1,5 @@
 import { Menu } from "@mantine/core";
-import type { RefObject } from "react";
+import type { ReactNode, RefObject } from "react";
 import { ticketed } from "../../api/launch";
 import { PictureMenu } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
@@ -11,10 +11,12 @@ interface ExportMenuProps {
   plot: RefObject<ScopePlot | undefined>;
   /** The capture that the scope shows. */
   capture: CaptureMark | undefined;
+  /** Tools that a narrow scope has in this menu. */
+  tools: ReactNode;
 }
 
 /** Files of the scope: a picture with titled axes and events, or every sample of the span. */
-export function ExportMenu({ plot, capture }: ExportMenuProps) {
+export function ExportMenu({ plot, capture, tools }: ExportMenuProps) {
   const take = () => {
     const { bench } = useBench.getState();
     const shown = plot.current?.picture();
@@ -36,7 +38,7 @@ export function ExportMenu({ plot, capture }: ExportMenuProps) {
     ticketed(`./api/v1/benches/${bench.id}/trace?${query}`).then((address) => window.location.assign(address));
   };
   return (
-    <PictureMenu take={take}>
+    <PictureMenu take={take} tools={tools}>
       <Menu.Divider />
       <Menu.Label>Every sample of the span</Menu.Label>
       {["csv", "parquet", "npz", "mat"].map((format) => (

@@ -137,7 +137,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
         onLive={goLive}
         trigger={trigger}
         onRearm={() => feed.current && stream.client.feeds.rearm(feed.current)}
-        exporter={traces.length > 0 && <ExportMenu plot={plot} capture={capture} />}
+        exporter={(tools) => traces.length > 0 && <ExportMenu plot={plot} capture={capture} tools={tools} />}
       >
         {!config.measure && ( // the table names them too, and its rows want the room
           <ScopeLegend

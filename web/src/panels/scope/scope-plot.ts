@@ -2,6 +2,7 @@ import type { PrintedMark } from "../../api/types";
 import { flagWords } from "../../bench/flag-words";
 import type { Marks } from "../../bench/marks";
 import { markEvents } from "../../picture/event-marks";
+import { linesOf } from "../../picture/lines-of";
 import type { Field, Look } from "../../picture/pen";
 import { reachMarks } from "../../picture/printed-marks";
 import { tickRoom } from "../../picture/ticked-range";
@@ -344,6 +345,8 @@ export class ScopePlot {
     const words = frame.waiting
       ? "Waiting for the trigger"
       : "No data here: the bench has dropped it, or has not come to it yet";
-    ctx.fillText(words, (left + right) / 2, (top + bottom) / 2);
+    const lines = linesOf(ctx, words, right - left);
+    for (const [i, line] of lines.entries())
+      ctx.fillText(line, (left + right) / 2, (top + bottom) / 2 + 1.4 * fontSize * (i - (lines.length - 1) / 2));
   }
 }

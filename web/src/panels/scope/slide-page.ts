@@ -1,4 +1,5 @@
 import { paintLegend } from "../../picture/legend";
+import { linesOf } from "../../picture/lines-of";
 import type { Field, Pen } from "../../picture/pen";
 import { paintRule } from "../../picture/traces";
 import { CANVAS, fontFor } from "../../ui/palette";
@@ -44,13 +45,7 @@ export function write(
 /** A text in lines that have room. */
 export function wrapped(pen: Pen, text: string, size: number, room: number): string[] {
   pen.font = fontFor(size, 1, 650);
-  const lines: string[] = [];
-  for (const word of text.split(" ")) {
-    const longer = lines.length > 0 ? `${lines[lines.length - 1]} ${word}` : word;
-    if (lines.length > 0 && pen.measureText(longer).width <= room) lines[lines.length - 1] = longer;
-    else lines.push(word);
-  }
-  return lines;
+  return linesOf(pen, text, room);
 }
 
 /** Where the slide comes from, under a rule. */

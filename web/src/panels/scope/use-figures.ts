@@ -4,7 +4,7 @@ import { useBench } from "../../stream/bench-store";
 import type { PanelFrame } from "../../stream/panel-frame";
 import { useFeed } from "../../stream/use-feed";
 import type { Subscription } from "../../stream/wire";
-import { hasSettled, lookAt, rms, windowTicks } from "./whole-periods";
+import { hasSettled, lookAt, mean, rms, windowTicks } from "./whole-periods";
 
 /** The root mean squares of the signals of a scope around a change. */
 export interface Figures {
@@ -12,13 +12,23 @@ export interface Figures {
   /** Over the newest whole periods; nothing until one has passed. */
   after?: number[];
   settled?: boolean[];
+  /** How far the mean of each signal has moved since the change. */
+  shift?: number[];
+}
+
+/** The figures of the signals around a change, and their means before it. */
+interface Known {
+  of: Change;
+  signals: string[];
+  figures: Figures;
+  means: number[];
 }
 
 /** Every sample of whole periods: before the change first, then the newest since. */
 export function useFigures(signals: string[], change: Change | undefined): Figures | undefined {
   const period = useBench((s) => s.bench?.drive_period_ticks);
   const look = useBench((s) => (change && s.bench ? lookAt(s.bench.tick - change.since, period) : 0));
-  const [known, setKnown] = useState<{ of: Change; signals: string[]; figures: Figures } | undefined>(undefined);
+  const [known, setKnown] = useState<Known | undefined>(undefined);
   const found = known && known.of === change && known.signals === signals ? known.figures : undefined;
   const hasBefore = found !== undefined;
 
@@ -39,20 +49,21 @@ export function useFigures(signals: string[], change: Change | undefined): Figur
     if (!change) return;
     if (frame.endTick === change.tick) {
       const before = signals.map((_, i) => rms(frame, i));
-      return setKnown({ of: change, signals, figures: { before } });
+      return setKnown({ of: change, signals, figures: { before }, means: signals.map((_, i) => mean(frame, i)) });
     }
-    if (found && frame.startTick >= change.since)
-      setKnown({ of: change, signals, figures: newest(frame, found.before, period) });
+    if (known && found && frame.startTick >= change.since)
+      setKnown({ ...known, figures: newest(frame, known, period) });
   });
   return found;
 }
 
 /** The figures of the newest window, and whether the window before agrees. */
-function newest(frame: PanelFrame, before: number[], period: number | null | undefined): Figures {
+function newest(frame: PanelFrame, { figures: { before }, means }: Known, period: number | null | undefined): Figures {
   const ticks = windowTicks(period, frame.columns);
   const all = Array.from({ length: frame.signals }, (_, i) => i);
   const after = all.map((i) => rms(frame, i, frame.columns - ticks));
   const hasTwo = frame.columns >= 2 * ticks;
   const settled = all.map((i) => hasTwo && hasSettled(before[i], rms(frame, i, 0, ticks), after[i]));
-  return { before, after, settled };
+  const shift = all.map((i) => mean(frame, i, frame.columns - ticks) - means[i]);
+  return { before, after, settled, shift };
 }

@@ -35,6 +35,13 @@ export function rms(frame: PanelFrame, signal: number, from = 0, until = frame.c
   return Math.sqrt(square / (until - from));
 }
 
+/** The mean of a signal over some of the samples of a frame. */
+export function mean(frame: PanelFrame, signal: number, from = 0): number {
+  let sum = 0;
+  for (const value of middles(frame, signal).subarray(from)) sum += value;
+  return sum / (frame.columns - from);
+}
+
 /** Whether a figure has settled: two windows in succession agree, as closely as the figure before the change matters. */
 export const hasSettled = (before: number, earlier: number, last: number): boolean =>
   Math.abs(last - earlier) <= Math.max(SHARE * last, SHARE_BEFORE * before);
