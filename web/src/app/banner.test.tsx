@@ -101,3 +101,14 @@ it("says that the board has tripped, and resets the trip", async () => {
   await user.click(screen.getByRole("button", { name: "Reset the trip" }));
   expect(board.commands).toEqual([{ reset_trip: true }]);
 });
+
+it("says that the server has to be restarted as long as its engine hangs for good", async () => {
+  const board = connect(bench);
+  mount(<Banner />);
+  board.status({ is_stuck: true });
+  await pass(0);
+  expect(notice()).toHaveTextContent("The server has to be restarted");
+  board.status({ is_stuck: false });
+  await pass(0);
+  expect(notice()).not.toBeInTheDocument();
+});

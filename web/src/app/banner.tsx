@@ -19,6 +19,7 @@ export function Banner() {
   const connection = useBench((s) => s.connection);
   const trip = useBench((s) => (s.bench?.state === "tripped" ? s.bench.trip : undefined));
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  const isStuck = useBench((s) => s.bench?.is_stuck);
   const blind = useBench((s) => s.blind);
   const playing = useBench((s) => s.bench?.blind?.game);
   const drives = useMay("drive");
@@ -53,6 +54,14 @@ export function Banner() {
         tone="warn"
         title={`Nothing heard, ${staleWords(stale)}`}
         text="The page shows the last values before, and reconnects by itself."
+      />
+    );
+  if (isStuck)
+    return (
+      <Line
+        tone="alarm"
+        title="The server has to be restarted"
+        text="Its engine hangs: no bench runs and no command is carried out. After a restart the benches come back."
       />
     );
   if (trip)
