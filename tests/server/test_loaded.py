@@ -26,7 +26,7 @@ SELDOM = [
     "rich",  # the help of the command line
     "scipy",  # reports of campaigns, peers of the benchmark, one estimate of noise
     "segno",
-    "server.lti",
+    "server.classroom.lti",
     "tomlkit",  # a scenario that is saved
     "viser",  # the 3D view
     "wasmtime",  # units of students
@@ -38,7 +38,7 @@ SERVICE = ["asyncio", "fastapi", "multiprocessing", "sqlalchemy", "starlette", "
     ("code", "unwanted"),
     [
         ("import server.app", SELDOM),
-        ("from server.cli import app; app(['run', 'first-look'], standalone_mode=False)", SELDOM + SERVICE),
+        ("from server.cli.main import app; app(['run', 'first-look'], standalone_mode=False)", SELDOM + SERVICE),
     ],
     ids=["server", "run"],
 )

@@ -59,7 +59,7 @@ def test_the_test_of_the_template_passes_where_it_is_installed(installed: Instal
 
 def checked(installed: Installed, *words: str) -> subprocess.CompletedProcess[str]:
     """Ask the command line about the package, in a process that loads it anew."""
-    command = [sys.executable, "-m", "server.cli", "check", *words]
+    command = [sys.executable, "-m", "server.cli.main", "check", *words]
     return subprocess.run(command, env=installed.environment, capture_output=True, text=True, check=False)
 
 

@@ -223,7 +223,7 @@ def test_a_shuttle_in_the_plane_shifts_turns_and_warns(live: Any) -> None:
     assert pose.combs_um == pytest.approx((right, left), rel=1e-4)
     assert pose.warnings == pytest.approx([(abs(eta) / 2.1) ** 0.5 for eta in (right, left)], abs=0.011)
     for factor in (pose.displacement_um / x, pose.turn / (1e-3 * turn)):
-        assert f"× {round(factor):g}" in pose.caption
+        assert f"×\u00a0{round(factor):g}" in pose.caption
     (fault,) = pose.faults
     assert fault.block.name == "point_adhesion" and fault.share == 1.0 and pose.contact == 0
     live.command(bench["id"], "step", ticks=400)
