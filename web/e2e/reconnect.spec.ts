@@ -35,6 +35,12 @@ test("a hidden page stays connected; a page outlives its server and continues wh
     await expect(page.getByRole("button", { name: "Try now" })).toBeVisible();
     await server.start();
     await page.request.get(server.url);
+    await expect(state).toHaveText("running"); // its bench is back, and no other
+    const stopped = await clock.innerText();
+    await server.advance(1);
+    await expect(clock).not.toHaveText(stopped);
+
+    await server.ask("DELETE", `/benches/${new URL(page.url()).searchParams.get("bench")}`);
     await expect(state).toHaveText("not connected");
     await expect(page.getByRole("button", { name: "Run", exact: true })).toBeDisabled();
     await expect(page.getByTitle(/watching/)).toHaveCount(0);
