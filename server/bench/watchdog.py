@@ -1,8 +1,9 @@
 """The watchdog over the engine: it watches from a thread of its own, and acts when the engine shows no activity.
 
-It adds up silence: the time after a round was due in which the threads of the engine did not run. A look that comes
-late counts little, because a busy machine delays the looks too. Benches that ran are taken to safe outputs, once for
-each silence; such a trip may be false. Without progress for longer, the server has to be restarted.
+It adds up silence: the time after a round was due in which the threads of the engine neither ran nor waited for a
+processor. A look that comes late counts little, because a busy machine delays the looks too. Benches that ran are taken
+to safe outputs, once for each silence; such a trip may be false. Without progress for longer, the server has to be
+restarted.
 
 Only the engine changes a bench. So the status shows the trip at once, and the outputs go to their safe values by a
 command, at the present tick of the bench and before any other tick: the run repeats with the same bits.
@@ -20,6 +21,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Awaitable, Callable, Sequence
+from pathlib import Path
 from typing import Protocol
 
 from core.board.commands import MakeSafe, Trip
@@ -161,9 +163,11 @@ class Activity:
         self._clocks: dict[int, float] = {}
 
     def measure(self, threads: Sequence[threading.Thread]) -> float:
-        """Return the processor time of threads since the last look, s; infinite where they wait for a compilation.
+        """Return the processor time of threads since the last look, s.
 
-        Where a system has no clock of a thread, its threads are at work.
+        It is infinite where a thread waits for a compilation, a processor or a disk: on two processors that a browser
+        fills, the engine has waited for more than 100 ms. Where a system has no clock of a thread, its threads are at
+        work.
         """
         if not hasattr(time, "pthread_getcpuclockid") or _wait_for_others([thread.ident or 0 for thread in threads]):
             return math.inf
@@ -171,7 +175,17 @@ class Activity:
         for thread in threads:
             if (number := thread.ident) is not None and thread.is_alive():
                 self._clocks[number] = time.clock_gettime(time.pthread_getcpuclockid(number))
-        return sum(now - before.get(number, now) for number, now in self._clocks.items())
+        worked_s = sum(now - before.get(number, now) for number, now in self._clocks.items())
+        return math.inf if worked_s == 0.0 and any(map(_is_ready, threads)) else worked_s
+
+
+def _is_ready(thread: threading.Thread) -> bool:
+    """Whether a thread waits for a processor or a disk, as far as the system tells."""
+    try:
+        stat = Path(f"/proc/self/task/{thread.native_id}/stat").read_text()
+    except OSError:  # another system, or it has just ended
+        return False
+    return stat.rpartition(") ")[2][:1] in ("R", "D")
 
 
 def _wait_for_others(numbers: Sequence[int]) -> bool:

@@ -6,12 +6,13 @@ import math
 import threading
 import time
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from server.bench.engine import Engine, Workload
-from server.bench.watchdog import LATE_COUNTS_S, LOOK_S, SILENT_S, STUCK_S, Activity, Watchdog
+from server.bench.watchdog import LATE_COUNTS_S, LOOK_S, SILENT_S, STUCK_S, Activity, Watchdog, _is_ready
 from server.metrics import Metrics
 from tests.server.bench.test_engine import Work, until
 
@@ -222,3 +223,21 @@ def test_a_thread_inside_an_import_waits_for_others() -> None:
     assert Activity().measure([thread]) == math.inf
     over.set()
     thread.join(30)
+
+
+def test_a_thread_that_wants_a_processor_is_told_from_one_that_waits() -> None:
+    if not Path("/proc/self/task").exists():
+        pytest.skip("this system does not tell the state of a thread")
+    over = threading.Event()
+
+    def spin() -> None:
+        while not over.is_set():
+            pass
+
+    spins, waits = (threading.Thread(target=work, daemon=True) for work in (spin, over.wait))
+    for thread in (spins, waits):
+        thread.start()
+    until(lambda: _is_ready(spins) and not _is_ready(waits))
+    over.set()
+    for thread in (spins, waits):
+        thread.join(30)
