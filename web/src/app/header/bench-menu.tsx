@@ -35,7 +35,7 @@ export function BenchMenu() {
       <Menu.Target>
         <UnstyledButton
           className={styles.bench}
-          aria-label={title ?? "No bench"}
+          aria-label={news && news !== rest ? `${name} ${news}` : (title ?? "No bench")}
           title={[
             `${title ?? "No bench"}: change bench.`,
             ...(stale ? [] : [`${formatShort(rate ?? 0, "kHz")} board, ${watchers} watching.`]),
