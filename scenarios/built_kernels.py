@@ -86,7 +86,9 @@ def main() -> None:
     count = write()
     levels = ", ".join(f"{level.triple.partition('-')[0]} {level.processor}" for level in LEVELS)
     sys.stdout.write(f"{count} kernels for {levels}: {BUILT.stat().st_size / 1e6:.1f} MB\n")
-    sys.stdout.write("aarch64: steps were compared bit for bit in an emulator; kernels that Python calls are untested\n")
+    sys.stdout.write(
+        "aarch64: steps were compared bit for bit in an emulator; kernels that Python calls are untested\n"
+    )
 
 
 if __name__ == "__main__":
