@@ -29,7 +29,7 @@ SILENT = ("id", "title", "summary", "claim", "source", "verdict", "expect", "pri
 
 
 class Mark(Table):
-    """What a scenario carries of a package."""
+    """The entry of a package in a scenario."""
 
     version: str = Field(pattern=r"^[0-9A-Za-z.!+_-]{1,64}$")
     source: str = Field(pattern=r"^[0-9a-f]{64}$", description="SHA-256 over its Python files")
@@ -65,7 +65,7 @@ class Package:
 
     @property
     def mark(self) -> Document:
-        """What a scenario carries of it."""
+        """The entry of this package in a scenario."""
         return Mark(version=self.version, source=self.source).model_dump()
 
 
