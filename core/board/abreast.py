@@ -59,7 +59,7 @@ def run(
     trace: FloatArray,
     trip: int,
 ) -> int:
-    """Run up to ``n`` ticks of all boards; return how many, fewer when one of them trips at the last of them.
+    """Run up to ``n`` ticks of all boards; return how many ran, fewer when a board trips at the last of them.
 
     Parameters
     ----------
@@ -230,7 +230,7 @@ class Abreast:
         return ran
 
     def _silence(self, tripped: list[bool]) -> None:
-        """Let the lane of a board that has tripped follow another, which has not."""
+        """Let the lane of a tripped board follow the lane of a board that has not tripped."""
         if True not in tripped or False not in tripped:
             return
         going = tripped.index(False)

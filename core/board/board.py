@@ -69,7 +69,7 @@ class Board:
         self.compiled = compiled
         self.wiring: Wiring = wire(self.spec)
         self.tick = 0
-        self.log = Log()  # a live bench puts its own in its place
+        self.log = Log()  # a live bench replaces it with its own log
         self.done: list[tuple[int, Command]] = []  # each with the tick at which it took effect
         self.pending = Queue()
         self.trip: Trip | None = None
@@ -212,7 +212,7 @@ class Board:
         return program.run(*arguments) if self.compiled else program.run_uncompiled(self._steps, *arguments)
 
     def link(self) -> None:
-        """Put the addresses of the compiled steps into the table, and leave out what rests."""
+        """Put the addresses of the compiled steps into the table, and leave out rows that rest."""
         wiring = self.wiring
         if wiring is self._linked and not wiring.is_changed:
             return
@@ -329,7 +329,7 @@ class Board:
         return board
 
     def _revive(self) -> None:
-        """Make what copies do not share."""
+        """Make the parts that copies do not share."""
         self.log, self.done = self.log.copy(), list(self.done)
         self._linked = None
         self._allocate()

@@ -31,7 +31,7 @@ ONE_AMPLITUDE = {"reference.amplitude_v": "amplitude_um", "reference.amplitude_u
 """An amplitude is given in volts or in micrometres; setting one drops the other."""
 
 ONE_DRIVE = {"plant.drive": ("drive", "kind"), "drive.kind": ("plant", "drive")}
-"""How the drive works is said at the plant or at the drive; setting one drops the other."""
+"""The plant or the drive gives the kind of drive; setting one drops the other."""
 
 LONGEST_PATH = 60
 """Characters that an error message shows of a long path."""

@@ -176,7 +176,7 @@ class Ensemble(Board):
         return found
 
     def advance(self, n: int) -> Rows:
-        """Run up to ``n`` ticks of all; fewer when the board trips. Rows of a twin that has tripped are no numbers."""
+        """Run up to ``n`` ticks of all; fewer when the board trips. Rows of a tripped twin are NaN."""
         rows = super().advance(n)
         if rows.count == 0:
             return rows
@@ -209,7 +209,7 @@ class Ensemble(Board):
             twin.apply_due()  # what made it safe may wait for this very tick
             if twin.trip is not None and command.at_sample is not None:
                 twin.tick = command.at_sample  # it rested meanwhile
-        with suppress(InputError):  # it need not be possible there, such as healing what tripped it
+        with suppress(InputError):  # a twin may refuse it, such as a heal of the cause of its trip
             twin.apply(command)
 
     def _repeat(self, name: str, entries: list[LogEntry]) -> None:

@@ -92,7 +92,7 @@ class _Mathematics:
 
 
 def counted(function: Any, tally: Tally) -> Any:
-    """Return a function that counts its calls, or the value itself if it is none of those."""
+    """Return a function that counts its calls, or the value itself if ``COUNTED`` does not have it."""
     if not any(function is one for one in COUNTED):
         return function
 
@@ -121,7 +121,7 @@ def plain_step(block: type[Block], tally: Tally) -> Any:
             return _Mathematics(tally)
         if name == "flush_tiny":
             return lambda number: number
-        if name == "whole":  # what only fills a vector register up does not count
+        if name == "whole":  # an operation that only fills up a vector register does not count
             return lambda number: number
         if name == "shrunk":  # an exponential, though it is left out where it would be nothing
             return counted(EXPONENTIAL, tally)
@@ -149,7 +149,7 @@ class Load(BaseModel):
 
 
 class Budget(BaseModel):
-    """Load of a board of some speed by all diagnosers, in their order; they overrun once their sum exceeds the speed."""
+    """Load of a board of some speed by all diagnosers in their order; they overrun once their sum exceeds the speed."""
 
     board_flops: float
     function_flops: float

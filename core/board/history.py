@@ -312,7 +312,7 @@ class History:
         """Add ticks that follow the last; ticks that do not start a new history there."""
         if rows.first_tick != self.end_tick:
             self._begin = self.end_tick = rows.first_tick
-        if rows.first_tick != self._written:  # a jump: only what fills the ring is known to be steady
+        if rows.first_tick != self._written:  # a jump: only groups idle for a whole ring are known to be steady
             self._steady[self._steady < self.capacity] = 0
         args = (self._ring, self._low, self._high, self._offsets, self._sizes, self._steady, rows.first_tick)
         _append(*args, rows.outputs, self._never, 0)

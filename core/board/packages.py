@@ -123,7 +123,7 @@ def _check(table: Document) -> None:
 
 
 def _names(document: Document, package: Package) -> bool:
-    """Say whether a document names a block of a package, and has no unit of its own in its place."""
+    """Say whether a document names a block of a package, and has no unit of its own with that name."""
     content = {key: value for key, value in document.items() if key not in SILENT}
     plant = plant_of(document)
     words = {*re.findall(r"\w+", json.dumps([content, defaults(plant)], default=str)), plant.name}

@@ -200,7 +200,7 @@ def _refuse_apart(spec: Spec) -> None:
 
 
 def _driven(library: Library, doc: Document, device: Device) -> tuple[Section, Section]:
-    """Return plant and drive: how the drive works may be said at the plant."""
+    """Return plant and drive: the plant may give the kind of drive."""
     plant = dict(doc["plant"])
     drive = dict(doc.get("drive", {}))
     if "drive" in plant:

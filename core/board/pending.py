@@ -74,7 +74,7 @@ class Queue:
     def copy(self) -> Queue:
         """Return a queue in which the same commands wait for the same ticks, for another board."""
         queue = Queue()
-        queue._entries, queue._asked = [*self._entries], self._asked  # only what waits for a condition ever changes
+        queue._entries, queue._asked = [*self._entries], self._asked  # only an entry with a condition ever changes
         return queue
 
     def add(self, entry: Pending) -> None:
@@ -117,7 +117,7 @@ class Queue:
         self._entries.sort(key=_moment)
 
     def clear(self) -> None:
-        """Let nothing wait any more."""
+        """Remove all entries."""
         self._entries.clear()
 
     def _watched(self) -> list[Pending]:

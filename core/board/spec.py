@@ -175,7 +175,7 @@ class Spec:
 
     @cached_property
     def _contexts(self) -> dict[tuple[int, str], Context]:
-        """Contexts worked out so far: every block asks, and whenever a fault comes or goes they do again."""
+        """Contexts worked out so far: every block asks for one, and again at each change of a fault."""
         return {}
 
     def _context(self, every: int) -> Context:

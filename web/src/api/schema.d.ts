@@ -3721,7 +3721,7 @@ export interface components {
         };
         /**
          * Budget
-         * @description Load of a board of some speed by all diagnosers, in their order; they overrun once their sum exceeds the speed.
+         * @description Load of a board of some speed by all diagnosers in their order; they overrun once their sum exceeds the speed.
          */
         Budget: {
             /** Board Flops */
