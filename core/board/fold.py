@@ -100,7 +100,7 @@ def join(folds: Words, owners: IntArray, words: Words) -> None:
     owners : ndarray of int64, shape (columns,)
         The block of each column, below 0 for none.
     words : ndarray of uint64, shape (blocks, 2)
-        The words of each block, from their start on; changed in place.
+        The words of each block, which the caller has begun; changed in place.
     """
     for column in range(len(owners)):
         own = owners[column]
