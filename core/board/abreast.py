@@ -1,7 +1,7 @@
 """Boards abreast: up to ``WIDTH`` boards of one structure, a tick of all of them at a time.
 
-The boards share blocks, wiring, intervals and choices. Each number of a board stands beside the same number of the
-next, and ``core.compile`` compiles the steps for all of them at once. Each board gets the bits it gets alone. A board
+The boards share blocks, wiring, intervals and choices. Each number of a board is next to the same number of the next
+board, and ``core.compile`` compiles the steps for all of them at once. Each board gets the bits it gets alone. A board
 that trips, or whose commands change which blocks run, cannot stay: it runs alone.
 """
 
@@ -59,7 +59,7 @@ def run(
     trace: FloatArray,
     trip: int,
 ) -> int:
-    """Run up to ``n`` ticks of all boards; return how many, fewer when one of them trips at the last of them.
+    """Run up to ``n`` ticks of all boards; return how many ran, fewer when a board trips at the last of them.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ class Abreast:
         self._read, self._packed = {**pattern.read}, set[int]()
         for lane, (spec, queue) in enumerate(zip(specs, pending, strict=True)):
             self.boards.append(self._board(lane, spec, queue))
-        for lane in range(len(self.boards), WIDTH):  # lanes nobody needs follow the first
+        for lane in range(len(self.boards), WIDTH):  # lanes without a board follow the first
             for array in (self._p, self._s, self._w):
                 array[:, lane] = array[:, 0]
         self.tick = 0
@@ -149,7 +149,7 @@ class Abreast:
         self._link()
 
     def _board(self, lane: int, spec: Spec, queue: Queue) -> Lane:
-        """Return the board of a lane; what its bench does not have of its own is that of the lane before."""
+        """Return the board of a lane; it takes the numbers that are alike from the board of the lane before."""
         pattern, before = self._pattern, self.boards[-1] if self.boards else self._pattern.board
         p, s, w = self._p[:, lane], self._s[:, lane], self._w[:, lane]
         order = before.wiring.instances
@@ -185,7 +185,7 @@ class Abreast:
         return board
 
     def run(self, samples: int) -> list[bool]:
-        """Run all boards to the end; return of each whether it came there, and did not trip.
+        """Run all boards to the end; return for each board whether it reached the end without a trip.
 
         Raises
         ------
@@ -230,7 +230,7 @@ class Abreast:
         return ran
 
     def _silence(self, tripped: list[bool]) -> None:
-        """Let the lane of a board that has tripped follow another, which has not."""
+        """Let the lane of a tripped board follow the lane of a board that has not tripped."""
         if True not in tripped or False not in tripped:
             return
         going = tripped.index(False)

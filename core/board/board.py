@@ -37,7 +37,7 @@ COPIED = ("pending", "trip", "wiring", "folds", "used", "observer")
 LISTS = 150
 """Bytes that a checkpoint takes for each block beside its numbers."""
 SHARED = ("spec", "base", "compiled", "tick", "lost")
-"""What of a board is its own in every copy, and what never changes in place."""
+"""Parts that every copy of a board has for itself (``COPIED``), and parts that never change in place (``SHARED``)."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class Board:
         self.compiled = compiled
         self.wiring: Wiring = wire(self.spec)
         self.tick = 0
-        self.log = Log()  # a live bench puts its own in its place
+        self.log = Log()  # a live bench replaces it with its own log
         self.done: list[tuple[int, Command]] = []  # each with the tick at which it took effect
         self.pending = Queue()
         self.trip: Trip | None = None
@@ -83,7 +83,7 @@ class Board:
         self._allocate()
         self.link()
 
-    # -- what it is
+    # -- properties
 
     @property
     def dt_ms(self) -> float:
@@ -119,7 +119,8 @@ class Board:
     def digest(self) -> str:
         """Return the SHA-256 over one fold for each block, of the bits of its outputs at every tick so far.
 
-        Controllers that have not driven yet and sensors that have not been in use do not count: they only look on.
+        Controllers that have not driven yet and sensors that have not been in use do not count: they do not act
+        on the loop.
         """
         aside = {*self.spec.controllers, *self.spec.sensors} - self.used
         return fold.digest(self.folds, ["" if block in aside else block for block in self.wiring.signals.output_blocks])
@@ -171,7 +172,7 @@ class Board:
         return Rows(first, done, self._outputs[:done], self._taps[:done], idle)
 
     def _run(self, n: int, at: int) -> tuple[int, int]:
-        """Run ticks of which none is followed by a command; return how many, and why it stopped."""
+        """Run ticks without a command between them; return how many ran, and why the loop stopped."""
         wiring = self.wiring
         before = wiring.s.copy(), wiring.w.copy()
         ran, why = self._loop(n, self.tick, self._outputs[at:], self._taps[at:], self.folds)
@@ -211,7 +212,7 @@ class Board:
         return program.run(*arguments) if self.compiled else program.run_uncompiled(self._steps, *arguments)
 
     def link(self) -> None:
-        """Put the addresses of the compiled steps into the table, and leave out what rests."""
+        """Put the addresses of the compiled steps into the table, and leave out rows that rest."""
         wiring = self.wiring
         if wiring is self._linked and not wiring.is_changed:
             return
@@ -262,7 +263,7 @@ class Board:
         return self.note(actor, "scheduled", f"waiting: {words.describe(command, self.spec.library)}", command=command)
 
     def apply_due(self) -> None:
-        """Carry out what waits for this very tick, as the next advance would."""
+        """Carry out the commands due at this tick, as the next advance would."""
         for entry in self.pending.take_due(self.tick):
             try:
                 self._do(entry.command, entry.actor)
@@ -320,7 +321,7 @@ class Board:
 
     @staticmethod
     def restore(checkpoint: Checkpoint) -> Board:
-        """Return a board that goes on from a checkpoint, bit for bit; restoring twice forks it."""
+        """Return a board that continues from a checkpoint, bit for bit; restoring twice forks it."""
         board = checkpoint.kind.__new__(checkpoint.kind)
         for name, value in checkpoint.parts.items():
             setattr(board, name, copy.deepcopy(value) if name in COPIED else value)
@@ -328,14 +329,14 @@ class Board:
         return board
 
     def _revive(self) -> None:
-        """Make what copies do not share."""
+        """Make the parts that copies do not share."""
         self.log, self.done = self.log.copy(), list(self.done)
         self._linked = None
         self._allocate()
         self.link()
 
     def save(self) -> Document:
-        """Return the bench as a scenario document: what it started from, and what was done to it.
+        """Return the bench as a scenario document: its start and the commands to it.
 
         Run headless it gives the same bits.
         """

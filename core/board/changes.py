@@ -1,4 +1,4 @@
-"""What each command changes on a board; a command that is not allowed changes nothing."""
+"""The changes that each command makes on a board; a command that is not allowed changes nothing."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def check(spec: Spec, command: Command) -> None:
 
 
 def carry_out(board: Board, command: Command) -> tuple[Any, Any]:
-    """Do what a command says, at this tick; return what was before and what is now."""
+    """Carry out a command at this tick; return the values before it and after it."""
     if isinstance(command, Inject):
         return inject(board, command)
     if isinstance(command, Heal):
@@ -119,7 +119,7 @@ def switch(board: Board, command: Switch) -> tuple[Any, Any]:
     spec, _, _ = live_change(board.spec, values)
     _change(board, spec)
     ran_away = not np.all(np.isfinite(board.wiring.state_of(name)))
-    if ran_away:  # nothing in shadow trips the board, and no number comes of what is none
+    if ran_away:  # no block in shadow trips the board, and a state that is not finite does not recover
         board.note("board", "warning", f"{name} had run away in shadow, so it starts anew")
     if command.cold or ran_away:
         instance = board.wiring.instances[board.wiring.row(name)]
@@ -128,7 +128,7 @@ def switch(board: Board, command: Switch) -> tuple[Any, Any]:
 
 
 def switched(spec: Spec, command: Switch) -> dict[str, Any]:
-    """Return the path of the slot that a controller stands in, and its name."""
+    """Return the path of a controller's slot, and the controller's name."""
     block = spec.library.block("control", command.switch, "switch")
     if reason := misfit(block, spec.plant.block):
         raise InputError(f"{block.name} {reason}", "switch", f"there are: {', '.join(spec.controllers)}")
@@ -138,7 +138,7 @@ def switched(spec: Spec, command: Switch) -> dict[str, Any]:
 
 
 def disengage(board: Board) -> None:
-    """Take the voltage off: what a trip does."""
+    """Take the voltage off, as a trip does."""
     for instance in board.wiring.instances:
         if instance.prefix.split(".")[0] == "drive":
             for port in instance.block.outputs:
@@ -171,7 +171,7 @@ def cause(board: Board) -> tuple[str, str]:
 
 
 def reset_trip(board: Board) -> tuple[Any, Any]:
-    """Leave the tripped state: every block starts anew, time and faults go on."""
+    """Leave the tripped state: every block starts anew, time and faults continue."""
     if board.trip is None:
         raise InputError("the board has not tripped", "reset_trip", code="conflict")
     old = board.trip.model_dump()
@@ -219,12 +219,12 @@ def _fault_params(spec: Spec, command: Inject, tick: int) -> BlockParams:
 
 @cache
 def _own_parameters(params: type[BlockParams]) -> list[str]:
-    """Return the names of what a fault lets one choose besides its severity and profile."""
+    """Return the names of the parameters that a fault has besides its severity and profile."""
     return [name for name in params.model_fields if name not in FaultParams.model_fields]
 
 
 def _change(board: Board, spec: Spec) -> None:
-    """Put another bench of the same signals on the board; what is alike keeps its state."""
+    """Put another bench of the same signals on the board; blocks that are alike keep their states."""
     if not change(board.wiring, board.spec, spec):
         board.wiring = _exchanged(board.wiring, spec)
     board.spec = spec
@@ -232,7 +232,7 @@ def _change(board: Board, spec: Spec) -> None:
 
 
 def _exchanged(old: Wiring, spec: Spec) -> Wiring:
-    """Return the wiring of a bench in which a block has been exchanged; all others go on from where they are."""
+    """Return the wiring of a bench in which a block has been exchanged; all other blocks keep their states."""
     new = wire(spec, old)
     assert new.signals.names == old.signals.names
     new.w[:] = old.w

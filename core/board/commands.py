@@ -22,7 +22,7 @@ class Timed(Table):
     model_config = ConfigDict(frozen=True)
 
     kind: ClassVar[str]
-    """What the log calls it."""
+    """Its name in the log."""
 
     at_sample: int | None = Field(None, ge=0, description="sample at which it takes effect")
     at_ms: float | None = Field(None, ge=0, le=LONGEST_MS, description="device time at which it takes effect")
@@ -37,7 +37,7 @@ class Timed(Table):
         return self
 
     def tick(self, dt_ms: float) -> int | None:
-        """Return the tick it waits for; None for one that waits for none."""
+        """Return the tick the command waits for; None if it waits for no tick."""
         return round(self.at_ms / dt_ms) if self.at_ms is not None else self.at_sample
 
     def at(self, sample: int | None, when: str | None = None) -> Self:
@@ -47,7 +47,7 @@ class Timed(Table):
         return self.model_copy(update={"at_sample": sample, "at_ms": None, "when": when})
 
     def document(self) -> Document:
-        """Return the command as an event of a scenario, without what is left at its default."""
+        """Return the command as an event of a scenario, without the fields that have their default."""
         said = {name for name, default in _defaults(type(self)) if getattr(self, name) != default}
         return self.model_dump(mode="json", include=said)
 
@@ -73,7 +73,7 @@ class Heal(Timed):
 
 
 class Inject(Timed):
-    """Inject a fault, or give one that is there another severity."""
+    """Inject a fault, or give a present fault another severity."""
 
     kind = "inject"
     fault: str
@@ -113,7 +113,7 @@ COMMANDS: dict[str, type[Command]] = {
     "switch": Switch,
     "make_safe": MakeSafe,
 }
-"""The commands by the field that says what is done, in the order in which those of one event take effect."""
+"""The commands by the field that names each; commands of one event take effect in this order."""
 FIELDS = tuple(dict.fromkeys(name for model in COMMANDS.values() for name in model.model_fields))
 T = TypeVar("T", bound=Timed)
 

@@ -11,11 +11,11 @@ from core.board.wiring import Wiring, engage, every_of, ports_of, unread
 
 
 def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
-    """Make the wiring of one bench that of another with the same blocks, in place; say whether that was possible.
+    """Turn the wiring of a bench into the wiring of another with the same blocks, in place; say whether it worked.
 
-    It is not where a block reads more numbers than before.
+    It is not possible where a block reads more or fewer numbers than before.
 
-    Only rows whose parameters or context differ are packed again; states go on. When a block refuses its parameters
+    Only rows whose parameters or context differ are packed again; states stay. When a block refuses its parameters
     nothing has changed.
 
     Raises
@@ -55,7 +55,7 @@ def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
 
 
 def _after(wiring: Wiring, before: Spec, spec: Spec) -> tuple[list[Instance], Iterable[int]]:
-    """Return the blocks of a bench, and the rows that may differ: most often it is only that of a fault."""
+    """Return the blocks of a bench, and the rows that may differ: most often only the row of a fault."""
     if spec.document is not before.document:
         order = instances(spec)
         return order, range(len(order))

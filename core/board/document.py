@@ -19,22 +19,22 @@ Document = dict[str, Any]
 POSITION = re.compile(r"[0-9]{1,9}")
 
 PARKED = {"controller": ("controllers", "control"), "sensor": ("sensors", "sense")}
-"""Of these all run, one is in use: table of the one, table of all, and family."""
+"""All of these run and one is in use: table of the one in use, table of all, and family."""
 
 EXCHANGED = {
     "reference.kind": ("reference", "reference", "kind", ()),
     "plant.model": ("plant", "plant", "model", ("drive", "every")),
 }
-"""Paths that name a block which is alone in its table: table, family, key, and what else may stand there."""
+"""Paths that name a block which is alone in its table: table, family, key, and the other keys it may have."""
 
 ONE_AMPLITUDE = {"reference.amplitude_v": "amplitude_um", "reference.amplitude_um": "amplitude_v"}
 """An amplitude is given in volts or in micrometres; setting one drops the other."""
 
 ONE_DRIVE = {"plant.drive": ("drive", "kind"), "drive.kind": ("plant", "drive")}
-"""How the drive works is said at the plant or at the drive; setting one drops the other."""
+"""The plant or the drive gives the kind of drive; setting one drops the other."""
 
 LONGEST_PATH = 60
-"""Characters of a path that is told back because of its length."""
+"""Characters that an error message shows of a long path."""
 
 DEVICE = {"id": "ch3"}
 REFERENCE = {"kind": "sine", "amplitude_v": 10.0, "frequency_hz": 1000.0}
@@ -94,7 +94,7 @@ def plant_of(document: Document) -> type[Block]:
 
 
 def defaults(plant: type[Block]) -> Document:
-    """Return what a bench with this plant has unless it is told otherwise."""
+    """Return the sections that a bench with this plant has by default."""
     *others, last = plant.slots.items()
     usual: Document = {
         "device": DEVICE,
@@ -139,7 +139,7 @@ def completed(document: Document) -> Document:
 
 
 def _park(doc: Document, usual: Document) -> None:
-    """Move the parameters of the controller and the sensor in use to where those of all are."""
+    """Move the parameters of the controller and the sensor in use to the tables of all of them."""
     for one, (all_of_them, _) in PARKED.items():
         table = doc.get(one)
         if isinstance(table, dict):
@@ -193,14 +193,14 @@ def _write(doc: Document, path: str, value: Any) -> None:
             doc[section] = {name: entry for name, entry in doc[section].items() if name != key}
     exchanged = _exchanged(path)
     if exchanged is not None:
-        # a new kind keeps what it shares with the old one
+        # a new kind keeps the fields that it shares with the old one
         section, family, key, shared = exchanged
         fields = {key, *shared, *library_of(doc).block(family, value, path).Params.model_fields}
         doc[section] = {name: entry for name, entry in table.items() if name in fields}
 
 
 def _exchanged(path: str) -> tuple[str, str, str, tuple[str, ...]] | None:
-    """Return table, family, key and what else may stand there, of a path that names a block alone in its table."""
+    """Return table, family, key and other allowed keys, of a path that names a block alone in its table."""
     if path in EXCHANGED:
         return EXCHANGED[path]
     section, _, key = path.partition(".")
@@ -241,7 +241,7 @@ def _leads(table: Any, parts: list[str]) -> bool:
 
 
 def written(document: Document) -> list[str]:
-    """Return the paths of a document in tables from which the normal form takes something elsewhere."""
+    """Return the paths of a document in the tables from which the normal form moves values to another table."""
     return [f"{one}.{name}" for one in ("plant", *PARKED) for name in document.get(one, {})]
 
 
@@ -255,7 +255,7 @@ def as_written(error: InputError, document: Document, paths: Iterable[str]) -> I
 
 
 def _kept(path: str, document: Document) -> str:
-    """Return where the normal form keeps what is written at a path."""
+    """Return the path at which the normal form keeps the value of a path."""
     if path == "plant.drive":
         return "drive.kind"
     one, _, rest = path.partition(".")

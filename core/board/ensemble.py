@@ -37,12 +37,12 @@ SHOWN = ("plant.displacement", "plant.velocity", "sensor.displacement", "model.d
 
 
 def twin_documents(document: Document) -> dict[str, Document]:
-    """Return the bench of every twin: that of the board with the values of the twin written over.
+    """Return the bench of every twin: the bench of the board with the values of the twin written over.
 
     Raises
     ------
     InputError
-        When there are too many, or one differs in what they share.
+        When there are too many twins, or a twin changes a section that all share.
     """
     twins = document.get("twins", {})
     if not isinstance(twins, dict):
@@ -90,14 +90,14 @@ def _leaves(table: Document, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 NOTED = {"recognised": "recognised", "tripped": "twin_tripped", "warning": "warning"}
-"""What of the log of a twin goes into that of the board, and as what."""
+"""Kinds of entries that the log of the board takes from the log of a twin, with their kinds there."""
 
 
 class Ensemble(Board):
-    """A board with twins, advanced together: whatever is done to the first is done to all at the same tick.
+    """A board with twins, advanced together: all of them carry out each command to the board at the same tick.
 
-    Their signals are called ``<twin>:<signal>``. What a twin has of its own it keeps: a switch of the controller
-    leaves a twin alone whose controller was chosen for it. A twin that trips rests until the board is reset.
+    Their signals are called ``<twin>:<signal>``. A twin keeps its own values: a switch of the controller does
+    not reach a twin whose controller was chosen for it. A twin that trips rests until the board is reset.
 
     Parameters
     ----------
@@ -162,21 +162,21 @@ class Ensemble(Board):
 
     @property
     def diagnosers(self) -> dict[str, Section]:
-        """Every diagnoser, those of twins as ``<twin>:<id>``."""
+        """Every diagnoser; a diagnoser of a twin is named ``<twin>:<id>``."""
         found = dict(super().diagnosers)
         for name, twin in self.twins.items():
             found |= {f"{name}:{key}": section for key, section in twin.diagnosers.items()}
         return found
 
     def scores(self) -> dict[str, Scores]:
-        """Return the score of every diagnoser, those of twins as ``<twin>:<id>``."""
+        """Return the score of every diagnoser; a diagnoser of a twin is named ``<twin>:<id>``."""
         found = super().scores()
         for name, twin in self.twins.items():
             found |= {f"{name}:{key}": scores for key, scores in twin.scores().items()}
         return found
 
     def advance(self, n: int) -> Rows:
-        """Run up to ``n`` ticks of all; fewer when the board trips. Rows of a twin that has tripped are no numbers."""
+        """Run up to ``n`` ticks of all; fewer when the board trips. Rows of a tripped twin are NaN."""
         rows = super().advance(n)
         if rows.count == 0:
             return rows
@@ -196,7 +196,7 @@ class Ensemble(Board):
         return Rows(rows.first_tick, rows.count, np.hstack(outputs), np.hstack(taps), np.concatenate(idle))
 
     def _mirror(self, name: str, twin: Board, command: Command) -> None:
-        """Do to a twin at the same tick what was done to the board, but for what it has of its own."""
+        """Carry out a command of the board on a twin at the same tick, except for values the twin has of its own."""
         own = self._own[name]
         if isinstance(command, Switch) and any(path in own for path in switched(twin.spec, command)):
             return
@@ -209,11 +209,11 @@ class Ensemble(Board):
             twin.apply_due()  # what made it safe may wait for this very tick
             if twin.trip is not None and command.at_sample is not None:
                 twin.tick = command.at_sample  # it rested meanwhile
-        with suppress(InputError):  # it need not be possible there, such as healing what tripped it
+        with suppress(InputError):  # a twin may refuse it, such as a heal of the cause of its trip
             twin.apply(command)
 
     def _repeat(self, name: str, entries: list[LogEntry]) -> None:
-        """Note what a twin found, what it warns of that the board does not, and why it rests."""
+        """Note the findings of a twin, its warnings that the board does not give, and the reason why it rests."""
         for entry in entries:
             kind = NOTED.get(entry.kind)
             if kind is None or (kind == "warning" and entry.text in self.warned):
@@ -221,13 +221,13 @@ class Ensemble(Board):
             self.note("board", kind, f"{name}: {entry.text}", tick=entry.tick, old=entry.old, new=entry.new)
 
     def note(self, actor: str, kind: str, text: str, **rest: Any) -> LogEntry:
-        """Write an entry of the log, and remember what the board warns of."""
+        """Write an entry of the log, and remember the warnings of the board."""
         if kind == "warning":
             self.warned.add(text)
         return super().note(actor, kind, text, **rest)
 
     def checkpoint(self) -> Checkpoint:
-        """Return everything all of them are at this tick edge."""
+        """Return the board and its twins as they are at this tick edge."""
         whole = super().checkpoint()
         twins = {name: twin.checkpoint() for name, twin in self.twins.items()}
         whole.parts.update(twins=twins, _own=self._own, mirrored=self.mirrored, warned=set(self.warned))
@@ -262,7 +262,7 @@ def _is_own(path: str, own: list[str]) -> bool:
 
 
 def _filled(rows: FloatArray, count: int) -> FloatArray:
-    """Return as many rows, those that were not run without numbers."""
+    """Return as many rows, with NaN in the rows that were not run."""
     if len(rows) == count:
         return rows
     return np.vstack([rows, np.full((count - len(rows), rows.shape[1]), np.nan)])

@@ -45,9 +45,9 @@ class ModelAccount(BaseModel):
 
 
 class Account(BaseModel):
-    """All hypotheses before and after a sample; the recorded probabilities stand beside those worked out here.
+    """All hypotheses before and after a sample; the recorded probabilities are next to the probabilities computed here.
 
-    They part where the sample was no evidence, because the drive was off or nothing was measured.
+    They differ where the sample was no evidence, because the drive was off or nothing was measured.
     """
 
     kind: str

@@ -1,4 +1,4 @@
-"""What fits on a bench: blocks, sections and controllers that go with its plant, by the axes each declares."""
+"""Fit of a bench: the blocks, sections and controllers that go with its plant, by the axes each declares."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from core.errors import InputError, unknown
 from core.loop.model import Model
 
 MOST_GROWTH = 100.0
-"""Exponent of what may grow within a sample: the cube of it is still a number."""
+"""Largest exponent of growth within a sample: the cube of the growth is still a number."""
 
 
 def misfit(block: type[Block], plant: type[Block]) -> str:
@@ -44,7 +44,7 @@ def refuse_what_does_not_fit(doc: Document, plant: type[Block]) -> None:
 
 
 def driving(doc: Document, plant: type[Block]) -> dict[str, str]:
-    """Return the controller that drives in each slot; ``controller.kind`` says that of the last."""
+    """Return the controller that drives in each slot; ``controller.kind`` names the controller of the last slot."""
     *others, last = plant.slots
     slots = doc.get("slots", {})
     for name in slots:
@@ -64,7 +64,7 @@ def driving(doc: Document, plant: type[Block]) -> dict[str, str]:
 
 
 def suited(spec: Spec) -> Spec:
-    """Leave out controllers and sensors that are not for this bench; refuse what was asked for and is not."""
+    """Leave out controllers and sensors that do not suit this bench; refuse requested blocks that do not suit it."""
     nominal, plant = spec.nominal, spec.plant.block
     pair = nominal, Model.oscillator(spec.model.params, nominal)
     for path, grows in zip(("device.transfer_function", "model.denominator"), pair, strict=True):

@@ -19,11 +19,11 @@ from core.ports import TICK, TIME_MS
 from core.wall import wall
 
 SAMPLES = 4
-"""Samples counted, after one that is not."""
+"""Samples counted, after a first sample that does not count."""
 
 
 class Tally:
-    """What has been counted."""
+    """The operations and functions counted so far."""
 
     def __init__(self) -> None:
         self.operations = 0
@@ -78,7 +78,7 @@ EXPONENTIAL, *OTHERS = (
     for function in (elementary.exp, elementary.log, elementary.sin, elementary.cos, elementary.atan2)
 )
 COUNTED = (EXPONENTIAL, *OTHERS, math.sqrt)
-"""Functions that are counted; of others, as of rounding, it is not known what they cost."""
+"""Functions that are counted; the cost of others, such as rounding, is not known."""
 
 
 class _Mathematics:
@@ -92,7 +92,7 @@ class _Mathematics:
 
 
 def counted(function: Any, tally: Tally) -> Any:
-    """Return a function that counts its calls, or the value itself if it is none of those."""
+    """Return a function that counts its calls, or the value itself if ``COUNTED`` does not have it."""
     if not any(function is one for one in COUNTED):
         return function
 
@@ -109,7 +109,7 @@ def plain_step(block: type[Block], tally: Tally) -> Any:
     Raises
     ------
     InputError
-        For a unit of one's own where these run behind the wall: nothing else runs them there.
+        For a unit that a document carries, where units run behind the wall: nothing else runs them there.
     """
     if block.text and wall.is_demanded():
         text = "operations of a unit of one's own are not counted where units run behind a wall"
@@ -121,7 +121,7 @@ def plain_step(block: type[Block], tally: Tally) -> Any:
             return _Mathematics(tally)
         if name == "flush_tiny":
             return lambda number: number
-        if name == "whole":  # what only fills a vector register up does not count
+        if name == "whole":  # an operation that only fills up a vector register does not count
             return lambda number: number
         if name == "shrunk":  # an exponential, though it is left out where it would be nothing
             return counted(EXPONENTIAL, tally)
@@ -149,7 +149,7 @@ class Load(BaseModel):
 
 
 class Budget(BaseModel):
-    """Load of a board of some speed by all diagnosers, in their order; those that come too late overrun."""
+    """Load of a board of some speed by all diagnosers in their order; they overrun once their sum exceeds the speed."""
 
     board_flops: float
     function_flops: float
@@ -204,7 +204,7 @@ def count(board: Board, name: str) -> tuple[float, float]:
 
 
 def budget(board: Board, board_flops: float, function_flops: float = 20.0) -> Budget:
-    """Return what the diagnosers of a bench would cost a board of so many operations per second.
+    """Return the load of a board of so many operations per second by the diagnosers of a bench.
 
     Raises
     ------

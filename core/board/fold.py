@@ -7,7 +7,7 @@ A column has two words. With :math:`x` the 64 bits of the new sample,
 
 modulo :math:`2^{64}`, with odd factors. Each is one-to-one in the word and in the sample, so two columns that differ in
 one sample never fold alike. All NaN count as the same sample, since machines give them different bits. The
-fold does not withstand somebody who looks for collisions; the SHA-256 over all folds only makes one short text of them.
+fold does not withstand a search for collisions; the SHA-256 over all folds only makes one short text of them.
 """
 
 from __future__ import annotations
@@ -69,9 +69,9 @@ def digest(folds: Words, blocks: Sequence[str]) -> str:
     Parameters
     ----------
     folds : ndarray of uint64, shape (2, columns)
-        Of every column.
+        The folds of every column.
     blocks : sequence of str
-        The block each column belongs to; empty for one that does not count.
+        The block of each column; empty for a column that does not count.
     """
     names, owners = _owners(tuple(blocks))
     words = np.repeat(START.T, len(names), axis=0)
@@ -96,11 +96,11 @@ def join(folds: Words, owners: IntArray, words: Words) -> None:
     Parameters
     ----------
     folds : ndarray of uint64, shape (2, columns)
-        Of every column.
+        The folds of every column.
     owners : ndarray of int64, shape (columns,)
-        The block of each, below 0 for none.
+        The block of each column, below 0 for none.
     words : ndarray of uint64, shape (blocks, 2)
-        Those of each block, which have begun.
+        The words of each block, which the caller has begun; changed in place.
     """
     for column in range(len(owners)):
         own = owners[column]

@@ -86,7 +86,7 @@ def _fold_ticks(ring: Any, low: Any, high: Any, buckets: int, first: int, end: i
 
 @kernel
 def _fold_buckets(low: Any, high: Any, offsets: IntArray, sizes: IntArray, first: int, end: int) -> None:
-    """Fold the buckets of each level into those of the next."""
+    """Fold the buckets of each level into the buckets of the next."""
     span = FACTOR
     for level in range(1, LEVELS):
         for bucket in range(first // (span * FACTOR), (end - 1) // (span * FACTOR) + 1):
@@ -117,8 +117,8 @@ def _append(
 ) -> None:
     """Write rows (ticks by signals) into the rings, from a group on, and fold them into the pyramid.
 
-    A group that has been idle for as long as the ring is long stands there as zeros already: memory nobody wrote to
-    costs nothing.
+    A group that has been idle for the length of the ring holds zeros already: memory that is never written costs
+    nothing.
     """
     count, signals = rows.shape
     places = ring.shape[1] // LANES
@@ -162,7 +162,7 @@ def _adopt(
     first: int,
     end: int,
 ) -> None:
-    """Copy ticks of other rings and the buckets over them; what rests in both is zeros already.
+    """Copy ticks of other rings and the buckets over them; groups that are idle in both hold zeros already.
 
     The first and last bucket of a level may cover ticks that are not copied. Readers use only buckets whose ticks are
     all kept, and the next append folds the last bucket anew.
@@ -312,7 +312,7 @@ class History:
         """Add ticks that follow the last; ticks that do not start a new history there."""
         if rows.first_tick != self.end_tick:
             self._begin = self.end_tick = rows.first_tick
-        if rows.first_tick != self._written:  # a jump: only what fills the ring is known to be steady
+        if rows.first_tick != self._written:  # a jump: only groups idle for a whole ring are known to be steady
             self._steady[self._steady < self.capacity] = 0
         args = (self._ring, self._low, self._high, self._offsets, self._sizes, self._steady, rows.first_tick)
         _append(*args, rows.outputs, self._never, 0)
@@ -320,7 +320,7 @@ class History:
         self.end_tick = self._written = rows.first_tick + rows.count
 
     def adopt(self, other: History, start: int, stop: int) -> None:
-        """Begin an empty history with ticks of another of the same signals, as far as it keeps them; it may go on."""
+        """Begin an empty history with ticks that another of the same signals keeps; more ticks may be appended."""
         start = max(start, other.first_tick)
         if start >= stop:
             return
@@ -347,7 +347,7 @@ class History:
         return out
 
     def read(self, signals: list[int], start: int, stop: int) -> Float32Array:
-        """Return full-rate values, shape (signals, ticks); the span is cut to what is kept."""
+        """Return full-rate values, shape (signals, ticks); the span is cut to the ticks kept."""
         start, stop = max(start, self.first_tick), min(stop, self.end_tick)
         ticks = np.arange(start, max(stop, start)) % self.capacity
         groups, lanes = self._at(signals)

@@ -1,4 +1,4 @@
-"""A board with parts that are computed outside: asked at every sample, between what is measured and what is held."""
+"""A board with parts that are computed outside: asked at every sample, between the measurement and the held voltage."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Hosted(Board):
     """A board with a controller, diagnosers or identifiers from outside.
 
     A tick is cut before each of them: the steps up to there, then its answer, then the rest. So a voltage that follows
-    from a measurement is held over the very next sample, as that of a law of the library.
+    from a measurement is held over the very next sample, as with a law of the library.
 
     Parameters
     ----------
@@ -39,10 +39,10 @@ class Hosted(Board):
     law : callable, optional
         A controller, which drives from the first sample unless an event switches.
     diagnosers : mapping, optional
-        Diagnosers by their ids. One that the bench has is replaced and leaves its hypotheses; others have the six of
-        5.2.4.
+        Diagnosers by their ids. A diagnoser of the bench with this id is replaced and leaves its hypotheses; others
+        have the six of 5.2.4.
     identifiers : mapping, optional
-        Identifiers by their ids; one that the bench has is replaced.
+        Identifiers by their ids; an identifier of the bench with this id is replaced.
     compiled : bool
         Run compiled blocks.
 
@@ -77,7 +77,7 @@ class Hosted(Board):
         super().__init__(spec, compiled=compiled)
 
     def link(self) -> None:
-        """Find the rows that are asked for and what they read, besides what every board does."""
+        """Link the board, then find the rows of the blocks from outside and their inputs."""
         super().link()
         for one in self._asked:
             one.link(self.wiring, self._running, self.dt_ms)
@@ -85,9 +85,9 @@ class Hosted(Board):
         self._cut = self._asked[-1].cut
 
     def sample(self) -> Sample | None:
-        """Begin the next tick and return what the controller may read; None once the board has tripped.
+        """Begin the next tick and return the sample for the controller; None once the board has tripped.
 
-        `advance` goes on from there with the answer of the law.
+        `advance` continues from there with the answer of the law.
         """
         assert self._law is not None
         self.apply_due()
@@ -98,7 +98,7 @@ class Hosted(Board):
         return sample
 
     def checkpoint(self) -> Checkpoint:
-        """Refuse: what runs outside cannot be copied."""
+        """Refuse: a part that runs outside cannot be copied."""
         raise InputError("cannot be copied: part of it runs outside", "board")
 
     def _do(self, command: Command, actor: str) -> LogEntry:
@@ -174,7 +174,7 @@ class Hosted(Board):
 
 
 def _table(bench: Spec, key: str, name: str) -> Document:
-    """Return the table of a block from outside: what it takes over from the one of its name that the bench has."""
+    """Return the table of a block from outside, with interval and hypotheses of the bench's block of the same name."""
     section = getattr(bench, key).get(name)
     if section is None:
         return {"kind": External.name}

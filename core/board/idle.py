@@ -1,4 +1,4 @@
-"""What need not run in a board whose signals nobody watches: controllers and sensors that look on to the end."""
+"""Blocks that need not run while their signals are not watched: controllers and sensors without effect to the end."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def leave_out_idle(board: Board) -> None:
 
 
 def looking_on(board: Board) -> set[str]:
-    """Return the blocks that only look on: idle controllers, and sensors that rest to the end."""
+    """Return the blocks without effect: idle controllers, and sensors that rest to the end."""
     return idle_controllers(board, board.pending) | (
         {*board.spec.sensors} - needed(board.spec, sorted(_named(board.pending)))
     )

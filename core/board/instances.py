@@ -30,12 +30,12 @@ class Instance(NamedTuple):
     axis: str = ""
 
     def packed(self, context: Context) -> FloatArray:
-        """Return what its step reads on a bench of which it may know some facts.
+        """Return the numbers that its step reads on a bench; ``context`` holds the facts it may know.
 
         Raises
         ------
         InputError
-            For what the parameters do not allow on this bench, with the field below the key.
+            For parameters that this bench does not allow, with the field below the key.
         """
         try:
             return self.block.packed(self.params, context)
@@ -62,8 +62,8 @@ def instances(spec: Spec) -> list[Instance]:
     """Return the blocks of a bench in the order of a tick.
 
     The plant comes first: it integrates the sample that ends now, under the voltage and the effects that were held
-    over it. Then the environment and the faults of this moment, what is measured and concluded, and the voltage to hold
-    next.
+    over it. Then the environment and the faults of this moment, the measurements and conclusions, and the voltage to
+    hold next.
     """
     order = [_usual("plant", spec.plant), _usual("environment", spec.environment)]
     order.append(Instance("effects", "effects", Effects, Effects.Params()))
@@ -82,16 +82,16 @@ def instances(spec: Spec) -> list[Instance]:
         order += [_usual(name, section) for name, section in spec.generators.items()]
     else:
         order += [_usual("reference", spec.reference), _usual("model", spec.model)]
-    for slot in spec.driving:  # a later slot reads what an earlier one puts out
+    for slot in spec.driving:  # a later slot reads the outputs of an earlier slot
         order += [_usual(name, section) for name, section in spec.controllers.items() if section.block.slot == slot]
     order += [_usual(name, section) for name, section in spec.readouts.items()]
     return [*order, *_at_each_axis("drive", spec.drive, spec.axes), *_at_each_axis("guard", spec.guard, spec.axes)]
 
 
 def _measured(spec: Spec) -> list[Instance]:
-    """Return the sensors, and what passes on that of the one in use."""
+    """Return the sensors, and the block that passes on the measurement of the sensor in use."""
     order: list[Instance] = []
-    # first what only detects, then what recovers a displacement from it
+    # first the sensors that only detect, then the units that recover a displacement
     for recovers in (False, True):
         for name, section in spec.sensors.items():
             if recovered(section.block) == recovers:
@@ -113,7 +113,7 @@ def _usual(key: str, section: Section) -> Instance:
 
 
 def _waiting(spec: Spec, key: str, section: Section) -> Instance:
-    """Return what looks at measurements: it waits for the next of the sensor."""
+    """Return the instance of a block that reads measurements: it waits for the sensor's next measurement."""
     return Instance(key, key, section.block, section.params, spec.turns(section))
 
 
@@ -145,7 +145,7 @@ def scored(block: type[Block]) -> bool:
 
 
 def _scoring(spec: Spec, name: str, section: Section) -> Instance:
-    """Return the score of a diagnoser: one for plants with axes counts what may change along them."""
+    """Return the score of a diagnoser; for a plant with axes it counts the parts that may change along them."""
     block: Any = AxesScore if section.block.axes else Score
     params = block.Params.model_construct(hypotheses=cast(ModelList, section.params).hypotheses)
     return Instance(f"{name}.score", name, block, params, spec.turns(section))

@@ -17,16 +17,16 @@ IN_USE = ("controller", "sensor", "slots")
 
 
 def inverse(command: Command, entry: LogEntry, before: Document) -> list[Command]:
-    """Return the commands that give a board what a command took from it.
+    """Return the commands that undo a command on a board.
 
-    States are not among it: what an estimator has learnt since then, it keeps.
+    They do not restore states: an estimator keeps everything it has learnt since then.
 
     Parameters
     ----------
     command : Command
-        What was done; not the reset of a trip, which nothing but the moment before takes back.
+        The command; not the reset of a trip, which only a return to the moment before undoes.
     entry : LogEntry
-        What the log says of it, with what was before.
+        Its entry in the log, with the values before it.
     before : dict
         The document of the bench before it.
     """
@@ -66,7 +66,7 @@ def _values(paths: Mapping[str, Any], old: Mapping[str, Any], before: Document) 
 
 
 def _at(document: Document, path: str) -> Any:
-    """Return what stands at a path of a document, None for what is left at its default."""
+    """Return the value at a path of a document, None where the default applies."""
     found: Any = document
     for name in path.split("."):
         found = found.get(name) if isinstance(found, dict) else None

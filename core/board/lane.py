@@ -18,18 +18,18 @@ from core.loop.score import Scores
 
 
 class Lane(Board):
-    """A board whose arrays are columns of those of all; it keeps no log.
+    """A board whose arrays are columns of the arrays of all boards; it keeps no log.
 
-    A lane for which the same faults wait as for an earlier one follows it: the leader carries out the commands, and its
-    followers take over what they change. They share all of its wiring but the numbers and parameters. ``specs`` are
-    the benches it has been, each with the tick from which on, but for faults.
+    A lane with the same waiting faults as an earlier lane follows it: the leader carries out the commands, and its
+    followers take over the changes. They share all of its wiring but the numbers and parameters. ``specs`` holds the
+    benches of the lane, each with its first tick; faults alone make no new one.
 
     Parameters
     ----------
     spec : Spec
         The bench.
     wiring : Wiring
-        Its wiring, the arrays of numbers columns of those of all.
+        Its wiring; its arrays of numbers are columns of the arrays of all boards.
     folds : ndarray
         Its folds.
     pending : Queue
@@ -58,7 +58,7 @@ class Lane(Board):
         return self._scores[1]
 
     def leads(self, pending: Queue) -> bool:
-        """Say whether the commands that wait for another lane are those of this one, and are faults alone."""
+        """Say whether another lane has the same waiting commands as this lane, all of them for faults."""
         return all(
             one is not None
             and other is not None
@@ -71,7 +71,7 @@ class Lane(Board):
         """Leave it to all boards together."""
 
     def carry_out_due(self) -> None:
-        """Carry out what waits for this tick, here and in the lanes that follow."""
+        """Carry out the commands due at this tick, here and in the lanes that follow."""
         before, done = self.wiring.instances, len(self.done)
         self.apply_due()
         if not all(isinstance(command, Inject | Heal) for _, command in self.done[done:]):
@@ -98,7 +98,7 @@ class Lane(Board):
         return running
 
     def _hand_on(self, row: int, instance: Instance) -> None:
-        """Give the followers the parameters of a row: those of the leader unless what they are made of differs."""
+        """Give the followers the parameters of a row: the leader's, unless the facts they are made of differ."""
         place = instance.every, instance.axis
         context = self.spec.context(*place)
         own, _, read = numbers(instance, self.spec)

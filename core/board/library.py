@@ -1,4 +1,4 @@
-"""The blocks a bench may have: those of the library, and the units that its document carries."""
+"""The blocks a bench may have: the blocks of the library, and the units that its document carries."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Library:
     Parameters
     ----------
     units : sequence of Unit
-        Those that are not of the library.
+        The units that are not in the library.
     """
 
     def __init__(self, units: Sequence[Unit] = ()) -> None:
@@ -58,7 +58,7 @@ def library_of(document: dict[str, Any]) -> Library:
     Raises
     ------
     InputError
-        When a unit of its own is none.
+        When a unit of its own is not valid.
     """
     units = document.get("units")
     if not units:
@@ -81,7 +81,7 @@ def library_of(document: dict[str, Any]) -> Library:
 def _library(texts: tuple[tuple[str, str], ...]) -> Library:
     """Return a library with some units, always the same object for the same texts.
 
-    A unit named like one of the library stands in its place on that bench.
+    A unit with the name of a library block replaces that block on the bench.
     """
     found = []
     for name, source in texts:

@@ -1,4 +1,4 @@
-"""What can change while a board runs: parameters by their paths, and their values now."""
+"""Changes while a board runs: parameters by their paths, and their values now."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def _check_there(spec: Spec, path: str) -> None:
 
 
 def _check_live(spec: Spec, new: Spec) -> None:
-    """Refuse what is not tunable while running."""
+    """Refuse a change that is not possible while the board runs."""
     for field in ("sample_rate_khz", "seed"):
         if getattr(new.frame, field) != getattr(spec.frame, field):
             raise _not_live(field)

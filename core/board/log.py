@@ -1,4 +1,4 @@
-"""Log: what was done to a board and what was found on it, numbered and append-only."""
+"""Log: the commands to a board and the findings on it, numbered and append-only."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class LogEntry(BaseModel):
 
 
 class Log(Sequence[LogEntry]):
-    """Entries in order; what was done, and so has a command, is never forgotten, the oldest of what was found is."""
+    """Entries in order; an entry with a command is never forgotten, the oldest findings are."""
 
     def __init__(self) -> None:
         self._entries: MutableSequence[LogEntry] = []
@@ -64,7 +64,7 @@ class Log(Sequence[LogEntry]):
         return entry
 
     def copy(self) -> Log:
-        """Return a log that goes on by itself."""
+        """Return an independent copy of the log."""
         twin = Log()
         twin._entries, twin._findings, twin.last = list(self._entries), self._findings, self.last
         return twin

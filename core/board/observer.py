@@ -1,4 +1,4 @@
-"""Observer: puts into words what the diagnosers found, and what blocks warn of."""
+"""Observer: puts into words the findings of the diagnosers and the warnings of the blocks."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Finding = dict[str, Any]
 
 @kernel
 def follow(outputs: FloatArray, taps: FloatArray, columns: IntArray, last: FloatArray, found: IntArray) -> int:
-    """Write down where a column is not what it was a row before, as far as there is room, and return how often."""
+    """Write down where a column differs from the row before, as far as there is room, and return how often."""
     count = 0
     width = outputs.shape[1]
     for i in range(len(outputs)):
@@ -72,7 +72,7 @@ class Observer:
         self._cautions: set[str] = set()
 
     def look(self, spec: Spec, first_tick: int, outputs: FloatArray, taps: FloatArray) -> list[Finding]:
-        """Return what happened in some rows of a bench as it is now, as the fields of log entries."""
+        """Return the findings in some rows of a bench as it is now, as the fields of log entries."""
         if not len(outputs):
             return []
         found = self._caution(spec, first_tick)
@@ -100,21 +100,21 @@ class Observer:
         return sorted(found, key=lambda finding: int(finding["tick"]))
 
     def __deepcopy__(self, _memo: dict[int, Any]) -> Observer:
-        """Return one that goes on by itself from what this one saw."""
+        """Return an independent observer that continues from the values this observer saw."""
         other = copy.copy(self)
         other._last, other._found, other._cautions = self._last.copy(), self._found.copy(), set(self._cautions)
         return other
 
     def seen(self) -> tuple[FloatArray, list[str]]:
-        """Return what it saw last and what it has warned of; by both another goes on."""
+        """Return the values it saw last and its warnings so far; another observer can continue from them."""
         return self._last.copy(), sorted(self._cautions)
 
     def go_on(self, last: FloatArray, cautions: list[str]) -> None:
-        """Go on from what another saw of the same bench."""
+        """Continue from the values that another observer of the same bench saw."""
         self._last[:], self._cautions = last, set(cautions)
 
     def _caution(self, spec: Spec, tick: int) -> list[Finding]:
-        """Warn, once for each, of what takes the voltage for another than it is."""
+        """Warn once of each block that assumes another course of the voltage than the real one."""
         if spec is self._cautioned:
             return []
         self._cautioned = spec
@@ -123,7 +123,7 @@ class Observer:
         return [{"kind": "warning", "text": text, "tick": tick} for text in new]
 
     def _changes(self, outputs: FloatArray, taps: FloatArray) -> dict[int, list[int]]:
-        """Return the rows in which each watched signal is not what it was before."""
+        """Return the rows in which each watched signal changes."""
         last = self._last.copy()
         count = follow(outputs, taps, self._columns, self._last, self._found)
         if count > len(self._found):
@@ -176,7 +176,7 @@ class Observer:
 
 
 def warnings(wiring: Wiring) -> dict[str, str]:
-    """Return the taps that warn when they rise, and what of."""
+    """Return the taps that warn when they rise, with the text of each warning."""
     return {
         f"{instance.prefix}.{port.name}": f"{instance.key}: {port.warning}"
         for instance in wiring.instances
@@ -186,7 +186,7 @@ def warnings(wiring: Wiring) -> dict[str, str]:
 
 
 def cautions(spec: Spec) -> list[str]:
-    """Return what the blocks of a bench lose by what they take the voltage for, by its strongest tone."""
+    """Return warnings about the loss by the blocks' assumptions of the voltage, at its strongest tone."""
     _, hz = max((abs(volts), hz) for hz, volts in (*_tones(spec), (0.0, 0.0)))
     found = []
     for name, section in {**spec.identifiers, **spec.diagnosers}.items():

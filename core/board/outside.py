@@ -1,4 +1,4 @@
-"""What is computed outside of a board: what it may read at a sample, and where its answer goes."""
+"""Blocks that are computed outside of a board: their inputs at a sample, and the place of their answers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from core.ports import TIME_MS
 
 
 class Sample(NamedTuple):
-    """What a controller may read at a sample, and nothing of the truth.
+    """The values that a controller may read at a sample, and nothing of the truth.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class Sample(NamedTuple):
     applied : float
         Voltage applied over the sample that ends now, V.
     engaged : bool
-        Whether the controller drives. In shadow it should be ready to go on from ``applied``.
+        Whether the controller drives. In shadow it should be ready to continue from ``applied``.
     """
 
     begins: bool
@@ -46,7 +46,7 @@ class Sample(NamedTuple):
 
 
 class Observation(NamedTuple):
-    """What a diagnoser or an identifier may read at a sample, and nothing of the truth.
+    """The values that a diagnoser or an identifier may read at a sample, and nothing of the truth.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ Conclusion = Callable[[Observation], Iterable[float]]
 """A diagnoser: the probability of each hypothesis. An identifier: mass, stiffness and damping over nominal."""
 
 CLOCK = 4
-"""Fields of a sample before those that are signals."""
+"""Fields of a sample before its signals."""
 
 
 class Asked:
@@ -90,13 +90,13 @@ class Asked:
     key : str
         The block on the board.
     kind : type
-        What it may read: `Sample`, or `Observation`.
+        The record it may read: `Sample`, or `Observation`.
     ask : callable
-        Who answers.
+        The function that answers.
     numbers : int
         How many numbers an answer has.
     meaning : str
-        What they are, for the line that refuses another answer.
+        Their meaning, for the line that refuses another answer.
     """
 
     def __init__(self, key: str, kind: type[Any], ask: Callable[[Any], Any], numbers: int, meaning: str) -> None:
@@ -104,7 +104,7 @@ class Asked:
         self._kind, self._ask, self._numbers, self._meaning = kind, ask, numbers, meaning
 
     def link(self, wiring: Wiring, running: list[int], dt_ms: float) -> None:
-        """Find its row, what it reads and where its answer goes."""
+        """Find its row, the places of its inputs and the place of its answer."""
         row = wiring.row(self.key)
         instance = wiring.instances[row]
         places = dict(zip((port.name for port in instance.block.inputs), wiring.ports(row).tolist(), strict=False))
@@ -114,7 +114,7 @@ class Asked:
         self.answered = wiring.state_of(self.key)
 
     def sample(self, tick: int, w: FloatArray) -> Any:
-        """Return what it may read at a tick."""
+        """Return the sample or the observation of a tick."""
         values = w[self._places].tolist()
         if self._kind is Sample:
             values[-1] = values[-1] != 0.0

@@ -29,7 +29,7 @@ SILENT = ("id", "title", "summary", "claim", "source", "verdict", "expect", "pri
 
 
 class Mark(Table):
-    """What a scenario carries of a package."""
+    """The entry of a package in a scenario."""
 
     version: str = Field(pattern=r"^[0-9A-Za-z.!+_-]{1,64}$")
     source: str = Field(pattern=r"^[0-9a-f]{64}$", description="SHA-256 over its Python files")
@@ -65,7 +65,7 @@ class Package:
 
     @property
     def mark(self) -> Document:
-        """What a scenario carries of it."""
+        """The entry of this package in a scenario."""
         return Mark(version=self.version, source=self.source).model_dump()
 
 
@@ -123,7 +123,7 @@ def _check(table: Document) -> None:
 
 
 def _names(document: Document, package: Package) -> bool:
-    """Say whether a document names a block of a package, and has no unit of its own in its place."""
+    """Say whether a document names a block of a package, and has no unit of its own with that name."""
     content = {key: value for key, value in document.items() if key not in SILENT}
     plant = plant_of(document)
     words = {*re.findall(r"\w+", json.dumps([content, defaults(plant)], default=str)), plant.name}

@@ -82,7 +82,7 @@ def changed(spec: Spec, values: dict[str, Any]) -> Spec:
 
 
 def _sharing(doc: Document, other: Document) -> Document:
-    """Return a copy of a document whose tables are those of another one where they say the same."""
+    """Return a copy of a document; it shares the tables of another document where both say the same."""
 
     def shared(value: Any, known: Any) -> Any:
         return known if says_the_same(value, known) else copy.deepcopy(value)
@@ -96,7 +96,7 @@ def _sharing(doc: Document, other: Document) -> Document:
 
 
 def _parse(doc: Document, before: Spec | None) -> Spec:
-    """Check a document in normal form; sections whose tables are those of another bench are taken from there."""
+    """Check a document in normal form; sections whose tables are shared with another bench are taken from there."""
     library = library_of(doc)
     if before is not None and before.library is not library:
         before = None  # a name may mean another block
@@ -200,7 +200,7 @@ def _refuse_apart(spec: Spec) -> None:
 
 
 def _driven(library: Library, doc: Document, device: Device) -> tuple[Section, Section]:
-    """Return plant and drive: how the drive works may be said at the plant."""
+    """Return plant and drive: the plant may give the kind of drive."""
     plant = dict(doc["plant"])
     drive = dict(doc.get("drive", {}))
     if "drive" in plant:
@@ -223,7 +223,7 @@ def _fitted(device: Device, plant: Section) -> Device:
 
 
 def _reference(library: Library, doc: Document) -> Section:
-    """Return the reference, or one that does nothing where a bench has none."""
+    """Return the reference; where a bench has none, a reference that does nothing."""
     return _chosen(library, "reference", doc.get("reference", SILENT), "reference")
 
 
@@ -235,7 +235,7 @@ def _refuse_twice(named: list[tuple[str, str]]) -> None:
 
 
 def _named_apart(spec: Spec) -> None:
-    """Refuse names of the bench's own that are those of another block: signals of both would have the same names."""
+    """Refuse names of the bench's own that another block has too: signals of both would have the same names."""
     chosen = [(key, name) for key in CHOSEN for name in getattr(spec, key)]
     nothing: dict[str, Any] = {key: {} for key in CHOSEN}
     others = instances(replace(spec, **nothing)) if chosen else []

@@ -1,4 +1,4 @@
-"""What boards abreast share: blocks, wiring, intervals and choices, worked out once."""
+"""Pattern: the blocks, wiring, intervals and choices that boards abreast share, worked out once."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from core.board.spec import Spec
 from core.record import Layout
 
 FACTS = [fact.name for fact in fields(Context)]
-"""What blocks may know of a bench."""
+"""The facts that blocks may know of a bench."""
 ALL_FACTS = attrgetter(*FACTS)
 
 
@@ -27,7 +27,7 @@ class Uneven(Exception):
 
 
 class Pattern:
-    """What boards of one structure share, made from the first of them.
+    """The parts that boards of one structure share, made from the first of them.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Pattern:
         outputs = [signal for signal in wiring.signals if signal.kind == "output" and signal.block in counted]
         self.folded = np.array([signal.index for signal in outputs], dtype=np.int64)
         self.choices = self._choices()
-        # what rests is packed when it comes
+        # a block that rests is packed when it starts to run
         packed = [row for row in self.used if not wiring.absent[row] or len(wiring.state_of(wiring.instances[row].key))]
         self.read = {row: numbers(wiring.instances[row], board.spec)[2] for row in packed}
 
@@ -71,7 +71,7 @@ class Pattern:
 
 
 def _choices_of(layout: Layout) -> list[int]:
-    """Return the places of the choices in a record, those of records in it too."""
+    """Return the places of the choices in a record, also in its inner records."""
     found = [field.offset for field in layout.fields if field.is_choice]
     for field in layout.fields:
         if field.inner is not None and not field.tail:
@@ -81,7 +81,7 @@ def _choices_of(layout: Layout) -> list[int]:
 
 
 class _Noting(Context):
-    """The facts of a bench, which notes those that are read; a unit of one's own reads nothing but a `Context`."""
+    """The facts of a bench, with a note of each fact read; a unit that a document carries accepts only a `Context`."""
 
     read: set[str]
 

@@ -37,7 +37,7 @@ class Pending:
 
 
 class Queue:
-    """What waits, in the order of its ticks; those whose condition is watched are behind."""
+    """The waiting commands in the order of their ticks; commands with a watched condition come last."""
 
     def __init__(self) -> None:
         self._entries: list[Pending] = []
@@ -56,7 +56,7 @@ class Queue:
 
     @property
     def as_asked(self) -> list[Pending]:
-        """The entries in the order in which they have begun to wait, in which those of one tick take effect."""
+        """The entries in the order in which they began to wait; entries of one tick take effect in this order."""
         return _as_asked(self._entries)
 
     @property
@@ -74,7 +74,7 @@ class Queue:
     def copy(self) -> Queue:
         """Return a queue in which the same commands wait for the same ticks, for another board."""
         queue = Queue()
-        queue._entries, queue._asked = [*self._entries], self._asked  # only what waits for a condition ever changes
+        queue._entries, queue._asked = [*self._entries], self._asked  # only an entry with a condition ever changes
         return queue
 
     def add(self, entry: Pending) -> None:
@@ -88,7 +88,7 @@ class Queue:
         self._entries.remove(entry)
 
     def take_due(self, tick: int) -> list[Pending]:
-        """Take out what is due at a tick; a condition that is to be watched from then on stays, watched."""
+        """Take out the entries due at a tick; an entry with a condition stays, and is watched from then on."""
         count = bisect_right(self._entries, (float(tick), math.inf), key=_moment)
         due, self._entries = _as_asked(self._entries[:count]), self._entries[count:]
         for entry in due:
@@ -117,7 +117,7 @@ class Queue:
         self._entries.sort(key=_moment)
 
     def clear(self) -> None:
-        """Let nothing wait any more."""
+        """Remove all entries."""
         self._entries.clear()
 
     def _watched(self) -> list[Pending]:
@@ -125,7 +125,7 @@ class Queue:
 
 
 def _moment(entry: Pending) -> tuple[float, float]:
-    """Return where an entry stands."""
+    """Return the sort key of an entry in the queue."""
     return (math.inf if entry.tick is None else entry.tick), entry.number
 
 

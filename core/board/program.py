@@ -38,7 +38,7 @@ def address(block: type[Block], width: int = 1) -> int:
 
 @kernel
 def walk(table: IntArray, tick: int, width: int, p: Any, s: Any, w: Any, io: Any) -> None:
-    """Call the steps whose turn is at a tick, of boards whose numbers stand side by side; arrays are addresses."""
+    """Call the steps whose turn is at a tick, of boards whose numbers are side by side; arrays are addresses."""
     for b in range(table.shape[0]):
         every = table[b, EVERY]
         # a division costs more than most blocks, and most run at every tick
@@ -54,7 +54,7 @@ def walk(table: IntArray, tick: int, width: int, p: Any, s: Any, w: Any, io: Any
 
 @kernel
 def begin(table: IntArray, tick: int, dt_ms: float, p: FloatArray, s: FloatArray, w: FloatArray, io: IntArray) -> None:
-    """Run the first steps of a tick; ``run`` goes on with the rest of the table."""
+    """Run the first steps of a tick; ``run`` continues with the rest of the table."""
     w[TICK] = tick
     w[TIME_MS] = tick * dt_ms
     walk(table, tick, 1, address_of(p), address_of(s), address_of(w), address_of(io))

@@ -1,4 +1,4 @@
-"""Rows: what the ticks of a call of ``advance`` put out."""
+"""Rows: the outputs and taps of the ticks of a call of ``advance``."""
 
 from __future__ import annotations
 

@@ -61,9 +61,9 @@ def fields() -> tuple[str, ...]:
 class Spec:
     """A bench, ready to be wired.
 
-    ``document`` is what it was made from, in normal form: the parameters of the controller and the sensor in use
-    stand under ``controllers`` and ``sensors``. ``driving`` names the controller of each slot, ``faults`` those that
-    act. A plant with axes has neither reference nor model; what stands here in their place does nothing.
+    ``document`` is its source in normal form: ``controllers`` and ``sensors`` hold the parameters of the controller and
+    the sensor in use. ``driving`` names the controller of each slot, ``faults`` holds the faults that act. A plant with
+    axes has neither reference nor model; these two sections then do nothing.
     """
 
     document: Document
@@ -144,7 +144,7 @@ class Spec:
             yield from getattr(self, name).items()
 
     def has_sections_of(self, other: Spec) -> bool:
-        """Say whether the sections are the very same as those of another bench, in the same order."""
+        """Say whether this bench and another have the very same sections, in the same order."""
         if any(own is not another for own, another in zip(ALL_ALONE(self), ALL_ALONE(other), strict=True)):
             return False
         groups = zip(ALL_GROUPS(self), ALL_GROUPS(other), strict=True)
@@ -154,11 +154,11 @@ class Spec:
         )
 
     def turns(self, section: Section) -> int:
-        """Return the ticks between two runs of what looks at measurements: it waits for the next of the sensor."""
+        """Return the ticks between two runs of a block that reads measurements: it waits for the sensor's next one."""
         return math.lcm(section.every, self.sensors[self.measuring].every)
 
     def context(self, every: int = 1, axis: str = "") -> Context:
-        """Return what a block may know that runs every so many ticks, at one axis if it stands at one."""
+        """Return the facts that a block may know if it runs every so many ticks, for its axis if it has one."""
         found = self._contexts.get((every, axis))
         if found is None:
             if self._sown is not None:
@@ -175,7 +175,7 @@ class Spec:
 
     @cached_property
     def _contexts(self) -> dict[tuple[int, str], Context]:
-        """Contexts worked out so far: every block asks, and whenever a fault comes or goes they do again."""
+        """Contexts worked out so far: every block asks for one, and again at each change of a fault."""
         return {}
 
     def _context(self, every: int) -> Context:
@@ -205,7 +205,7 @@ class Spec:
         )
 
     def with_seed(self, seed: int) -> Spec:
-        """Return this bench with other noise; it goes on with all that was worked out of this one."""
+        """Return this bench with other noise; it keeps the values that were worked out for this bench."""
         if seed == self.seed:
             return self
         spec = object.__new__(Spec)
@@ -215,7 +215,7 @@ class Spec:
         return spec
 
     def with_faults(self, faults: dict[str, BlockParams]) -> Spec:
-        """Return this bench with other faults; it goes on with all that was worked out of this one."""
+        """Return this bench with other faults; it keeps the values that were worked out for this bench."""
         spec = object.__new__(Spec)
         vars(spec).update(vars(self), faults=faults)
         return spec

@@ -1,4 +1,4 @@
-"""Where the step of a row of a board is: in machine code, or behind the wall if it is of a unit of one's own."""
+"""Addresses of the steps of a board: in machine code, or behind the wall for a unit that a document carries."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def _behind(wiring: Wiring, row: int, width: int) -> int:
 
 
 def _seen(port: Port, size: int) -> Behind:
-    """Return what a step sees behind a port; a fault writes to what it reads, maybe by two ports."""
+    """Return the numbers that a step sees behind a port; a fault writes to signals it reads, maybe by two ports."""
     if port.kind != INPUT:
         return Behind(port.name, size, True)
     changes = port.source.startswith("effects.")

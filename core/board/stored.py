@@ -1,6 +1,6 @@
-"""A board as plain data: what was done to it and the numbers it is made of; from these it goes on, bit for bit.
+"""A board as plain data: the commands to it and its numbers; from these it continues, bit for bit.
 
-The wiring is not stored. It follows from the bench and from what was done to it, in that order; only its numbers are.
+The wiring is not stored. It follows from the bench and from the commands to it, in that order; only its numbers are.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Stored:
     Parameters
     ----------
     document : dict
-        Its bench, its commands and where it stands; JSON can hold all of it.
+        Its bench, its commands and its progress; JSON can hold all of it.
     arrays : mapping of str to ndarray
         Copies of its numbers.
     """
@@ -43,7 +43,7 @@ class Stored:
 
 
 def stored(board: Board) -> Stored:
-    """Return a board as plain data; the board goes on by itself."""
+    """Return a board as plain data, independent of the board from then on."""
     document, arrays = _one(board)
     document["base"] = board.base
     if isinstance(board, Ensemble):
@@ -55,7 +55,7 @@ def stored(board: Board) -> Stored:
 
 
 def revived(kept: Stored) -> Board:
-    """Return a board that goes on from what was stored.
+    """Return a board that continues from a stored state.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def _one(board: Board) -> tuple[Document, dict[str, NDArray[Any]]]:
 
 
 def _go_on(board: Board, document: Document, arrays: Arrays) -> None:
-    """Do to a board at tick 0 all that was done to the one before, then give it its numbers."""
+    """Carry out the stored commands on a board at tick 0, then give it the stored numbers."""
     for tick, command in document["done"]:
         parsed = parse_command(command)
         board.tick = tick

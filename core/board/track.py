@@ -1,4 +1,4 @@
-"""Track: checkpoints of a board and what was done to it. From these any tick of its past is computed again."""
+"""Track: checkpoints of a board and the deeds on it. From these any tick of its past is computed again."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FEWEST = 16
 
 
 class Deed(NamedTuple):
-    """Something done to a board from outside at a tick: a command, or one that waited and waits no more."""
+    """A deed on a board from outside at a tick: a command, or the removal of a command that waited."""
 
     tick: int
     command: Command | None
@@ -72,7 +72,7 @@ class Passage:
         return board
 
     def walk(self, board: Board) -> Iterator[Rows]:
-        """Advance a board from the checkpoint to the end; what it puts out holds until the next rows are asked for."""
+        """Advance a board from the checkpoint to the end; each of its rows holds until the next rows are asked for."""
         for deed in self.deeds:
             yield from _advance(board, deed.tick)
             deed.do(board)
@@ -131,11 +131,11 @@ class Track:
         return bool(self._deeds) and self._deeds[-1].tick >= tick
 
     def note(self, deed: Deed) -> None:
-        """Note what was done to the board."""
+        """Note a deed on the board."""
         self._deeds.append(deed)
 
     def go_back(self, board: Board) -> None:
-        """Go on from a board that is at an earlier tick of this past."""
+        """Continue from a board that is at an earlier tick of this past."""
         self._cut(board.tick)
         self.mark(board, is_fixed=True)
 
@@ -152,7 +152,7 @@ class Track:
         return other
 
     def until(self, board: Board) -> Track:
-        """Return the track of a copy of the board that goes on from a tick of this past by itself."""
+        """Return the track of a copy of the board that continues independently from a tick of this past."""
         other = self.copy()
         other.go_back(board)
         return other
@@ -163,16 +163,16 @@ class Track:
         Parameters
         ----------
         tick : int
-            Where it ends, with all that was done at that tick.
+            The end of the way, with all deeds at that tick.
         before : int
             It begins so many ticks earlier, if the track goes back so far, or before that.
         is_before : bool
-            Leave out what was done at the tick where it ends.
+            Leave out the deeds at the tick where it ends.
 
         Raises
         ------
         InputError
-            If the tick lies before the first that can be computed again.
+            If the tick is before the first that can be computed again.
         """
         if tick < self.first_tick:
             raise InputError(f"tick {tick} is not kept, the first is {self.first_tick}", "tick")
@@ -185,13 +185,13 @@ class Track:
     def onward(self, board: Board, tick: int) -> Passage:
         """Return the way of a board on to a later tick; at its own tick of this past nothing has been done to it yet.
 
-        It leaves out what was done at the tick where it ends, so that the board can go on from there.
+        It leaves out the deeds at the tick where it ends, so that the board can continue from there.
         """
         first, last = (bisect_left(self._deeds, end, key=_tick) for end in (board.tick, tick))
         return Passage(board.checkpoint(), tuple(self._deeds[first:last]), tick)
 
     def _cut(self, tick: int) -> None:
-        """Forget what came at a tick and after it."""
+        """Forget the checkpoints and deeds at a tick and after it."""
         self._marks = [mark for mark in self._marks if mark.tick < tick]
         self._deeds = [deed for deed in self._deeds if deed.tick < tick]
 

@@ -15,7 +15,7 @@ EXCHANGED = ("reference",)
 
 
 def sections(spec: Spec) -> dict[str, Section]:
-    """Return the sections of a bench by their paths; who drives and what measures stand under their own names."""
+    """Return the sections of a bench by their paths; the controller and the sensor in use are under their own names."""
     found: dict[str, Section] = {} if spec.axes else {"reference": spec.reference, "model": spec.model}
     found |= {key: getattr(spec, key) for key in SINGLE if key not in ("reference", "model")}
     for key in ("controllers", "sensors", *CHOSEN):
@@ -36,9 +36,9 @@ def tuned(spec: Spec) -> dict[str, Any]:
 
 
 def difference(spec: Spec, wanted: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what to set on a bench, so that the values it shares with a set become those of the set.
+    """Return the values to set on a bench, so that it takes the values of a set where both have them.
 
-    Where the set has another block, or leaves to the block what the bench gives it, the whole section is set.
+    Where the set has another block, or no value for a parameter that the bench gives, the whole section is set.
     """
     now = tuned(spec)
     changed = {path: value for path, value in wanted.items() if path in now and now[path] != value}
@@ -66,7 +66,7 @@ def absent(spec: Spec, wanted: Mapping[str, Any]) -> list[str]:
 
 
 def _fixed(spec: Spec, path: str) -> dict[str, Any]:
-    """Return what the document of a bench says of a section and what cannot change while it runs."""
+    """Return the values of a section in the document of a bench that cannot change while it runs."""
     table: Any = spec.document
     for name in path.split("."):
         table = table.get(name, {}) if isinstance(table, dict) else {}

@@ -24,7 +24,7 @@ from core.signals import Signal, SignalTable
 N = TypeVar("N", np.float64, np.int64)
 
 NOTHING = "@nothing"
-"""A signal that stays 0: what an input whose source ends in ``?`` reads where no block has that signal."""
+"""A signal that stays 0; an input whose source ends in ``?`` reads it where no block has that signal."""
 
 
 @dataclass
@@ -42,15 +42,15 @@ class Wiring:
     rows: dict[str, int]
     """The row of every instance, by its key."""
     unread: list[bool]
-    """Row by row, whether it is a sensor that nobody reads."""
+    """Row by row, whether it is a sensor whose signals are not read."""
     absent: list[bool]
-    """Row by row, whether its parameters leave it nothing to do, as those of a fault of no severity."""
+    """Row by row, whether its parameters leave it nothing to do, as with a fault of no severity."""
     tap_rows: IntArray
     """The row that every tap comes from."""
     endless: BoolArray
     """Number by number of the states, whether it begins as infinite or as no number, and so may always be."""
     left_out: set[int] = field(default_factory=set)
-    """Rows that never run, because nobody watches them."""
+    """Rows that never run, because their signals are not watched."""
     resting: set[int] = field(default_factory=set)
     places: dict[int, IntArray] = field(default_factory=dict)
     """Row by row, the places of its signals, as far as they were asked for."""
@@ -84,12 +84,12 @@ class Wiring:
         return self._part(self.s, self.rows[key], program.S_OFFSET)
 
     def parameters(self, key: str) -> Any:
-        """Return what the step of an instance reads, a record; of a board among others a copy."""
+        """Return the parameters of an instance, a record; for a board among others a copy."""
         row = self.rows[key]
         return self.instances[row].block.Packed(np.ascontiguousarray(self.packed(row)))
 
     def state(self, key: str) -> Any:
-        """Return the state of an instance, a record; of a board among others a copy."""
+        """Return the state of an instance, a record; for a board among others a copy."""
         return self.instances[self.rows[key]].block.State(np.ascontiguousarray(self.state_of(key)))
 
     def ports(self, row: int) -> IntArray:
@@ -107,7 +107,7 @@ class Wiring:
         return whole[self.table[row, column] : end]
 
     def rest(self, spec: Spec) -> list[int]:
-        """Return the rows that run; make those that rest as new, and their signals 0."""
+        """Return the rows that run; reset the rows that rest, and set their signals to 0."""
         self.is_changed = False
         rows = [row for row in range(len(self.instances)) if row not in self.left_out]
         running = [row for row in rows if not (self.unread[row] or self.absent[row])]
@@ -200,7 +200,7 @@ def every_of(instance: Instance) -> int:
 
 
 def unread(spec: Spec, order: list[Instance]) -> list[bool]:
-    """Return, row by row, whether it is a sensor that nobody reads."""
+    """Return, row by row, whether it is a sensor whose signals are not read."""
     read = needed(spec)
     return [entry.key in spec.sensors and issubclass(entry.block, Sensor) and entry.key not in read for entry in order]
 
@@ -214,12 +214,12 @@ def _laid_out(spec: Spec, order: list[Instance]) -> tuple[SignalTable, dict[str,
     """Return the traced signals, the place of every signal, and how many places there are."""
     ports: dict[str, list[tuple[Port, Instance]]] = {"output": [], "tap": [], "hidden": []}
     for instance in order:
-        # what stands by is worth seeing, but not what the bench puts out
+        # signals of faults and sensors are worth seeing, but are no outputs of the bench
         aside = issubclass(instance.block, (Fault, Sensor))
         for usual, own in (("output", instance.block.outputs), ("tap", instance.block.taps)):
             for port in own:
                 ports["hidden" if port.hidden else "tap" if aside else usual].append((port, instance))
-    # what is traced lies in the order of the trace, so that a row is copied as it is
+    # traced signals have the order of the trace, so that a row is copied as it is
     index: dict[str, int] = {}
     shown: list[Signal] = []
     size = RESERVED
@@ -247,7 +247,7 @@ def engage(spec: Spec, index: dict[str, int], w: FloatArray) -> None:
 
 
 def needed(spec: Spec, also: Iterable[str] = ()) -> set[str]:
-    """Return the sensor in use, those that always run, that a diagnoser reads or are named, and all they read from."""
+    """Return the sensor in use, sensors that always run, are read by a diagnoser or are named, and their sources."""
     found: set[str] = set()
     always = [
         name
@@ -303,7 +303,7 @@ def _source(spec: Spec, instance: Instance, port: Port, index: dict[str, int]) -
 
 
 def command_of(spec: Spec, axis: str, moment: str = "") -> str:
-    """Return what drives an axis: the controller in the last slot that has an output for it."""
+    """Return the signal that drives an axis: from the controller in the last slot that has an output for it."""
     for name in reversed(spec.driving.values()):
         outputs = {port.name for port in spec.controllers[name].block.outputs}
         if axis in outputs:

@@ -9,7 +9,7 @@ from core.format import format_short
 
 
 def describe(command: Command, library: Library) -> str:
-    """Say in words what a command does on a bench with these blocks."""
+    """Describe a command on a bench with these blocks in words."""
     if isinstance(command, Inject):
         shape = "" if command.profile.kind == "step" else f", {command.profile.kind}"
         chosen = "".join(f", {name} {short(value)}" for name, value in command.parameters.items())

@@ -1,4 +1,4 @@
-"""Experiments of benches: a bench is written as one, and stands at its tick again."""
+"""Experiments of benches: a bench is written as an experiment, and is brought back to its tick."""
 
 from __future__ import annotations
 

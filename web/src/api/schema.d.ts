@@ -2864,9 +2864,9 @@ export interface components {
     schemas: {
         /**
          * Account
-         * @description All hypotheses before and after a sample; the recorded probabilities stand beside those worked out here.
+         * @description All hypotheses before and after a sample; the recorded probabilities are next to the probabilities computed here.
          *
-         *     They part where the sample was no evidence, because the drive was off or nothing was measured.
+         *     They differ where the sample was no evidence, because the drive was off or nothing was measured.
          */
         Account: {
             /** Kind */
@@ -3721,7 +3721,7 @@ export interface components {
         };
         /**
          * Budget
-         * @description Load of a board of some speed by all diagnosers, in their order; those that come too late overrun.
+         * @description Load of a board of some speed by all diagnosers in their order; they overrun once their sum exceeds the speed.
          */
         Budget: {
             /** Board Flops */
@@ -5271,7 +5271,7 @@ export interface components {
         };
         /**
          * Inject
-         * @description Inject a fault, or give one that is there another severity.
+         * @description Inject a fault, or give a present fault another severity.
          */
         Inject: {
             /**
