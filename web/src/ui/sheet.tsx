@@ -1,5 +1,5 @@
 import { Drawer } from "@mantine/core";
-import type { ReactNode } from "react";
+import { type ReactNode, useLayoutEffect, useRef } from "react";
 
 interface SheetProps {
   opened: boolean;
@@ -11,10 +11,20 @@ interface SheetProps {
 
 /** A drawer to read or choose in while the bench runs: it covers little of the page. */
 export function Sheet({ opened, title, size, onClose, children }: SheetProps) {
+  const before = useRef<Element | null>(null);
+  // The drawer itself looks for the focus later: on a busy machine it has already taken it by then.
+  useLayoutEffect(() => {
+    if (opened) before.current = document.activeElement;
+  }, [opened]);
+  const giveFocusBack = () => {
+    const { activeElement, body } = document;
+    if (activeElement === body && before.current instanceof HTMLElement) before.current.focus({ preventScroll: true });
+  };
   return (
     <Drawer
       opened={opened}
       onClose={onClose}
+      onExitTransitionEnd={giveFocusBack}
       title={title}
       position="right"
       size={size}
