@@ -12,13 +12,14 @@ interface SheetProps {
 /** A drawer to read or choose in while the bench runs: it covers little of the page. */
 export function Sheet({ opened, title, size, onClose, children }: SheetProps) {
   const before = useRef<Element | null>(null);
-  // The drawer itself looks for the focus later: on a busy machine it has already taken it by then.
+  // On a busy machine the drawer may take the focus late, after it was closed, and would not give it back.
   useLayoutEffect(() => {
     if (opened) before.current = document.activeElement;
   }, [opened]);
   const giveFocusBack = () => {
     const { activeElement, body } = document;
-    if (activeElement === body && before.current instanceof HTMLElement) before.current.focus({ preventScroll: true });
+    const isLost = activeElement === body || activeElement?.closest("[role=dialog]");
+    if (isLost && before.current instanceof HTMLElement) before.current.focus({ preventScroll: true });
   };
   return (
     <Drawer
