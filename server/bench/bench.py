@@ -277,10 +277,10 @@ class LiveBench:
         """
         keyframe = self.board.checkpoint()
         assert self.track is not None
-        track = self.track.lean() if is_lean else self.track
+        track = self.track.lean() if is_lean else self.track.copy()
         past = self.history_before(self.board.tick) if with_past else None
         branch, last_event = self.branches.current, self.events.last
-        return Journal(self.scenario, keyframe, track.copy(), self.narration.told(), past, branch, last_event)
+        return Journal(self.scenario, keyframe, track, self.narration.told(), past, branch, last_event)
 
     def recalled(self, journal: Journal) -> Journal:
         """Return a journal with all keyframes and samples that the bench still has, if it is in its present past."""

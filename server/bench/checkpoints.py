@@ -14,7 +14,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from pydantic import BaseModel
@@ -55,6 +55,21 @@ class Head(BaseModel):
     version: str
     blind: Blind | None = None
     hidden_since: int = 0
+
+
+class State(NamedTuple):
+    """The parts of a bench by which a written checkpoint is known to be current."""
+
+    tick: int
+    last_event: int
+    running: bool
+    name: str
+    keep: bool
+
+    @classmethod
+    def of(cls, head: Head) -> State:
+        """Return the state in a checkpoint."""
+        return cls(head.tick, head.last_event, head.running, head.name, head.keep)
 
 
 @dataclass
@@ -103,7 +118,7 @@ class Checkpoints:
 
     def __init__(self, folder: Path, engine: Engine, benches: Callable[[], list[LiveBench]]) -> None:
         self._folder, self._engine, self._benches = folder, engine, benches
-        self._written: dict[str, tuple[int, int, bool]] = {}
+        self._written: dict[str, State] = {}
         self._turn = asyncio.Lock()
 
     async def run(self, clock: Clock) -> None:
@@ -115,16 +130,18 @@ class Checkpoints:
         """Write the benches that have changed since the last time."""
         async with self._turn:
             for session in self._benches():
-                now = (session.board.tick, session.events.last, session.is_started)
-                if self._written.get(session.id) == now:
+                before = self._written.get(session.id)
+                if before == State(
+                    session.board.tick, session.events.last, session.is_started, session.name, session.keep
+                ):
                     continue
                 try:
                     kept = await self._engine.call(_taken, session)
                     head = kept.head
-                    events = session.events.after(self._written.get(session.id, (0, 0))[1])[1]
+                    events = session.events.after(before.last_event if before is not None else 0)[1]
                     events = [event for event in events if event.seq <= head.last_event]
                     await asyncio.to_thread(self._save, kept, events)
-                    self._written[session.id] = (head.tick, head.last_event, head.running)
+                    self._written[session.id] = State.of(head)
                 except ApiError:
                     continue  # it has been closed meanwhile
                 except Exception:
@@ -148,6 +165,7 @@ class Checkpoints:
 
     def record_hang(self, bench_id: str) -> None:
         """Note on disk that the engine hangs in a slice of a bench: it is not brought back (on any thread)."""
+        self._folder.mkdir(parents=True, exist_ok=True)
         self._path(bench_id, HUNG).touch()
 
     async def forget(self, bench_id: str) -> None:
@@ -169,7 +187,10 @@ class Checkpoints:
         return self._folder / f"{bench_id}{suffix}"
 
     def _save(self, kept: Kept, events: list[Event]) -> None:
-        """Write the events first: those beyond the board are left out when they are read."""
+        """Write the events first: those beyond the board are left out when they are read.
+
+        An engine that gives the state of a bench does not hang in it any more.
+        """
         head = kept.head
         self._folder.mkdir(parents=True, exist_ok=True)
         if events:
@@ -185,6 +206,7 @@ class Checkpoints:
                 arrays[WATCH] = kept.watch.samples
             np.savez(file, **arrays)
         os.replace(part, self._path(head.id, BOARD))
+        self._path(head.id, HUNG).unlink(missing_ok=True)
 
     def _load(self, bench_id: str) -> Kept:
         if self._path(bench_id, HUNG).exists():
@@ -205,7 +227,7 @@ class Checkpoints:
                 known[event.seq] = event
         events = [known[seq] for seq in sorted(known)]
         path.write_text("".join(f"{event.model_dump_json()}\n" for event in events), "utf-8")
-        self._written[bench_id] = (head.tick, head.last_event, head.running)
+        self._written[bench_id] = State.of(head)
         watch = KeptWatch(seen, samples) if seen is not None and samples is not None else None
         return Kept(head, Stored(board, arrays), events[-KEPT:], watch)
 

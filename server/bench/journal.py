@@ -1,4 +1,4 @@
-"""The journal of a bench: its scenario, the commands to it, and keyframes. A bench can stand at the end of one."""
+"""The journal of a bench: its scenario, the commands to it, and keyframes. A bench can be taken to its end."""
 
 from __future__ import annotations
 

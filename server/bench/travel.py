@@ -1,4 +1,4 @@
-"""Travel: benches stand at the ends of other journals, and second benches continue from them."""
+"""Travel: benches are taken to the ends of other journals, and second benches continue from them."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from scenarios.lecture import State
 from scenarios.run import build
 from scenarios.schema import Scenario
 from server.bench.bench import LiveBench
+from server.bench.build import Builder
 from server.bench.description import design_of
 from server.bench.engine import Engine
 from server.bench.events import Event
@@ -311,11 +312,13 @@ def reset(bench: LiveBench, scenario: Scenario, board: Board, actor: str, before
     return event
 
 
-def forked(bench: LiveBench, snapshot_id: str | None, builder: Any) -> LiveBench:
+def forked(bench: LiveBench, snapshot_id: str | None, builder: Builder) -> LiveBench:
     """Return a bench with the present state of another, or with the state of a snapshot (a job)."""
-    journal = bench.snapshots.get(snapshot_id).journal if snapshot_id else bench.journal()
-    journal = bench.recalled(journal).for_another()
-    twin: LiveBench = builder.around(journal.scenario, journal.board(), bench.time.pacer.scale)
+    if snapshot_id:
+        journal = bench.recalled(bench.snapshots.get(snapshot_id).journal).for_another()
+    else:
+        journal = bench.journal(with_past=True).for_another()
+    twin = builder.around(journal.scenario, journal.board(), bench.time.pacer.scale)
     twin.stand(journal, "api", "forked", f"forked from bench {bench.id}")
     return twin
 

@@ -62,6 +62,9 @@ class Guard(Protocol):
     def stuck(self, held: Sequence[str]) -> None:
         """Record the benches in whose slices the engine hangs for good."""
 
+    def recovered(self) -> None:
+        """Show that the engine turns again."""
+
 
 class Watchdog:
     """Looks at the engine again and again.
@@ -134,6 +137,7 @@ class Watchdog:
         self._silent_s = self._idle_s = 0.0
         if self.barks:
             self.barks = self.is_stuck = False
+            self._guard.recovered()
             log.warning("the engine turns again")
 
     def _bark(self, why: str) -> None:
@@ -273,8 +277,12 @@ class Safety:
 
     def stuck(self, held: Sequence[str]) -> None:
         """Record the benches in whose slices the engine hangs for good; on the thread of the watchdog."""
+        self._on_loop(self._renew)
         for bench_id in held:
             self._record(bench_id)
+
+    def recovered(self) -> None:
+        """Show that the engine turns again; on the thread of the watchdog."""
         self._on_loop(self._renew)
 
     def _on_loop(self, function: Callable[[], None]) -> None:

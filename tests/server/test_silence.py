@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -182,22 +182,39 @@ def test_a_bench_that_is_stuck_for_good_asks_for_a_restart_and_does_not_come_bac
     serve: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(watchdog, "STUCK_S", 0.5)
-    with serve(run_workers=0, clock="machine", data=tmp_path) as live:
-        stuck, other = running(live), running(live)
-        for bench in (stuck, other):
-            until((tmp_path / "benches" / f"{bench}.npz").exists)
-        free = stick(live, stuck)
-        try:
+    with ExitStack() as afterwards:
+        with serve(run_workers=0, clock="machine", data=tmp_path) as live:
+            stuck, other = running(live), running(live)
+            for bench in (stuck, other):
+                until((tmp_path / "benches" / f"{bench}.npz").exists)
+            afterwards.callback(stick(live, stuck))  # it hangs until its server has ended
             with live.stream(other) as stream:
                 stream.until_type("status", is_stuck=True)
             assert live.http.get("/health/live").status_code == 503
             until((tmp_path / "benches" / f"{stuck}.hung").exists)
-        finally:
-            free()
     with serve(run_workers=0, clock="machine", data=tmp_path) as live:
         assert live.http.get(f"/api/v1/benches/{stuck}").status_code == 404
         assert live.get(other)["tick"] > 100
         assert live.http.get("/health/live").status_code == 200
+
+
+def test_a_bench_that_moves_again_comes_back_and_the_page_says_so(
+    serve: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(watchdog, "STUCK_S", 0.5)
+    with serve(run_workers=0, clock="machine", data=tmp_path) as live:
+        stuck, still = running(live), live.bench("first-look", paused=True)["id"]
+        renamed = live.http.patch(f"/api/v1/benches/{still}", json={"name": "with PID"})
+        assert renamed.status_code == 200
+        free = stick(live, stuck)
+        with live.stream(still) as stream:
+            stream.until_type("status", is_stuck=True)
+            until((tmp_path / "benches" / f"{stuck}.hung").exists)
+            free()
+            stream.until_type("status", is_stuck=False)
+    with serve(run_workers=0, clock="machine", data=tmp_path) as live:
+        live.until(stuck, lambda one: one.get("tick", 0) > 100)
+        assert live.get(still)["name"] == "with PID"
 
 
 def test_benches_of_students_trip_too_and_their_checkpoints_say_so(live: Live) -> None:

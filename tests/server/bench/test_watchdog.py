@@ -43,12 +43,16 @@ class Heard:
     def __init__(self) -> None:
         self.hangs: list[tuple[list[str], list[str], str]] = []
         self.stuck_benches: list[list[str]] = []
+        self.recoveries = 0
 
     def hung(self, running: Sequence[Workload], held: Sequence[str], why: str) -> None:
         self.hangs.append(([work.id for work in running], list(held), why))
 
     def stuck(self, held: Sequence[str]) -> None:
         self.stuck_benches.append(list(held))
+
+    def recovered(self) -> None:
+        self.recoveries += 1
 
 
 class Told(Activity):
@@ -158,7 +162,7 @@ def test_an_engine_that_moves_again_is_stuck_no_longer(yard: Yard) -> None:
     yard.look(STUCK_S + 1.0)
     assert yard.dog.is_stuck
     yard.look(LOOK_S, sign=lambda: True)
-    assert not yard.dog.is_stuck and not yard.dog.barks
+    assert not yard.dog.is_stuck and not yard.dog.barks and yard.heard.recoveries == 1
 
 
 def test_a_thread_that_has_ended_is_told_at_once(yard: Yard) -> None:
