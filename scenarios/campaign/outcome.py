@@ -18,7 +18,7 @@ from core.kernel import kernel
 from core.loop.score import Scores
 from core.table import Words
 from scenarios.measure.blocks import blocks
-from scenarios.run import Result, run
+from scenarios.run import RunResult, run
 from scenarios.schema import Scenario
 
 EVIDENCE = np.linspace(-8.0, 8.0, 161)
@@ -81,7 +81,7 @@ def outcome(scenario: Scenario, seed: int, on_tick: Callable[[int], None] | None
     return found
 
 
-def outcome_of(result: Result) -> Outcome:
+def outcome_of(result: RunResult) -> Outcome:
     """Return the outcome of a result: the same whether all its outputs were kept or only the outputs of its figures."""
     found = summed(result.scenario, result.board, result.metrics, result.digest, result.trace, result.warnings)
     found.elapsed_s = result.elapsed_s

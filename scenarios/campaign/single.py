@@ -17,7 +17,7 @@ from scenarios.campaign.outcome import Outcome, outcome_of
 from scenarios.campaign.sums import Moments
 from scenarios.campaign.sweep import Sweep
 from scenarios.counterpart import counterpart, replaced
-from scenarios.run import Result
+from scenarios.run import RunResult
 from scenarios.schema import Scenario
 from scenarios.summary import summarise
 
@@ -53,7 +53,7 @@ def compared(scenario: Scenario, seeds: Sequence[int]) -> dict[str, list[Outcome
     return {kind: outcomes([(other, seed) for seed in seeds]) for kind, other in others.items()}
 
 
-def beside(result: Result) -> dict[str, Any]:
+def beside(result: RunResult) -> dict[str, Any]:
     """Return the summary of a result for its use as a counterpart."""
     return summary(result.scenario, [outcome_of(result)], compared(result.scenario, [result.seed]))
 

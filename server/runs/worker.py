@@ -11,7 +11,7 @@ from scenarios.campaign.campaign import Others
 from scenarios.campaign.outcome import Outcome, outcome_of
 from scenarios.campaign.signs import tell
 from scenarios.campaign.single import counterparts, summary
-from scenarios.run import DEFAULT_SAMPLES, Result, build, run
+from scenarios.run import DEFAULT_SAMPLES, RunResult, build, run
 from scenarios.schema import Scenario
 from scenarios.signals import traced
 
@@ -88,7 +88,7 @@ def draw(document: dict[str, Any], seed: int, others: Others) -> tuple[Outcome, 
     return runs[0], {"summary": told, "svg": paint(figure(result), CARD)}
 
 
-def _summary(result: Result, others: Others) -> tuple[list[Outcome], dict[str, Any]]:
+def _summary(result: RunResult, others: Others) -> tuple[list[Outcome], dict[str, Any]]:
     """Return the outcomes of a run, seed by seed, and their summary."""
     rest, *beside = [[Outcome.model_validate_json(text) for text in texts] for texts in others]
     runs = [outcome_of(result), *rest]

@@ -2,9 +2,9 @@
 
 It needs Python 3.11 and numpy; the stream needs the package websockets too.
 
-    from combbench import CombBench
+    from combbench_client import Client
 
-    lab = CombBench("http://127.0.0.1:8000", token="...")
+    lab = Client("http://127.0.0.1:8000", token="...")
     run = lab.run("ch5-seven-step", seed=7)
     trace = lab.trace(run, "plant.displacement")
 """
@@ -48,7 +48,7 @@ class Picture(NamedTuple):
     latest: dict[str, float]
 
 
-class CombBench:
+class Client:
     """A server; the token is read from COMBBENCH_TOKEN unless given."""
 
     def __init__(self, address: str = "http://127.0.0.1:8000", token: str | None = None) -> None:
@@ -103,7 +103,7 @@ class CombBench:
 class Bench:
     """A live bench; a context that closes it at its end."""
 
-    def __init__(self, lab: CombBench, bench_id: str) -> None:
+    def __init__(self, lab: Client, bench_id: str) -> None:
         self.lab, self.id, self.path = lab, bench_id, f"/benches/{bench_id}"
 
     def __enter__(self) -> Bench:
