@@ -42,6 +42,6 @@ def test_a_folder_that_holds_a_campaign_is_not_overwritten(tmp_path: Path) -> No
 
 
 def test_a_campaign_that_is_not_valid_leaves_no_folder(tmp_path: Path) -> None:
-    with pytest.raises(cb.InputError, match="sensor.nothing"):
+    with pytest.raises(cb.InputError, match=r"sensor\.nothing"):
         cb.sweep({**CAMPAIGN, "grid": {"sensor.nothing": [1]}}, folder=tmp_path / "kept")
     assert not (tmp_path / "kept").exists()
