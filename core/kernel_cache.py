@@ -15,7 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 
 
-class Shelf(Protocol):
+class KernelShelf(Protocol):
     """A place for compiled kernels that outlasts the process."""
 
     def get(self, name: str) -> bytes | None:
@@ -25,10 +25,10 @@ class Shelf(Protocol):
         """Keep a kernel."""
 
 
-_shelves: list[Shelf] = []
+_shelves: list[KernelShelf] = []
 
 
-def keep_on(*shelves: Shelf) -> None:
+def keep_on(*shelves: KernelShelf) -> None:
     """Name the places of compiled kernels; without one each process compiles its own."""
     _shelves[:] = shelves
 

@@ -55,13 +55,13 @@ class Field:
     kind: str
     offset: int
     count: int = 0
-    inner: Layout | None = None
+    inner: RecordLayout | None = None
     tail: bool = False
     is_choice: bool = False
 
 
 @dataclass(frozen=True)
-class Layout:
+class RecordLayout:
     """The fields of a record, and the numbers of the fixed ones.
 
     Several tails are vectors of one common length; it is in the last of the fixed numbers.
@@ -130,7 +130,7 @@ class Record:
     record that is assigned is copied.
     """
 
-    layout: ClassVar[Layout] = Layout((), 0)
+    layout: ClassVar[RecordLayout] = RecordLayout((), 0)
 
     def __init__(self, array: Any) -> None:
         self.array: Any = array
@@ -206,7 +206,7 @@ def record_of(hint: Any) -> type[Record] | None:
     return inner if isinstance(inner, type) and issubclass(inner, Record) else None
 
 
-def _laid_out(owner: str, declared: dict[str, tuple[Any, Any]]) -> Layout:
+def _laid_out(owner: str, declared: dict[str, tuple[Any, Any]]) -> RecordLayout:
     """Lay fields out in their order, tails behind all others."""
     fields, tails, at = [], 0, 0
     for name, (hint, many) in declared.items():
@@ -232,7 +232,7 @@ def _laid_out(owner: str, declared: dict[str, tuple[Any, Any]]) -> Layout:
             at += count * (inner.size if inner else 1)
     if tails > 1 and any(field.tail and field.kind == RECORDS for field in fields):
         raise TypeError(f"{owner}: several tails must be vectors")
-    return Layout(tuple(fields), at + (tails > 1))
+    return RecordLayout(tuple(fields), at + (tails > 1))
 
 
 class _Scalar:
@@ -251,7 +251,7 @@ class _Scalar:
 class _Part:
     """Finds the numbers of a vector or a record, and writes over all of them."""
 
-    def __init__(self, layout: Layout, field: Field, kind: type[Record] | None) -> None:
+    def __init__(self, layout: RecordLayout, field: Field, kind: type[Record] | None) -> None:
         self._layout, self._field, self._kind = layout, field, kind
 
     def _slice(self, record: Record) -> slice:

@@ -13,7 +13,7 @@ from core.board.parse import parse
 from core.board.spec import Spec
 from core.device.frequency import Band, response, tolerance_band
 from core.device.geometry import Geometry
-from core.device.spread import Spread, Tolerances, draw, evaluate, sensitivity
+from core.device.spread import DeviceSpread, Tolerances, draw, evaluate, sensitivity
 from core.errors import InputError
 from scenarios.measure.lateral import device_pull_in
 from scenarios.measure.metrics import device_metrics
@@ -108,7 +108,7 @@ def bode_band(spec: Spec, frequency_hz: FloatArray, seed: int) -> Band:
     return Band(frequency_hz, low_db, middle_db, high_db, low_deg, middle_deg, high_deg)
 
 
-def process(spec: Spec, draws: int, seed: int) -> Spread:
+def process(spec: Spec, draws: int, seed: int) -> DeviceSpread:
     """Draw devices from the process: mass, damping, stiffness and force per volt in their environment.
 
     A value that the device states in addition to its drawing varies by the same share as the value from the drawing.
@@ -129,13 +129,13 @@ def process(spec: Spec, draws: int, seed: int) -> Spread:
     omega = np.sqrt(drawn["stiffness_n_m"] / drawn["mass_kg"])
     drawn["f0_hz"] = omega / (2.0 * np.pi)
     drawn["quality_factor"] = omega * drawn["mass_kg"] / drawn["damping_ns_m"]
-    return Spread(spread.drawn, drawn)
+    return DeviceSpread(spread.drawn, drawn)
 
 
-def _shares(geometry: Geometry, draws: int, seed: int) -> Spread:
+def _shares(geometry: Geometry, draws: int, seed: int) -> DeviceSpread:
     """Draw devices from the process, each parameter over its value in the drawing."""
     spread = draw(geometry, Tolerances(), draws, seed)
-    return Spread(spread.drawn, {name: spread.found[name] / value for name, value in evaluate(geometry).items()})
+    return DeviceSpread(spread.drawn, {name: spread.found[name] / value for name, value in evaluate(geometry).items()})
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ class Statistics:
     p99: float
 
     @classmethod
-    def of(cls, spread: Spread, name: str) -> Statistics:
+    def of(cls, spread: DeviceSpread, name: str) -> Statistics:
         """Return the statistics of one parameter."""
         low, middle, high = (spread.percentile(name, share) for share in (1.0, 50.0, 99.0))
         return cls(spread.variation_pct(name), low, middle, high)

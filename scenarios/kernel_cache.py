@@ -14,7 +14,7 @@ from io import BytesIO
 from pathlib import Path
 from zipfile import BadZipFile, ZipFile
 
-from core.kernel_cache import Shelf, keep_on
+from core.kernel_cache import KernelShelf, keep_on
 
 COMPLETE = "complete-"
 """Beginning of the name of the file that marks all kernels of a version as kept."""
@@ -120,7 +120,7 @@ def prepare(*, built: bool = True) -> None:
 
     Without a folder that can be written, what did not come with it is compiled anew at every start.
     """
-    path, shelves = folder(), list[Shelf]()
+    path, shelves = folder(), list[KernelShelf]()
     if path is None:
         logging.getLogger(__name__).warning(
             "no folder for compiled kernels that can be written, and by nobody else; set COMBBENCH_KERNEL_CACHE"

@@ -116,7 +116,7 @@ class Cue(Table):
         return self
 
 
-class Head(Table):
+class LectureHead(Table):
     """A lecture as it is written."""
 
     title: Words = Field(min_length=1, max_length=200)
@@ -154,7 +154,7 @@ class Lecture:
     def __init__(self, id: str, document: dict[str, Any]) -> None:
         self.id = id
         try:
-            self.head = Head.model_validate(document)
+            self.head = LectureHead.model_validate(document)
         except ValidationError as error:
             raise _placed(from_validation(error, {"": ["title", "chapter", "summary", "cue"]})) from None
         if self.head.cues[0].scenario is None:

@@ -25,7 +25,7 @@ from core.signals import Signal
 from scenarios.measure.metrics import device_metrics, measure
 from scenarios.narrator.narrator import Narrator
 from scenarios.narrator.sentence import Sentence
-from scenarios.samples import Samples, Trace
+from scenarios.samples import Samples, TraceSink
 from scenarios.schema import Scenario
 from scenarios.signals import PICTURED, figure_signals, traced
 from scenarios.summary import judge, summarise
@@ -156,7 +156,7 @@ def run(
     figures_only: bool = False,
     everything: bool = False,
     compiled: bool = True,
-    trace: Trace | None = None,
+    trace: TraceSink | None = None,
     on_tick: Callable[[int], None] | None = None,
     law: Law | None = None,
     diagnosers: Mapping[str, Conclusion] = NOTHING,

@@ -20,7 +20,7 @@ PIECE = 4096
 """Samples of each column that are written at once."""
 
 
-class Trace(Protocol):
+class TraceSink(Protocol):
     """Receives the samples of a run during the run."""
 
     def begin(self, board: Board, signals: list[Signal]) -> None:

@@ -35,7 +35,7 @@ compile_by(compile_apart)
 UNREAD = "verdict is not read: it follows from published_value, published_range and fitted"
 
 
-class Head(Table):
+class ScenarioHead(Table):
     """All of a scenario that is not the bench itself; ``verdict`` is not read, earlier files have one."""
 
     schema_: Literal[1] = Field(1, alias="schema")
@@ -61,7 +61,7 @@ class Head(Table):
         return self.comparator.name if self.comparator is not None else NONE
 
 
-HEAD = tuple("schema" if name == "schema_" else name for name in Head.model_fields)
+HEAD = tuple("schema" if name == "schema_" else name for name in ScenarioHead.model_fields)
 
 
 class Scenario:
@@ -95,7 +95,7 @@ class Scenario:
         self._head, known = head, like._head if like is not None else {}
         is_alike = head.keys() == known.keys() and all(says_the_same(value, known[key]) for key, value in head.items())
         try:
-            self.head: Head = like.head if like is not None and is_alike else Head.model_validate(head)
+            self.head: ScenarioHead = like.head if like is not None and is_alike else ScenarioHead.model_validate(head)
         except ValidationError as error:
             raise from_validation(error, {"": (*HEAD, *fields()), "metrics": [*Stretch.model_fields]}) from None
         if self.head.samples is not None and self.head.duration_ms is not None:

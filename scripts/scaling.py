@@ -28,7 +28,7 @@ import pyarrow.parquet as pq
 from scenarios.campaign.batch import outcomes
 from scenarios.campaign.campaign import Campaign
 from scenarios.campaign.outcome import Outcome
-from scenarios.campaign.parts import PART, Parts
+from scenarios.campaign.parts import PART, ParquetParts
 from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
 from scenarios.schema import Scenario
@@ -59,7 +59,7 @@ def carry_out(sweep: Sweep, width: int, **where: Any) -> dict[str, float]:
     folder = Path(tempfile.mkdtemp(prefix="combbench-scaling-"))
     database = Database(folder / "results.sqlite3")
     database.migrate()
-    results, parts = Results(database), Parts(sweep, folder / "runs")
+    results, parts = Results(database), ParquetParts(sweep, folder / "runs")
     seen: list[tuple[float, int]] = []
 
     def progress(done: int, _total: int) -> None:
@@ -171,7 +171,7 @@ def measure_table(rows: int, address: str) -> None:
     folder = Path(tempfile.mkdtemp(prefix="combbench-table-"))
     database = Database(address or folder / "results.sqlite3")
     database.migrate()
-    results, parts = Results(database), Parts(sweep, folder / "runs")
+    results, parts = Results(database), ParquetParts(sweep, folder / "runs")
     try:
         began = time.perf_counter()
         for first in range(0, rows, PART):
@@ -192,7 +192,7 @@ def measure_table(rows: int, address: str) -> None:
             bytes_a_row=size / rows,
             table_bytes_a_row=place.stat().st_size / rows if place.exists() else _postgres_size(database) / rows,
         )
-        measure_reading(sweep, Parts(sweep, folder / "runs"))
+        measure_reading(sweep, ParquetParts(sweep, folder / "runs"))
     finally:
         database.close()
         shutil.rmtree(folder)
@@ -211,7 +211,7 @@ def _postgres_size(database: Database) -> int:
     return int(database.transact(lambda session: session.execute(query).scalar()) or 0)
 
 
-def measure_reading(sweep: Sweep, parts: Parts) -> None:
+def measure_reading(sweep: Sweep, parts: ParquetParts) -> None:
     """Measure the requests of the page, three times each."""
     figure = "control.rms_error_um"
     asked: dict[str, Callable[[], object]] = {

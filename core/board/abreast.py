@@ -26,7 +26,7 @@ from core.board.pattern import (
     numbers,
     unlike,
 )
-from core.board.pending import Queue
+from core.board.pending import PendingQueue
 from core.board.program import EVERY, walk
 from core.board.spec import Spec
 from core.board.wiring import Wiring
@@ -122,7 +122,12 @@ class Abreast:
     """
 
     def __init__(
-        self, pattern: Pattern, specs: Sequence[Spec], pending: Sequence[Queue], columns: Sequence[str], samples: int
+        self,
+        pattern: Pattern,
+        specs: Sequence[Spec],
+        pending: Sequence[PendingQueue],
+        columns: Sequence[str],
+        samples: int,
     ) -> None:
         self._pattern = pattern
         wiring = pattern.board.wiring
@@ -148,7 +153,7 @@ class Abreast:
         self._io = self.boards[0].wiring.io
         self._link()
 
-    def _board(self, lane: int, spec: Spec, queue: Queue) -> Lane:
+    def _board(self, lane: int, spec: Spec, queue: PendingQueue) -> Lane:
         """Return the board of a lane; it takes the numbers that are alike from the board of the lane before."""
         pattern, before = self._pattern, self.boards[-1] if self.boards else self._pattern.board
         p, s, w = self._p[:, lane], self._s[:, lane], self._w[:, lane]

@@ -20,7 +20,7 @@ from core.board.log import Log, LogEntry
 from core.board.lost import EVERY, Lost, lost, next_look
 from core.board.observer import Observer
 from core.board.parse import parse
-from core.board.pending import Pending, Queue
+from core.board.pending import PendingCommand, PendingQueue
 from core.board.rows import Rows
 from core.board.spec import Section, Spec
 from core.board.wiring import Wiring, wire
@@ -71,7 +71,7 @@ class Board:
         self.tick = 0
         self.log = Log()  # a live bench replaces it with its own log
         self.done: list[tuple[int, Command]] = []  # each with the tick at which it took effect
-        self.pending = Queue()
+        self.pending = PendingQueue()
         self.trip: Trip | None = None
         self.lost: Lost | None = None
         self.folds = fold.begin(self.wiring.signals.outputs)
@@ -259,7 +259,7 @@ class Board:
 
     def _wait(self, command: Command, actor: str, tick: int | None, condition: Condition | None) -> LogEntry:
         changes.check(self.spec, command)
-        self.pending.add(Pending(command, actor, tick, condition, self.tick))
+        self.pending.add(PendingCommand(command, actor, tick, condition, self.tick))
         return self.note(actor, "scheduled", f"waiting: {words.describe(command, self.spec.library)}", command=command)
 
     def apply_due(self) -> None:

@@ -22,7 +22,7 @@ from core.format import format_short
 from core.loop.guard import BEYOND_TRAVEL, NOT_FINITE, REASONS
 
 
-class Board(Protocol):
+class ChangeableBoard(Protocol):
     """The board as its commands see it."""
 
     spec: Spec
@@ -57,7 +57,7 @@ def check(spec: Spec, command: Command) -> None:
         live_change(spec, switched(spec, command))
 
 
-def carry_out(board: Board, command: Command) -> tuple[Any, Any]:
+def carry_out(board: ChangeableBoard, command: Command) -> tuple[Any, Any]:
     """Carry out a command at this tick; return the values before it and after it."""
     if isinstance(command, Inject):
         return inject(board, command)
@@ -72,7 +72,7 @@ def carry_out(board: Board, command: Command) -> tuple[Any, Any]:
     return reset_trip(board)
 
 
-def inject(board: Board, command: Inject) -> tuple[Any, Any]:
+def inject(board: ChangeableBoard, command: Inject) -> tuple[Any, Any]:
     """Put a fault on the device from this tick on."""
     params = _fault_params(board.spec, command, board.tick)
     current = board.spec.faults.get(command.fault)
@@ -88,7 +88,7 @@ def inject(board: Board, command: Inject) -> tuple[Any, Any]:
     return old, new
 
 
-def heal(board: Board, command: Heal) -> tuple[Any, Any]:
+def heal(board: ChangeableBoard, command: Heal) -> tuple[Any, Any]:
     """Take faults away at this tick."""
     names = _names(board.spec, command)
     if command.heal == "all":
@@ -102,14 +102,14 @@ def heal(board: Board, command: Heal) -> tuple[Any, Any]:
     return old, None
 
 
-def set_values(board: Board, values: dict[str, Any]) -> tuple[Any, Any]:
+def set_values(board: ChangeableBoard, values: dict[str, Any]) -> tuple[Any, Any]:
     """Change parameters by path, all in this tick."""
     spec, old, new = live_change(board.spec, values)
     _change(board, spec)
     return old, new
 
 
-def switch(board: Board, command: Switch) -> tuple[Any, Any]:
+def switch(board: ChangeableBoard, command: Switch) -> tuple[Any, Any]:
     """Give the drive of its slot to another controller."""
     values = switched(board.spec, command)
     ((path, name),) = values.items()
@@ -137,7 +137,7 @@ def switched(spec: Spec, command: Switch) -> dict[str, Any]:
     return {path: block.name}
 
 
-def disengage(board: Board) -> None:
+def disengage(board: ChangeableBoard) -> None:
     """Take the voltage off, as a trip does."""
     for instance in board.wiring.instances:
         if instance.prefix.split(".")[0] == "drive":
@@ -145,7 +145,7 @@ def disengage(board: Board) -> None:
                 board.wiring.w[board.wiring.index[f"{instance.prefix}.{port.name}"]] = 0.0
 
 
-def make_safe(board: Board, reason: str) -> tuple[Any, Any]:
+def make_safe(board: ChangeableBoard, reason: str) -> tuple[Any, Any]:
     """Trip the board at this tick for a reason that no signal shows."""
     if board.trip is not None:
         raise InputError("the board has tripped already", "make_safe", code="conflict")
@@ -154,7 +154,7 @@ def make_safe(board: Board, reason: str) -> tuple[Any, Any]:
     return None, board.trip.model_dump()
 
 
-def cause(board: Board) -> tuple[str, str]:
+def cause(board: ChangeableBoard) -> tuple[str, str]:
     """Return why the board stopped, in words, and the signal that says so."""
     axes = board.spec.axes
     axis = next((axis for axis in axes if board.value(f"guard.{axis}.trip") != 0.0), "")
@@ -170,7 +170,7 @@ def cause(board: Board) -> tuple[str, str]:
     return text, signal
 
 
-def reset_trip(board: Board) -> tuple[Any, Any]:
+def reset_trip(board: ChangeableBoard) -> tuple[Any, Any]:
     """Leave the tripped state: every block starts anew, time and faults continue."""
     if board.trip is None:
         raise InputError("the board has not tripped", "reset_trip", code="conflict")
@@ -223,7 +223,7 @@ def _own_parameters(params: type[BlockParams]) -> list[str]:
     return [name for name in params.model_fields if name not in FaultParams.model_fields]
 
 
-def _change(board: Board, spec: Spec) -> None:
+def _change(board: ChangeableBoard, spec: Spec) -> None:
     """Put another bench of the same signals on the board; blocks that are alike keep their states."""
     if not change(board.wiring, board.spec, spec):
         board.wiring = _exchanged(board.wiring, spec)

@@ -13,10 +13,10 @@ from core.board.board import Board, Checkpoint
 from core.board.commands import Command, ResetTrip, Switch
 from core.board.document import Document
 from core.board.log import LogEntry
-from core.board.outside import Asked, Conclusion, Law, Observation, Sample
+from core.board.outside import Conclusion, Law, Observation, OutsideBlock, Sample
 from core.board.parse import changed
 from core.board.spec import Spec
-from core.control.external import External
+from core.control.external import ExternalController
 from core.diagnose.hypothesis import hypotheses_of, names_of
 from core.errors import InputError
 from core.identify.identifier import PHYSICAL
@@ -61,17 +61,21 @@ class Hosted(Board):
         identifiers: Mapping[str, Conclusion] = NOTHING,
         compiled: bool = True,
     ) -> None:
-        values: Document = {"controller.kind": External.name, f"controllers.{External.name}": {}} if law else {}
+        values: Document = (
+            {"controller.kind": ExternalController.name, f"controllers.{ExternalController.name}": {}} if law else {}
+        )
         for key, given in (("diagnosers", diagnosers), ("identifiers", identifiers)):
             if given:
                 values[key] = {**bench.document.get(key, {}), **{name: _table(bench, key, name) for name in given}}
-        spec, self._asked = changed(bench, values), list[Asked]()
+        spec, self._asked = changed(bench, values), list[OutsideBlock]()
         for name, ask in identifiers.items():
-            self._asked.append(Asked(name, Observation, ask, len(PHYSICAL), f"{', '.join(PHYSICAL)} over nominal"))
+            self._asked.append(
+                OutsideBlock(name, Observation, ask, len(PHYSICAL), f"{', '.join(PHYSICAL)} over nominal")
+            )
         for name, ask in diagnosers.items():
             count = len(names_of(spec.diagnosers[name].params))
-            self._asked.append(Asked(name, Observation, ask, count, f"{count} numbers, {OF_HYPOTHESES}"))
-        self._law = Asked(External.name, Sample, law, 1, "one number, the voltage") if law else None
+            self._asked.append(OutsideBlock(name, Observation, ask, count, f"{count} numbers, {OF_HYPOTHESES}"))
+        self._law = OutsideBlock(ExternalController.name, Sample, law, 1, "one number, the voltage") if law else None
         self._asked += [self._law] if self._law else []
         self._begun = -1
         super().__init__(spec, compiled=compiled)
@@ -123,7 +127,7 @@ class Hosted(Board):
             if one is not self._asked[-1]:
                 self._ask(one, tick)
 
-    def _ask(self, one: Asked, tick: int) -> None:
+    def _ask(self, one: OutsideBlock, tick: int) -> None:
         """Ask for a row whose turn it is; a voltage that is not finite trips the board at this tick."""
         if tick % one.every == 0:
             one.ask(one.sample(tick, self.wiring.w))
@@ -177,10 +181,10 @@ def _table(bench: Spec, key: str, name: str) -> Document:
     """Return the table of a block from outside, with interval and hypotheses of the bench's block of the same name."""
     section = getattr(bench, key).get(name)
     if section is None:
-        return {"kind": External.name}
+        return {"kind": ExternalController.name}
     hypotheses = [one.model_dump(exclude_defaults=True) for one in hypotheses_of(section.params)]
     return {
-        "kind": External.name,
+        "kind": ExternalController.name,
         "every": section.every,
         **({"hypotheses": hypotheses} if hypotheses and key == "diagnosers" else {}),
     }

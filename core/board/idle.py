@@ -6,7 +6,7 @@ import re
 
 from core.board.board import Board
 from core.board.ensemble import Ensemble
-from core.board.pending import Queue
+from core.board.pending import PendingQueue
 from core.board.wiring import needed
 
 
@@ -29,7 +29,7 @@ def looking_on(board: Board) -> set[str]:
     )
 
 
-def idle_controllers(board: Board, pending: Queue) -> set[str]:
+def idle_controllers(board: Board, pending: PendingQueue) -> set[str]:
     """Return the controllers that drive neither now nor by a command that waits, and that nothing else reads."""
     spec, wiring = board.spec, board.wiring
     idle = {*spec.controllers} - {*spec.driving.values()} - _named(pending)
@@ -41,6 +41,6 @@ def idle_controllers(board: Board, pending: Queue) -> set[str]:
     return idle
 
 
-def _named(pending: Queue) -> set[str]:
+def _named(pending: PendingQueue) -> set[str]:
     """Return all words of the commands that wait, their conditions included."""
     return {word for entry in pending for word in re.findall(r"\w+", str(entry.command.document()))}

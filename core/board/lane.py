@@ -11,7 +11,7 @@ from core.board.fold import Words
 from core.board.instances import Instance
 from core.board.log import Log, LogEntry
 from core.board.pattern import numbers, unlike
-from core.board.pending import Queue
+from core.board.pending import PendingQueue
 from core.board.spec import Spec
 from core.board.wiring import Wiring
 from core.loop.score import Scores
@@ -38,7 +38,9 @@ class Lane(Board):
         The lane it follows.
     """
 
-    def __init__(self, spec: Spec, wiring: Wiring, folds: Words, pending: Queue, leader: Lane | None = None) -> None:
+    def __init__(
+        self, spec: Spec, wiring: Wiring, folds: Words, pending: PendingQueue, leader: Lane | None = None
+    ) -> None:
         self.spec, self.wiring, self.folds, self.pending = spec, wiring, folds, pending
         self.base = spec.document
         self.compiled, self.tick, self.trip, self.lost = True, 0, None, None
@@ -57,7 +59,7 @@ class Lane(Board):
             self._scores = self.tick, super().scores()
         return self._scores[1]
 
-    def leads(self, pending: Queue) -> bool:
+    def leads(self, pending: PendingQueue) -> bool:
         """Say whether another lane has the same waiting commands as this lane, all of them for faults."""
         return all(
             one is not None

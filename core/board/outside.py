@@ -82,7 +82,7 @@ CLOCK = 4
 """Fields of a sample before its signals."""
 
 
-class Asked:
+class OutsideBlock:
     """A block whose numbers come from outside: it is asked before its step, which passes the answer on.
 
     Parameters

@@ -28,7 +28,7 @@ SILENT = ("id", "title", "summary", "claim", "source", "verdict", "expect", "pri
 """Parts of a scenario in which a word names no block."""
 
 
-class Mark(Table):
+class PackageEntry(Table):
     """The entry of a package in a scenario."""
 
     version: str = Field(pattern=r"^[0-9A-Za-z.!+_-]{1,64}$")
@@ -66,7 +66,7 @@ class Package:
     @property
     def mark(self) -> Document:
         """The entry of this package in a scenario."""
-        return Mark(version=self.version, source=self.source).model_dump()
+        return PackageEntry(version=self.version, source=self.source).model_dump()
 
 
 @cache
@@ -108,9 +108,9 @@ def _check(table: Document) -> None:
             raise InputError("must be the name of a package, of small letters, digits and -", f"{TABLE}.{short(name)}")
         field = f"{TABLE}.{name}"
         try:
-            told = Mark.model_validate(mark)
+            told = PackageEntry.model_validate(mark)
         except ValidationError as error:
-            raise from_validation(error, {"": [*Mark.model_fields]}).under(field) from None
+            raise from_validation(error, {"": [*PackageEntry.model_fields]}).under(field) from None
         package, version = packages().get(name), told.version
         if package is None:
             raise InputError("is not installed here", field, f"this scenario was made with its version {version}")

@@ -24,7 +24,7 @@ from core.board.document import (
 from core.board.fitting import driving, refuse_what_does_not_fit, suited
 from core.board.instances import instances
 from core.board.library import IDENTIFIER, Library, library_of
-from core.board.spec import OF_CONTEXT, Frame, Section, Spec, fields
+from core.board.spec import OF_CONTEXT, BoardSettings, Section, Spec, fields
 from core.device.catalogue import device as build_device
 from core.device.device import Device
 from core.errors import InputError, from_validation, short
@@ -246,9 +246,9 @@ def _named_apart(spec: Spec) -> None:
             raise InputError(text, f"{key}.{name}", "choose another name")
 
 
-def _frame(values: Document) -> Frame:
+def _frame(values: Document) -> BoardSettings:
     try:
-        return Frame.model_validate(values)
+        return BoardSettings.model_validate(values)
     except ValidationError as error:
         raise from_validation(error, {"": fields()}) from None
 

@@ -15,7 +15,7 @@ from core.board.idle import leave_out_idle
 from core.board.instances import Instance
 from core.board.program import P_OFFSET
 from core.board.spec import Spec
-from core.record import Layout
+from core.record import RecordLayout
 
 FACTS = [fact.name for fact in fields(Context)]
 """The facts that blocks may know of a bench."""
@@ -70,7 +70,7 @@ class Pattern:
         return np.array(found, dtype=np.int64)
 
 
-def _choices_of(layout: Layout) -> list[int]:
+def _choices_of(layout: RecordLayout) -> list[int]:
     """Return the places of the choices in a record, also in its inner records."""
     found = [field.offset for field in layout.fields if field.is_choice]
     for field in layout.fields:

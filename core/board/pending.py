@@ -17,7 +17,7 @@ from core.board.document import Document
 
 
 @dataclass(eq=False)
-class Pending:
+class PendingCommand:
     """A command that waits for its moment: a tick, or a condition watched from a tick on.
 
     ``number`` grows in the order in which commands have begun to wait.
@@ -36,17 +36,17 @@ class Pending:
         return self.command.at(self.since if self.tick is None else self.tick, when).document()
 
 
-class Queue:
+class PendingQueue:
     """The waiting commands in the order of their ticks; commands with a watched condition come last."""
 
     def __init__(self) -> None:
-        self._entries: list[Pending] = []
+        self._entries: list[PendingCommand] = []
         self._asked = 0
 
     def __len__(self) -> int:
         return len(self._entries)
 
-    def __iter__(self) -> Iterator[Pending]:
+    def __iter__(self) -> Iterator[PendingCommand]:
         return iter(self._entries)
 
     @property
@@ -55,7 +55,7 @@ class Queue:
         return self._entries[0].tick if self._entries else None
 
     @property
-    def as_asked(self) -> list[Pending]:
+    def as_asked(self) -> list[PendingCommand]:
         """The entries in the order in which they began to wait; entries of one tick take effect in this order."""
         return _as_asked(self._entries)
 
@@ -65,29 +65,29 @@ class Queue:
         return self._asked
 
     @classmethod
-    def of(cls, entries: Iterable[Pending], asked: int) -> Queue:
+    def of(cls, entries: Iterable[PendingCommand], asked: int) -> PendingQueue:
         """Return a queue in which these wait, as they did in another."""
         queue = cls()
         queue._entries, queue._asked = sorted(entries, key=_moment), asked
         return queue
 
-    def copy(self) -> Queue:
+    def copy(self) -> PendingQueue:
         """Return a queue in which the same commands wait for the same ticks, for another board."""
-        queue = Queue()
+        queue = PendingQueue()
         queue._entries, queue._asked = [*self._entries], self._asked  # only an entry with a condition ever changes
         return queue
 
-    def add(self, entry: Pending) -> None:
+    def add(self, entry: PendingCommand) -> None:
         """Let a command wait."""
         self._asked += 1
         entry.number = self._asked
         insort(self._entries, entry, key=_moment)
 
-    def remove(self, entry: Pending) -> None:
+    def remove(self, entry: PendingCommand) -> None:
         """Let a command wait no more."""
         self._entries.remove(entry)
 
-    def take_due(self, tick: int) -> list[Pending]:
+    def take_due(self, tick: int) -> list[PendingCommand]:
         """Take out the entries due at a tick; an entry with a condition stays, and is watched from then on."""
         count = bisect_right(self._entries, (float(tick), math.inf), key=_moment)
         due, self._entries = _as_asked(self._entries[:count]), self._entries[count:]
@@ -120,14 +120,14 @@ class Queue:
         """Remove all entries."""
         self._entries.clear()
 
-    def _watched(self) -> list[Pending]:
+    def _watched(self) -> list[PendingCommand]:
         return list(takewhile(lambda entry: entry.tick is None, reversed(self._entries)))[::-1]
 
 
-def _moment(entry: Pending) -> tuple[float, float]:
+def _moment(entry: PendingCommand) -> tuple[float, float]:
     """Return the sort key of an entry in the queue."""
     return (math.inf if entry.tick is None else entry.tick), entry.number
 
 
-def _as_asked(entries: Iterable[Pending]) -> list[Pending]:
+def _as_asked(entries: Iterable[PendingCommand]) -> list[PendingCommand]:
     return sorted(entries, key=lambda entry: entry.number)

@@ -41,7 +41,7 @@ MOST_SEED = 2**53
 """Largest seed: whole in every floating-point number it passes through."""
 
 
-class Frame(Table):
+class BoardSettings(Table):
     """The numbers of a bench that belong to no block."""
 
     sample_rate_khz: float = Field(100.0, ge=0.1, le=1e5, description="ticks per ms of device time")
@@ -54,7 +54,7 @@ class Frame(Table):
 
 def fields() -> tuple[str, ...]:
     """Return the keys a bench may have."""
-    return (*Frame.model_fields, *sections())
+    return (*BoardSettings.model_fields, *sections())
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class Spec:
     """
 
     document: Document
-    frame: Frame
+    frame: BoardSettings
     device: Device
     environment: Section
     plant: Section

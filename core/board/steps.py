@@ -7,7 +7,7 @@ from core.board.wiring import Wiring
 from core.own.apart import compiled_apart
 from core.ports import INPUT, Port
 from core.wall import wall
-from core.wall.crossing import Behind, Sizes
+from core.wall.crossing import PortSignal, Sizes
 
 
 def address(wiring: Wiring, row: int, width: int = 1) -> int:
@@ -24,9 +24,9 @@ def _behind(wiring: Wiring, row: int, width: int) -> int:
     return wall.address(compiled_apart(instance.block), sizes, width)
 
 
-def _seen(port: Port, size: int) -> Behind:
+def _seen(port: Port, size: int) -> PortSignal:
     """Return the numbers that a step sees behind a port; a fault writes to signals it reads, maybe by two ports."""
     if port.kind != INPUT:
-        return Behind(port.name, size, True)
+        return PortSignal(port.name, size, True)
     changes = port.source.startswith("effects.")
-    return Behind(port.source if changes else port.name, 1, changes)
+    return PortSignal(port.source if changes else port.name, 1, changes)

@@ -19,7 +19,7 @@ from core.board.condition import parse_condition
 from core.board.document import Document
 from core.board.ensemble import Ensemble, make
 from core.board.lost import Lost
-from core.board.pending import Pending, Queue
+from core.board.pending import PendingCommand, PendingQueue
 from core.errors import InputError
 
 Arrays = Mapping[str, NDArray[Any]]
@@ -101,7 +101,7 @@ def _go_on(board: Board, document: Document, arrays: Arrays) -> None:
     board.tick, board.used = document["tick"], set(document["used"])
     board.trip = Trip.model_validate(document["trip"]) if document["trip"] is not None else None
     board.lost = Lost(*document["lost"]) if document.get("lost") else None
-    board.pending = Queue.of([_entry(entry, board) for entry in document["pending"]], document["asked"])
+    board.pending = PendingQueue.of([_entry(entry, board) for entry in document["pending"]], document["asked"])
     for name in NUMBERS:
         _fill(getattr(board.wiring, name), arrays[name])
     _fill(board.folds, arrays["folds"])
@@ -114,7 +114,7 @@ def _fill(numbers: NDArray[Any], kept: NDArray[Any]) -> None:
     np.copyto(numbers, kept)
 
 
-def _waiting(entry: Pending) -> Document:
+def _waiting(entry: PendingCommand) -> Document:
     return {
         "command": entry.command.document(),
         "actor": entry.actor,
@@ -125,7 +125,7 @@ def _waiting(entry: Pending) -> Document:
     }
 
 
-def _entry(kept: Document, board: Board) -> Pending:
+def _entry(kept: Document, board: Board) -> PendingCommand:
     command = parse_command(kept["command"])
     watched = parse_condition(command.when or "", board.wiring.signals.names) if kept["watched"] else None
-    return Pending(command, kept["actor"], kept["tick"], watched, kept["since"], kept["number"])
+    return PendingCommand(command, kept["actor"], kept["tick"], watched, kept["since"], kept["number"])

@@ -39,7 +39,7 @@ class Deed(NamedTuple):
             board.pending.remove(entry)
 
 
-class Mark(NamedTuple):
+class Keyframe(NamedTuple):
     """A checkpoint on the track.
 
     ``deeds`` counts those done before it. A fixed mark stays, because no deed says how the board came to be so.
@@ -92,7 +92,7 @@ class Track:
 
     def __init__(self, board: Board, most_bytes: int) -> None:
         self._most = max(FEWEST, most_bytes // board.nbytes)
-        self._marks: list[Mark] = []
+        self._marks: list[Keyframe] = []
         self._deeds: list[Deed] = []
         self._due = 0
         self.mark(board, is_fixed=True)
@@ -121,7 +121,7 @@ class Track:
         """Take a checkpoint, fixed if something was done to the board that is no deed."""
         if not is_fixed and self._marks[-1].tick == board.tick:
             return
-        self._marks.append(Mark(board.tick, len(self._deeds), board.checkpoint(), is_fixed))
+        self._marks.append(Keyframe(board.tick, len(self._deeds), board.checkpoint(), is_fixed))
         self._due = board.tick - board.tick % EVERY + EVERY
         if len(self._marks) > self._most:
             del self._marks[self._least()]
@@ -203,7 +203,7 @@ class Track:
         return int(np.argmin(share)) + 1 if np.isfinite(share).any() else 0
 
 
-def _tick(one: Mark | Deed) -> int:
+def _tick(one: Keyframe | Deed) -> int:
     """Return where something is on the track."""
     return one.tick
 

@@ -14,7 +14,7 @@ from typing import Any
 
 from llvmlite import ir
 
-from core.compile.numbers import BOOL, DOUBLE, FLOAT, I64, INT, UINT, Arithmetic, Number, Unsupported
+from core.compile.numbers import BOOL, DOUBLE, FLOAT, I64, INT, UINT, Arithmetic, CompiledNumber, Unsupported
 
 SINGLE, BYTE = ir.FloatType(), ir.IntType(8)
 ELEMENTS: dict[str, tuple[Any, int]] = {
@@ -90,14 +90,14 @@ class Arrays:
             return self._arithmetic.plus(length, index)
         return index
 
-    def read(self, place: ArrayPlace) -> Number:
+    def read(self, place: ArrayPlace) -> CompiledNumber:
         """Return an element."""
         kind, value = ELEMENTS[place.element][1], self._build.load(place.at)
         if place.element == "float32":
             value = self._build.fpext(value, DOUBLE)
         elif kind == BOOL:
             value = self._build.trunc(value, ir.IntType(1))
-        return Number(value, kind)
+        return CompiledNumber(value, kind)
 
     def write(self, place: ArrayPlace, value: Any) -> None:
         """Write an element."""
@@ -111,7 +111,7 @@ class Arrays:
     def fill(self, view: ArrayView, value: Any) -> None:
         """Write a number to all elements, or the elements of another array of the same lengths."""
         with counted(self._build, self.whole(view.lengths[0])) as k:
-            index = Number(k, INT)
+            index = CompiledNumber(k, INT)
             target = self.part(view, [index])
             source = self.part(value, [index]) if isinstance(value, ArrayView) else value
             if isinstance(target, ArrayView):

@@ -19,7 +19,7 @@ from llvmlite import ir
 from core.compile.arrays import ELEMENTS, ArrayView, contiguous
 from core.compile.code import Piece, compiler, digest, settled
 from core.compile.machine import loaded
-from core.compile.numbers import BOOL, DOUBLE, FLOAT, I64, INT, NAME, UINT, Number, Unsupported, is_number
+from core.compile.numbers import BOOL, DOUBLE, FLOAT, I64, INT, NAME, UINT, CompiledNumber, Unsupported, is_number
 from core.compile.places import RecordView
 from core.compile.translate import Translation
 from core.kernel_cache import key
@@ -203,11 +203,11 @@ class _Interface:
         if isinstance(kind, type) and issubclass(kind, Record):  # the address of its numbers
             return RecordView(build.inttoptr(self("PyLong_AsLongLong", given), DOUBLE.as_pointer()), None, kind.layout)
         if kind == "float64":
-            return Number(self("PyFloat_AsDouble", given), FLOAT)
+            return CompiledNumber(self("PyFloat_AsDouble", given), FLOAT)
         if kind == "bool":
             truth = self("PyObject_IsTrue", given)
-            return Number(build.icmp_signed("!=", truth, ir.Constant(truth.type, 0)), BOOL)
-        return Number(self("PyLong_AsLongLong", given), INT)
+            return CompiledNumber(build.icmp_signed("!=", truth, ir.Constant(truth.type, 0)), BOOL)
+        return CompiledNumber(self("PyLong_AsLongLong", given), INT)
 
     def stop_at_errors(self, kinds: Sequence[Any]) -> None:
         """Raise the error of a conversion, such as a number that is too large."""
@@ -219,15 +219,15 @@ class _Interface:
     def _array(self, given: Any, kind: tuple[str, int, bool], translation: Translation) -> ArrayView:
         build, (element, dimensions, is_dense) = self._build, kind
 
-        def numbers(field: int) -> list[Number]:
+        def numbers(field: int) -> list[CompiledNumber]:
             where = self.at(given, field, I64.as_pointer())
-            return [Number(build.load(build.gep(where, [ir.Constant(I64, i)])), INT) for i in range(dimensions)]
+            return [CompiledNumber(build.load(build.gep(where, [ir.Constant(I64, i)])), INT) for i in range(dimensions)]
 
         lengths = tuple(numbers(LENGTHS))
         strides = contiguous(translation.arithmetic, lengths)
         if not is_dense:
             size = ir.Constant(I64, np.dtype(element).itemsize)
-            strides = tuple(Number(build.sdiv(stride.value, size), INT) for stride in numbers(STRIDES))
+            strides = tuple(CompiledNumber(build.sdiv(stride.value, size), INT) for stride in numbers(STRIDES))
         return ArrayView(self.at(given, DATA, ELEMENTS[element][0].as_pointer()), element, lengths, strides)
 
     def given(self, result: Any, none: Any, translation: Translation) -> Any:

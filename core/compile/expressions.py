@@ -12,7 +12,7 @@ import numpy as np
 from llvmlite import ir
 
 from core.compile.arrays import ArrayPlace, ArrayView, Bound
-from core.compile.numbers import DOUBLE, FLOAT, I64, INT, SIGNS, Number, Unsupported, is_number
+from core.compile.numbers import DOUBLE, FLOAT, I64, INT, SIGNS, CompiledNumber, Unsupported, is_number
 from core.compile.places import Place, PortsView, RecordsView, RecordView, VectorView
 from core.compile.variables import Variables
 
@@ -67,7 +67,7 @@ class Expressions(Variables):
             return self.memory.attribute(owner, node.attr, self.mask)
         if isinstance(owner, ArrayView) and node.attr in ("shape", "view"):
             return owner.lengths if node.attr == "shape" else Bound(owner)
-        if isinstance(owner, Number | Place | ArrayView):
+        if isinstance(owner, CompiledNumber | Place | ArrayView):
             raise Unsupported(f"an attribute {node.attr}")
         return getattr(owner, node.attr)
 
@@ -103,7 +103,7 @@ class Expressions(Variables):
             held = ir.GlobalVariable(self.builder.module, kind, name)
             held.initializer, held.global_constant = ir.Constant(kind, numbers.astype(float).tolist()), True
             held.linkage = "private"
-        return Number(self.builder.load(self.builder.gep(held, [ir.Constant(I64, 0), at.value])), FLOAT)
+        return CompiledNumber(self.builder.load(self.builder.gep(held, [ir.Constant(I64, 0), at.value])), FLOAT)
 
     def _binop(self, node: ast.BinOp) -> Any:
         return self.arithmetic.binary(type(node.op), self.value(node.left), self.value(node.right))
@@ -113,7 +113,11 @@ class Expressions(Variables):
         if isinstance(node.op, ast.USub):
             return self.arithmetic.negative(value)
         if isinstance(node.op, ast.Not):
-            return self.arithmetic.opposite(self.arithmetic.truth(value)) if isinstance(value, Number) else not value
+            return (
+                self.arithmetic.opposite(self.arithmetic.truth(value))
+                if isinstance(value, CompiledNumber)
+                else not value
+            )
         raise Unsupported(f"a sign {type(node.op).__name__}")
 
     def _compare(self, node: ast.Compare) -> Any:
@@ -130,7 +134,7 @@ class Expressions(Variables):
     def _boolop(self, node: ast.BoolOp) -> Any:
         found = self.value(node.values[0])
         for part in node.values[1:]:
-            if not isinstance(found, Number):  # known now, so the rest may not even be meant
+            if not isinstance(found, CompiledNumber):  # known now, so the rest may not even be meant
                 if bool(found) is isinstance(node.op, ast.Or):
                     return found
                 found = self.value(part)
@@ -143,14 +147,16 @@ class Expressions(Variables):
                     found = self._joined(node.op, found, self._under(open_, part))
         return found
 
-    def _truth(self, node: ast.expr) -> Number:
+    def _truth(self, node: ast.expr) -> CompiledNumber:
         return self.arithmetic.truth(self.value(node))
 
-    def _branches(self, condition: Number, *parts: ast.expr) -> bool:
+    def _branches(self, condition: CompiledNumber, *parts: ast.expr) -> bool:
         """Say whether parts of an expression are computed only where a condition holds, by a branch of the code."""
         return not condition.is_lanes and any(isinstance(one, NEEDED) for part in parts for one in ast.walk(part))
 
-    def _chosen(self, condition: Number, yes: Callable[[], Any], no: Number | Callable[[], Any]) -> Number:
+    def _chosen(
+        self, condition: CompiledNumber, yes: Callable[[], Any], no: CompiledNumber | Callable[[], Any]
+    ) -> CompiledNumber:
         """Return the first or the second number; the code computes only this one."""
         build = self.builder
         ways, behind = (build.append_basic_block(), build.append_basic_block()), build.append_basic_block()
@@ -158,7 +164,7 @@ class Expressions(Variables):
         found, ends = [], []
         for way, make in zip(ways, (yes, no), strict=True):
             build.position_at_end(way)
-            value = make if isinstance(make, Number) else make()
+            value = make if isinstance(make, CompiledNumber) else make()
             if not is_number(value):
                 raise Unsupported("a choice between anything but numbers")
             found.append(self.arithmetic.number(value))
@@ -175,9 +181,9 @@ class Expressions(Variables):
         joined = build.phi(slot_type)
         for value, end in zip(values, ends, strict=True):
             joined.add_incoming(value, end)
-        return Number(joined, kind)
+        return CompiledNumber(joined, kind)
 
-    def _under(self, condition: Number, node: ast.expr) -> Any:
+    def _under(self, condition: CompiledNumber, node: ast.expr) -> Any:
         """Translate an expression that only counts where a condition holds."""
         outer = self.mask
         self.mask = self.within(outer, condition) if condition.is_lanes else outer
@@ -191,7 +197,7 @@ class Expressions(Variables):
 
     def _ifexp(self, node: ast.IfExp) -> Any:
         condition = self.value(node.test)
-        if not isinstance(condition, Number):
+        if not isinstance(condition, CompiledNumber):
             return self.value(node.body if condition else node.orelse)
         condition = self.arithmetic.truth(condition)
         if self._branches(condition, node.body, node.orelse):

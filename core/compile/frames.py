@@ -12,7 +12,7 @@ from functools import cache
 from types import CodeType, FunctionType
 from typing import Any
 
-from core.compile.numbers import Number, Unsupported
+from core.compile.numbers import CompiledNumber, Unsupported
 
 AGAIN = "end this process and start it again"
 Kinds = dict[str, tuple[int, bool]]
@@ -66,7 +66,7 @@ def returns(tree: ast.AST) -> int:
     return sum(isinstance(node, ast.Return) for node in ast.walk(tree))
 
 
-Masks = tuple[Number | None, Number | None]
+Masks = tuple[CompiledNumber | None, CompiledNumber | None]
 
 
 def says(statements: Sequence[ast.AST], kind: type[ast.AST]) -> bool:
@@ -75,7 +75,7 @@ def says(statements: Sequence[ast.AST], kind: type[ast.AST]) -> bool:
 
 
 @dataclass
-class Loop:
+class LoopFrame:
     """A loop: its next round and its end, the branches around it, the boards that have left or skip a round."""
 
     again: Any
@@ -87,17 +87,17 @@ class Loop:
 
 
 @dataclass
-class Frame:
+class CallFrame:
     """One call: names with their values, the boards that have returned, the mask within the call."""
 
     function: FunctionType
     path: str
     names: dict[str, Any]
     exit: Any
-    mask: Number | None = None
+    mask: CompiledNumber | None = None
     returned: Any = None
     result: Any = None
     calls: int = 0
     branches: int = 0
     variables: dict[str, Any] = field(default_factory=dict)
-    loops: list[Loop] = field(default_factory=list)
+    loops: list[LoopFrame] = field(default_factory=list)

@@ -12,11 +12,11 @@ from llvmlite import ir
 
 from core.compile.arrays import Arrays, ArrayView
 from core.compile.instructions import address_of, bits_of, call, number_of, whole
-from core.compile.numbers import FLOAT, I64, INT, UINT, Arithmetic, Number, Unsupported
+from core.compile.numbers import FLOAT, I64, INT, UINT, Arithmetic, CompiledNumber, Unsupported
 
 
 def _absolute(a: Arithmetic, value: Any) -> Any:
-    if not isinstance(value, Number):
+    if not isinstance(value, CompiledNumber):
         return abs(value)
     if value.kind == FLOAT:
         return a.intrinsic("fabs", value)
@@ -29,7 +29,9 @@ def _extreme(sign: str) -> Callable[..., Any]:
             # the first of two that are alike, as in Python
             is_beyond = a.compare(sign, other, first)
             first = (
-                a.select(is_beyond, other, first) if isinstance(is_beyond, Number) else (other if is_beyond else first)
+                a.select(is_beyond, other, first)
+                if isinstance(is_beyond, CompiledNumber)
+                else (other if is_beyond else first)
             )
         return first
 
@@ -38,7 +40,7 @@ def _extreme(sign: str) -> Callable[..., Any]:
 
 def _as(kind: int, plain: Any) -> Callable[..., Any]:
     def convert(a: Arithmetic, value: Any) -> Any:
-        if isinstance(value, Number):
+        if isinstance(value, CompiledNumber):
             return a.truth(value) if plain is bool else a.as_kind(value, kind)
         return plain(value)
 
@@ -50,17 +52,17 @@ def _finite(a: Arithmetic, value: Any) -> Any:
 
 
 def _floor(a: Arithmetic, value: Any) -> Any:
-    return a.as_kind(a.intrinsic("floor", value), INT) if isinstance(value, Number) else math.floor(value)
+    return a.as_kind(a.intrinsic("floor", value), INT) if isinstance(value, CompiledNumber) else math.floor(value)
 
 
 def _bits(a: Arithmetic, value: Any) -> Any:
     number = a.as_kind(value, FLOAT)
-    return Number(a.builder.bitcast(number.value, a.type_of(INT, is_lanes=number.is_lanes)), INT)
+    return CompiledNumber(a.builder.bitcast(number.value, a.type_of(INT, is_lanes=number.is_lanes)), INT)
 
 
 def _from_bits(a: Arithmetic, value: Any) -> Any:
     number = a.as_kind(value, INT)
-    return Number(a.builder.bitcast(number.value, a.type_of(FLOAT, is_lanes=number.is_lanes)), FLOAT)
+    return CompiledNumber(a.builder.bitcast(number.value, a.type_of(FLOAT, is_lanes=number.is_lanes)), FLOAT)
 
 
 def _whole(a: Arithmetic, n: Any) -> Any:
@@ -70,7 +72,7 @@ def _whole(a: Arithmetic, n: Any) -> Any:
 
 def _single(a: Arithmetic, value: Any) -> Any:
     number, kind = a.as_kind(value, FLOAT), ir.FloatType()
-    return Number(a.builder.fpext(a.builder.fptrunc(number.value, kind), number.value.type), FLOAT)
+    return CompiledNumber(a.builder.fpext(a.builder.fptrunc(number.value, kind), number.value.type), FLOAT)
 
 
 def _length(a: Arithmetic, value: Any) -> Any:
@@ -80,7 +82,7 @@ def _length(a: Arithmetic, value: Any) -> Any:
 def _address(a: Arithmetic, view: Any) -> Any:
     if not isinstance(view, ArrayView):
         raise Unsupported("the address of anything but an array")
-    return Number(a.builder.ptrtoint(view.base, I64), INT)
+    return CompiledNumber(a.builder.ptrtoint(view.base, I64), INT)
 
 
 def _called(a: Arithmetic, address: Any, *pointers: Any) -> None:

@@ -7,19 +7,19 @@ from typing import Any
 
 from llvmlite import ir
 
-from core.compile.frames import Loop, Masks, says
-from core.compile.numbers import BOOL, I64, INT, Number, Unsupported
+from core.compile.frames import LoopFrame, Masks, says
+from core.compile.numbers import BOOL, I64, INT, CompiledNumber, Unsupported
 from core.compile.statements import Statements
 
 
 class Loops(Statements):
     """Translates loops; boards may leave one at different moments."""
 
-    def _loop(self, node: ast.For | ast.While, again: Any, behind: Any, *, alike: bool) -> Loop:
+    def _loop(self, node: ast.For | ast.While, again: Any, behind: Any, *, alike: bool) -> LoopFrame:
         """Return a loop; boards may leave it at different moments if it says so, or if it is not alike for them."""
         out = self.slot() if self.lanes and (not alike or says(node.body, ast.Break)) else None
         skipped = self.slot() if self.lanes and says(node.body, ast.Continue) else None
-        return Loop(again, behind, self.frame.branches, out, skipped)
+        return LoopFrame(again, behind, self.frame.branches, out, skipped)
 
     def _for(self, node: ast.For) -> None:
         first, last, by = self._bounds(node.iter)
@@ -36,7 +36,7 @@ class Loops(Statements):
         build.store(first.value, counter)
         build.branch(head)
         build.position_at_end(head)
-        at = Number(build.load(counter), INT)
+        at = CompiledNumber(build.load(counter), INT)
         goes_on = self.arithmetic.compare("<" if by > 0 else ">", at, last)
         build.cbranch(self.arithmetic.any(goes_on), inside, behind)
         build.position_at_end(inside)
@@ -72,7 +72,9 @@ class Loops(Statements):
         self.builder.position_at_end(behind)
         self.rejoin(before, [node] if says([node], ast.Return) else [])
 
-    def _round(self, node: ast.For | ast.While, loop: Loop, before: Masks, goes_on: Number, names: Any) -> None:
+    def _round(
+        self, node: ast.For | ast.While, loop: LoopFrame, before: Masks, goes_on: CompiledNumber, names: Any
+    ) -> None:
         """Translate the body of a loop, for the boards that take another round."""
         frame = self.frame
         if loop.skipped is not None:

@@ -44,7 +44,7 @@ class Unsupported(InputError):
 
 
 @dataclass(frozen=True)
-class Number:
+class CompiledNumber:
     """A number while the code runs: one for all boards, or one for each."""
 
     value: Any
@@ -58,7 +58,7 @@ class Number:
 
 def is_number(value: Any) -> bool:
     """Say whether something is a number, known now or not."""
-    return isinstance(value, Number | bool | int | float | np.generic)
+    return isinstance(value, CompiledNumber | bool | int | float | np.generic)
 
 
 PLAIN: dict[type[ast.AST], Callable[[Any, Any], Any]] = {
@@ -96,32 +96,32 @@ class Arithmetic:
         """Return the type of a kind of numbers."""
         return ir.VectorType(SCALARS[kind], self.width) if is_lanes else SCALARS[kind]
 
-    def number(self, value: Any) -> Number:
+    def number(self, value: Any) -> CompiledNumber:
         """Return something as a number of the code."""
-        if isinstance(value, Number):
+        if isinstance(value, CompiledNumber):
             return value
         if isinstance(value, bool | np.bool_):
-            return Number(ir.Constant(I1, int(value)), BOOL)
+            return CompiledNumber(ir.Constant(I1, int(value)), BOOL)
         if isinstance(value, np.uint64):
-            return Number(ir.Constant(I64, int(value)), UINT)
+            return CompiledNumber(ir.Constant(I64, int(value)), UINT)
         if isinstance(value, int | np.integer):
-            return Number(ir.Constant(I64, int(value)), INT)
+            return CompiledNumber(ir.Constant(I64, int(value)), INT)
         if isinstance(value, float | np.floating):
-            return Number(ir.Constant(DOUBLE, float(value)), FLOAT)
+            return CompiledNumber(ir.Constant(DOUBLE, float(value)), FLOAT)
         raise Unsupported(f"{value!r} is not a number")
 
-    def spread(self, number: Number) -> Number:
+    def spread(self, number: CompiledNumber) -> CompiledNumber:
         """Return a number of all boards as one of each."""
         if number.is_lanes:
             return number
         kind = self.type_of(number.kind, is_lanes=True)
         if isinstance(number.value, ir.Constant):
-            return Number(ir.Constant(kind, [number.value] * self.width), number.kind)
+            return CompiledNumber(ir.Constant(kind, [number.value] * self.width), number.kind)
         first = self.builder.insert_element(ir.Constant(kind, ir.Undefined), number.value, ir.Constant(I64, 0))
         places = ir.Constant(ir.VectorType(ir.IntType(32), self.width), [0] * self.width)
-        return Number(self.builder.shuffle_vector(first, ir.Constant(kind, ir.Undefined), places), number.kind)
+        return CompiledNumber(self.builder.shuffle_vector(first, ir.Constant(kind, ir.Undefined), places), number.kind)
 
-    def as_kind(self, value: Any, kind: int) -> Number:
+    def as_kind(self, value: Any, kind: int) -> CompiledNumber:
         """Return a number as one of another kind, as Python converts it."""
         number = self.number(value)
         if number.kind == kind:
@@ -130,8 +130,8 @@ class Arithmetic:
         if kind == BOOL:
             zero = ir.Constant(number.value.type, None)
             if number.kind == FLOAT:
-                return Number(build.fcmp_unordered("!=", number.value, zero), BOOL)
-            return Number(build.icmp_unsigned("!=", number.value, zero), BOOL)
+                return CompiledNumber(build.fcmp_unordered("!=", number.value, zero), BOOL)
+            return CompiledNumber(build.icmp_unsigned("!=", number.value, zero), BOOL)
         if kind == FLOAT:
             change = build.sitofp if number.kind == INT else build.uitofp
         elif number.kind == FLOAT:
@@ -139,10 +139,10 @@ class Arithmetic:
         elif number.kind == BOOL:
             change = build.zext
         else:
-            return Number(number.value, kind)
-        return Number(change(number.value, target), kind)
+            return CompiledNumber(number.value, kind)
+        return CompiledNumber(change(number.value, target), kind)
 
-    def alike(self, *values: Any) -> list[Number]:
+    def alike(self, *values: Any) -> list[CompiledNumber]:
         """Return numbers of one kind, all of each board or all of every board."""
         kind, is_lanes = self.common(*values)
         numbers = [self.as_kind(value, kind) for value in values]
@@ -152,36 +152,36 @@ class Arithmetic:
         """Return the kind that numbers have in common, and whether each board has its own."""
         numbers = [self.number(value) for value in values]
         kind = max(number.kind for number in numbers)
-        if kind == UINT and any(isinstance(n, Number) and n.kind == INT for n in values):
+        if kind == UINT and any(isinstance(n, CompiledNumber) and n.kind == INT for n in values):
             raise Unsupported("a signed and an unsigned number")
         return kind, any(number.is_lanes for number in numbers)
 
-    def truth(self, value: Any) -> Number:
+    def truth(self, value: Any) -> CompiledNumber:
         """Return a number as true or false."""
         return self.as_kind(value, BOOL)
 
-    def select(self, condition: Number, yes: Any, no: Any) -> Number:
+    def select(self, condition: CompiledNumber, yes: Any, no: Any) -> CompiledNumber:
         """Return one of two numbers, in each lane by its own condition."""
         yes, no = self.alike(yes, no)
         if condition.is_lanes:
             yes, no = self.spread(yes), self.spread(no)
-        return Number(self.builder.select(condition.value, yes.value, no.value), yes.kind)
+        return CompiledNumber(self.builder.select(condition.value, yes.value, no.value), yes.kind)
 
-    def both(self, first: Number, second: Number) -> Number:
+    def both(self, first: CompiledNumber, second: CompiledNumber) -> CompiledNumber:
         """Return whether two conditions hold."""
         first, second = self.alike(first, second)
-        return Number(self.builder.and_(first.value, second.value), BOOL)
+        return CompiledNumber(self.builder.and_(first.value, second.value), BOOL)
 
-    def either(self, first: Number, second: Number) -> Number:
+    def either(self, first: CompiledNumber, second: CompiledNumber) -> CompiledNumber:
         """Return whether one of two conditions holds."""
         first, second = self.alike(first, second)
-        return Number(self.builder.or_(first.value, second.value), BOOL)
+        return CompiledNumber(self.builder.or_(first.value, second.value), BOOL)
 
-    def opposite(self, condition: Number) -> Number:
+    def opposite(self, condition: CompiledNumber) -> CompiledNumber:
         """Return whether a condition does not hold."""
-        return Number(self.builder.not_(condition.value), BOOL)
+        return CompiledNumber(self.builder.not_(condition.value), BOOL)
 
-    def any(self, condition: Number) -> Any:
+    def any(self, condition: CompiledNumber) -> Any:
         """Return whether a condition holds in some lane, for a branch."""
         if not condition.is_lanes:
             return condition.value
@@ -190,16 +190,16 @@ class Arithmetic:
 
     def negative(self, value: Any) -> Any:
         """Return a number with the other sign."""
-        if not isinstance(value, Number):
+        if not isinstance(value, CompiledNumber):
             return -value
         if value.kind == FLOAT:
-            return Number(self.builder.fneg(value.value), FLOAT)
+            return CompiledNumber(self.builder.fneg(value.value), FLOAT)
         value = self.as_kind(value, INT) if value.kind == BOOL else value
-        return Number(self.builder.neg(value.value), value.kind)
+        return CompiledNumber(self.builder.neg(value.value), value.kind)
 
     def compare(self, sign: str, left: Any, right: Any) -> Any:
         """Compare two numbers."""
-        if not isinstance(left, Number) and not isinstance(right, Number):
+        if not isinstance(left, CompiledNumber) and not isinstance(right, CompiledNumber):
             return ORDER[sign](left, right)
         left, right = self.alike(left, right)
         if left.kind == FLOAT:
@@ -207,17 +207,17 @@ class Arithmetic:
             compare = self.builder.fcmp_unordered if sign == "!=" else self.builder.fcmp_ordered
         else:
             compare = self.builder.icmp_signed if left.kind == INT else self.builder.icmp_unsigned
-        return Number(compare(sign, left.value, right.value), BOOL)
+        return CompiledNumber(compare(sign, left.value, right.value), BOOL)
 
     def binary(self, sign: type[ast.AST], left: Any, right: Any) -> Any:
         """Do arithmetic on two numbers."""
-        if not isinstance(left, Number | np.uint64) and not isinstance(right, Number | np.uint64):
+        if not isinstance(left, CompiledNumber | np.uint64) and not isinstance(right, CompiledNumber | np.uint64):
             if sign is ast.Div and right == 0:  # Python raises an error; a processor gives infinity or NaN
                 with np.errstate(all="ignore"):
                     return float(np.float64(left) / np.float64(right))
             return PLAIN[sign](left, right)
         if sign is ast.Pow:
-            if right == 2 and not isinstance(right, Number):
+            if right == 2 and not isinstance(right, CompiledNumber):
                 return self.binary(ast.Mult, left, left)
             raise Unsupported("a power")
         left, right = self.alike(left, right)
@@ -239,14 +239,14 @@ class Arithmetic:
         """Multiply two numbers."""
         return self.binary(ast.Mult, left, right)
 
-    def _real(self, sign: type[ast.AST], left: Number, right: Number) -> Number:
+    def _real(self, sign: type[ast.AST], left: CompiledNumber, right: CompiledNumber) -> CompiledNumber:
         build = self.builder
         simple = {ast.Add: build.fadd, ast.Sub: build.fsub, ast.Mult: build.fmul, ast.Div: build.fdiv}
         if sign in simple:
-            return Number(simple[sign](left.value, right.value), FLOAT)
+            return CompiledNumber(simple[sign](left.value, right.value), FLOAT)
         if sign is not ast.Mod:
             raise Unsupported(f"{sign.__name__} of real numbers")
-        rest = Number(build.frem(left.value, right.value), FLOAT)
+        rest = CompiledNumber(build.frem(left.value, right.value), FLOAT)
         # the remainder has the sign of the divisor
         other = self.binary(ast.BitXor, self.compare("<", rest, 0.0), self.compare("<", right, 0.0))
         moved = self.both(self.compare("!=", rest, 0.0), other)
@@ -254,31 +254,31 @@ class Arithmetic:
         rest = self.select(self.compare("==", rest, 0.0), whole, rest)
         return self.select(moved, self.binary(ast.Add, rest, right), rest)
 
-    def _whole(self, sign: type[ast.AST], left: Number, right: Number) -> Number:
+    def _whole(self, sign: type[ast.AST], left: CompiledNumber, right: CompiledNumber) -> CompiledNumber:
         build, kind = self.builder, left.kind
         simple = {ast.Add: build.add, ast.Sub: build.sub, ast.Mult: build.mul, ast.LShift: build.shl}
         if sign in simple:
-            return Number(simple[sign](left.value, right.value), kind)
+            return CompiledNumber(simple[sign](left.value, right.value), kind)
         if sign is ast.RShift:
             shift = build.ashr if kind == INT else build.lshr
-            return Number(shift(left.value, right.value), kind)
+            return CompiledNumber(shift(left.value, right.value), kind)
         if sign in (ast.Mod, ast.FloorDiv):
-            rest = Number(build.srem(left.value, right.value), INT)
+            rest = CompiledNumber(build.srem(left.value, right.value), INT)
             other = self.binary(ast.BitXor, self.compare("<", rest, 0), self.compare("<", right, 0))
             moved = self.both(self.compare("!=", rest, 0), other)
             if sign is ast.Mod:
                 return self.select(moved, self.binary(ast.Add, rest, right), rest)
-            whole = Number(build.sdiv(left.value, right.value), INT)
+            whole = CompiledNumber(build.sdiv(left.value, right.value), INT)
             return self.select(moved, self.binary(ast.Sub, whole, 1), whole)
         return self._bits(sign, left, right)
 
-    def _bits(self, sign: type[ast.AST], left: Number, right: Number) -> Number:
+    def _bits(self, sign: type[ast.AST], left: CompiledNumber, right: CompiledNumber) -> CompiledNumber:
         bits = {ast.BitAnd: self.builder.and_, ast.BitOr: self.builder.or_, ast.BitXor: self.builder.xor}
         if sign not in bits:
             raise Unsupported(f"{sign.__name__} of whole numbers")
-        return Number(bits[sign](left.value, right.value), left.kind)
+        return CompiledNumber(bits[sign](left.value, right.value), left.kind)
 
-    def intrinsic(self, name: str, *values: Any) -> Number:
+    def intrinsic(self, name: str, *values: Any) -> CompiledNumber:
         """Return the result of an instruction on real numbers, such as a square root."""
         numbers = self.alike(*(self.as_kind(value, FLOAT) for value in values))
         kind = numbers[0].value.type
@@ -287,4 +287,4 @@ class Arithmetic:
         function = module.globals.get(full)
         if function is None:
             function = ir.Function(module, ir.FunctionType(kind, [kind] * len(numbers)), full)
-        return Number(self.builder.call(function, [number.value for number in numbers]), FLOAT)
+        return CompiledNumber(self.builder.call(function, [number.value for number in numbers]), FLOAT)

@@ -11,9 +11,9 @@ from typing import Any
 
 from llvmlite import ir
 
-from core.compile.numbers import FLOAT, I64, INT, Arithmetic, Number, Unsupported
+from core.compile.numbers import FLOAT, I64, INT, Arithmetic, CompiledNumber, Unsupported
 from core.ports import TICK, TIME_MS
-from core.record import RECORD, SCALAR, Field, Layout
+from core.record import RECORD, SCALAR, Field, RecordLayout
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Place:
     """Numbers from a place on; ``shift`` moves each lane by its own count of numbers."""
 
     base: Any
-    shift: Number | None = None
+    shift: CompiledNumber | None = None
 
 
 @dataclass(frozen=True)
@@ -33,14 +33,14 @@ class VectorView(Place):
 class RecordView(Place):
     """A record."""
 
-    layout: Layout | None = None
+    layout: RecordLayout | None = None
 
 
 @dataclass(frozen=True)
 class RecordsView(Place):
     """Several records."""
 
-    layout: Layout | None = None
+    layout: RecordLayout | None = None
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class PortsView:
 
     signals: Any
     places: Any
-    ports: dict[str, tuple[int, bool | Layout]]
+    ports: dict[str, tuple[int, bool | RecordLayout]]
 
 
 class Memory:
@@ -59,29 +59,29 @@ class Memory:
         self._arithmetic, self._build, self._lanes = arithmetic, arithmetic.builder, lanes
         self._width = arithmetic.width
 
-    def moved(self, place: Place, numbers: Any) -> tuple[Any, Number | None]:
+    def moved(self, place: Place, numbers: Any) -> tuple[Any, CompiledNumber | None]:
         """Return the base and the shift of a place so many numbers further."""
-        if isinstance(numbers, Number) and numbers.is_lanes:
+        if isinstance(numbers, CompiledNumber) and numbers.is_lanes:
             shift = numbers if place.shift is None else self._arithmetic.plus(place.shift, numbers)
             return place.base, shift
         count = self._arithmetic.as_kind(numbers, INT).value
         offset = self._build.mul(count, ir.Constant(I64, self._width))
         return self._build.gep(place.base, [offset], inbounds=True), place.shift
 
-    def read(self, place: Place, mask: Number | None, *, shared: bool = False) -> Number:
+    def read(self, place: Place, mask: CompiledNumber | None, *, shared: bool = False) -> CompiledNumber:
         """Return the number at a place; a shared one is the same in all lanes."""
         if shared or not self._lanes:
-            return Number(self._build.load(place.base), FLOAT)
+            return CompiledNumber(self._build.load(place.base), FLOAT)
         kind = self._arithmetic.type_of(FLOAT, is_lanes=True)
         if place.shift is None:
             at = self._build.bitcast(place.base, kind.as_pointer())
-            return Number(self._build.load(at, align=8), FLOAT)
+            return CompiledNumber(self._build.load(at, align=8), FLOAT)
         value = ir.Constant(kind, ir.Undefined)
         for lane, at in enumerate(self._scattered(place, mask)):
             value = self._build.insert_element(value, self._build.load(at), ir.Constant(I64, lane))
-        return Number(value, FLOAT)
+        return CompiledNumber(value, FLOAT)
 
-    def write(self, place: Place, value: Any, mask: Number | None) -> None:
+    def write(self, place: Place, value: Any, mask: CompiledNumber | None) -> None:
         """Write a number to a place, in the lanes of a mask."""
         number = self._arithmetic.as_kind(value, FLOAT)
         if not self._lanes:
@@ -97,7 +97,7 @@ class Memory:
         for lane, at in enumerate(self._scattered(place, mask)):
             self._build.store(self._build.extract_element(number.value, ir.Constant(I64, lane)), at)
 
-    def _scattered(self, place: Place, mask: Number | None) -> list[Any]:
+    def _scattered(self, place: Place, mask: CompiledNumber | None) -> list[Any]:
         """Return the address of every lane; a lane that does not take part stays at the base."""
         shift = place.shift
         assert shift is not None
@@ -126,7 +126,7 @@ class Memory:
                 offset = self._arithmetic.plus(layout.size, self._arithmetic.times(length, field.offset))
         return field, Place(*self.moved(record, offset))
 
-    def attribute(self, record: RecordView, name: str, mask: Number | None) -> Any:
+    def attribute(self, record: RecordView, name: str, mask: CompiledNumber | None) -> Any:
         """Return a number of a record, or a view of a part of it."""
         field, place = self.field(record, name)
         if field.inner is not None:

@@ -9,7 +9,7 @@ from typing import Any
 from core.compile.arrays import ArrayPlace, ArrayView
 from core.compile.expressions import Expressions
 from core.compile.frames import returns, tree_of
-from core.compile.numbers import BOOL, Number, Unsupported, is_number
+from core.compile.numbers import BOOL, CompiledNumber, Unsupported, is_number
 from core.compile.places import Place, PortsView, RecordsView, RecordView, VectorView
 from core.record import SCALAR
 
@@ -121,7 +121,7 @@ class Statements(Expressions):
 
     def _if(self, node: ast.If) -> bool:
         condition = self.value(node.test)
-        if not isinstance(condition, Number):
+        if not isinstance(condition, CompiledNumber):
             return self.body(node.body if condition else node.orelse)
         condition = self.arithmetic.truth(condition)
         if condition.is_lanes:
@@ -146,7 +146,7 @@ class Statements(Expressions):
         self.rejoin(before, [node])
         return False
 
-    def _masked(self, condition: Number, statements: Sequence[ast.stmt]) -> None:
+    def _masked(self, condition: CompiledNumber, statements: Sequence[ast.stmt]) -> None:
         """Translate statements for the boards for which a condition holds."""
         frame, before = self.frame, (self.mask, self.frame.mask)
         self.mask, frame.mask = self.within(self.mask, condition), self.within(frame.mask, condition)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from core.compile.arrays import Bound
-from core.compile.frames import Frame, stored, tree_of
+from core.compile.frames import CallFrame, stored, tree_of
 from core.compile.functions import FUNCTIONS
 from core.compile.loops import Loops
 from core.compile.numbers import Unsupported, is_number
@@ -44,7 +44,7 @@ class Translation(Loops):
         if outer is not None:
             outer.calls += 1
             path = f"{outer.path}.{outer.calls}"
-        frame = Frame(function, path, {}, self.builder.append_basic_block(f"exit{path}"))
+        frame = CallFrame(function, path, {}, self.builder.append_basic_block(f"exit{path}"))
         mask, self.frame, self._depth = self.mask, frame, self._depth + 1
         if f"{path}:returned" in self.kinds:
             frame.returned = self.slot()
@@ -64,7 +64,7 @@ class Translation(Loops):
             self.frame = outer
         return result
 
-    def _result(self, frame: Frame) -> Any:
+    def _result(self, frame: CallFrame) -> Any:
         if isinstance(frame.result, int):
             return tuple(self.name(f"return {i}") for i in range(frame.result))
         if frame.result == "one":

@@ -10,8 +10,8 @@ from typing import Any
 from llvmlite import ir
 
 from core.compile.arrays import Arrays
-from core.compile.frames import Frame, Kinds, Masks, says
-from core.compile.numbers import BOOL, Arithmetic, Number, Unsupported, is_number
+from core.compile.frames import CallFrame, Kinds, Masks, says
+from core.compile.numbers import BOOL, Arithmetic, CompiledNumber, Unsupported, is_number
 from core.compile.places import Memory
 
 
@@ -36,8 +36,8 @@ class Variables:
         self.arithmetic = Arithmetic(builder, width)
         self.memory = Memory(self.arithmetic, lanes=lanes)
         self.arrays = Arrays(self.arithmetic)
-        self.mask: Number | None = None
-        self.frame: Frame
+        self.mask: CompiledNumber | None = None
+        self.frame: CallFrame
         self._depth = 0
 
     def assign(self, name: str, value: Any) -> None:
@@ -73,7 +73,7 @@ class Variables:
         if name in frame.names:
             return frame.names[name]
         if name in frame.variables:
-            return Number(self.builder.load(frame.variables[name]), self.kinds[f"{frame.path}:{name}"][0])
+            return CompiledNumber(self.builder.load(frame.variables[name]), self.kinds[f"{frame.path}:{name}"][0])
         function = frame.function
         free = dict(zip(function.__code__.co_freevars, function.__closure__ or (), strict=True))
         if name in free:
@@ -84,7 +84,7 @@ class Variables:
             return getattr(builtins, name)
         raise Unsupported(f"{name} is not known at this place")
 
-    def within(self, mask: Number | None, condition: Number) -> Number:
+    def within(self, mask: CompiledNumber | None, condition: CompiledNumber) -> CompiledNumber:
         """Return the mask of the boards in another for which a condition holds."""
         return condition if mask is None else self.arithmetic.both(mask, condition)
 
@@ -102,7 +102,7 @@ class Variables:
 
     def leave_out(self, slot: Any) -> None:
         """Take the boards that have left out of the masks."""
-        left = self.arithmetic.opposite(Number(self.builder.load(slot), BOOL))
+        left = self.arithmetic.opposite(CompiledNumber(self.builder.load(slot), BOOL))
         self.mask, self.frame.mask = self.within(self.mask, left), self.within(self.frame.mask, left)
 
     def slot(self, value: Any = None) -> Any:

@@ -8,7 +8,7 @@ from core.block import Block, BlockParams, Context, Equation, Stage, parameter
 from core.control.rate_bound import fill_basis
 from core.control.two_axis import two_axis
 from core.control.two_axis_adaptation import adapt, asked, fill_law, held, push, velocity_errors, write
-from core.control.two_axis_estimates import EstimatePorts, Estimates, PackedLaw
+from core.control.two_axis_estimates import AxisEstimates, PackedLaw, TwoAxisEstimatePorts
 from core.units import hz_of_rad_ms
 
 USUAL_SHARE = 0.2213
@@ -115,10 +115,10 @@ class AdaptiveRate(Block):
     class Packed(PackedLaw):
         """The law."""
 
-    class State(Estimates):
+    class State(AxisEstimates):
         """The estimates."""
 
-    class Ports(EstimatePorts):
+    class Ports(TwoAxisEstimatePorts):
         """Forces and estimates."""
 
     @classmethod

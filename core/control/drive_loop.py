@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from core.block import Block, BlockParams, Context, Equation, Stage, parameter
-from core.control.tracking import Phasor, Tracking, fill_tracking, follow
+from core.control.tracking import Phasor, TrackingGains, fill_tracking, follow
 from core.control.two_axis import DrivePorts, PartnerPorts, two_axis
 from core.elementary import cos, floor, sin
 from core.ports import tap
@@ -79,7 +79,7 @@ class DriveLoop(Block):
         integral: float
         limit_un: float
         advance: float
-        partner: Tracking
+        partner: TrackingGains
 
     class State(Record):
         """Phase in turns, integrals of phase and force, the force of a partner."""

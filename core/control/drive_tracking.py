@@ -7,7 +7,7 @@ from typing import Any
 
 from core.block import Block, BlockParams, Context, Equation, Stage, parameter
 from core.control.drive_loop import amplitude
-from core.control.tracking import Phasor, Tracking, fill_tracking, follow
+from core.control.tracking import Phasor, TrackingGains, fill_tracking, follow
 from core.control.two_axis import DrivePorts, PartnerPorts, two_axis
 from core.elementary import cos, floor, sin
 from core.ports import tap
@@ -59,7 +59,7 @@ class DriveTracking(Block):
         cycles: float
         omega: float
         half_sample: float
-        law: Tracking
+        law: TrackingGains
 
     class State(Record):
         """The forces of both devices."""

@@ -8,7 +8,7 @@ from core.ports import reads
 from core.record import Record
 
 
-class External(Block):
+class ExternalController(Block):
     r"""The voltage comes from outside, :math:`u_i=f(r_i,y_{m,i},y_i,\dots)`: from a function, or from another program.
 
     It is called once the sample has been measured and answers before the voltage is held, so that its delay equals the

@@ -9,7 +9,7 @@ from core.control.adaptive_rate import SAMPLE
 from core.control.rate_bound import fill_basis
 from core.control.two_axis import two_axis
 from core.control.two_axis_adaptation import adapt, asked, fill_law, held, push, velocity_errors, write
-from core.control.two_axis_estimates import EstimatePorts, Estimates, PackedLaw
+from core.control.two_axis_estimates import AxisEstimates, PackedLaw, TwoAxisEstimatePorts
 from core.units import hz_of_rad_ms
 
 SLOWEST = 0.2
@@ -97,13 +97,13 @@ class MimoAdaptive(Block):
     class Packed(PackedLaw):
         """The law."""
 
-    class State(Estimates):
+    class State(AxisEstimates):
         """The estimates, and the last deviation of both axes from the desired motion."""
 
         last_x: float
         last_y: float
 
-    class Ports(EstimatePorts):
+    class Ports(TwoAxisEstimatePorts):
         """Forces and estimates."""
 
     @classmethod

@@ -21,7 +21,7 @@ class ReadPorts(RatePorts):
     swing: float = tap("pm", "amplitude of y")
 
 
-class Filtered(Record):
+class FilteredComponents(Record):
     """Components of y, each behind two low-passes."""
 
     first_in_step: float
@@ -41,7 +41,7 @@ class ReadOut(Record):
 
 
 @kernel
-def read(p: ReadOut, s: Filtered, x: ReadPorts) -> None:
+def read(p: ReadOut, s: FilteredComponents, x: ReadPorts) -> None:
     """Demodulate y and write the rate that follows from it."""
     omega = x.frequency * 6.283185307179586e-3
     sine = x.sine * p.turn_cosine + x.cosine * p.turn_sine
@@ -126,7 +126,7 @@ class OpenLoopRate(Block):
     class Packed(ReadOut):
         """The read-out."""
 
-    class State(Filtered):
+    class State(FilteredComponents):
         """The components of y."""
 
     class Ports(ReadPorts):

@@ -25,7 +25,7 @@ from __future__ import annotations
 
 import math
 
-from core.control.two_axis_estimates import Asked, Basis, EstimatePorts, Estimates, Gains, PackedLaw
+from core.control.two_axis_estimates import AxisEstimates, Basis, Gains, HeldTones, PackedLaw, TwoAxisEstimatePorts
 from core.kernel import kernel
 from core.units import RAD_MS_PER_DEG_S
 
@@ -39,7 +39,7 @@ UNKNOWN_DPS = 1e6
 """Bound while nothing can be said, deg/s: 2800 turns a second."""
 
 
-def fill_basis(p: Basis, a: Asked, g: Gains, dt_ms: float, cancels: bool) -> None:
+def fill_basis(p: Basis, a: HeldTones, g: Gains, dt_ms: float, cancels: bool) -> None:
     """Pack the bounds of the rate; ``cancels``: the law multiplies by the measured motion, with a model in place."""
     p.exciting = a.beat_ms <= SLOW_MS and min(g.stiffness, g.damping, g.rate) > 0.0
     p.beats_ms, p.of_stiffness, p.of_damping, p.of_rate = math.inf, 0.0, 0.0, 0.0
@@ -53,7 +53,7 @@ def fill_basis(p: Basis, a: Asked, g: Gains, dt_ms: float, cancels: bool) -> Non
 
 
 @kernel
-def unlearned(p: PackedLaw, s: Estimates) -> float:
+def unlearned(p: PackedLaw, s: AxisEstimates) -> float:
     """Return the rate that is still to be learned, from the changes since the beats began."""
     a, c = p.asked, s.claim
     stiffness, skew = p.basis.of_stiffness * (c.kxy - s.kxy), p.basis.of_stiffness * (c.skew - s.skew)
@@ -70,7 +70,7 @@ def unlearned(p: PackedLaw, s: Estimates) -> float:
 
 
 @kernel
-def misread(p: PackedLaw, s: Estimates) -> float:
+def misread(p: PackedLaw, s: AxisEstimates) -> float:
     """Return the rate error of holding the force, as far as the law does not compensate it."""
     a = p.asked
     square_x, square_y = a.omega_x * a.omega_x, a.omega_y * a.omega_y
@@ -82,7 +82,7 @@ def misread(p: PackedLaw, s: Estimates) -> float:
 
 
 @kernel
-def judge(p: PackedLaw, s: Estimates, x: EstimatePorts) -> None:
+def judge(p: PackedLaw, s: AxisEstimates, x: TwoAxisEstimatePorts) -> None:
     """Claim a bound after whole beats, withdraw it when the rate leaves it, and decide whether the rate is trusted."""
     c = s.claim
     over = x.time_ms - c.begun_ms >= p.basis.beats_ms

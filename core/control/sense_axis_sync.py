@@ -6,7 +6,7 @@ import math
 from typing import Any, Literal
 
 from core.block import Block, BlockParams, Context, Equation, Stage, parameter
-from core.control.open_loop_rate import Filtered, ReadOut, ReadPorts, fill_read_out, read
+from core.control.open_loop_rate import FilteredComponents, ReadOut, ReadPorts, fill_read_out, read
 from core.control.two_axis import components, share_kept, two_axis
 from core.elementary import atan2, cos, sin
 from core.ports import output, reads, tap
@@ -113,7 +113,7 @@ class SenseAxisSync(Block):
     class State(Record):
         """Components of y, forces over x and its velocity, components of the force and of the y that is followed."""
 
-        swing: Filtered
+        swing: FilteredComponents
         with_x: float
         with_velocity: float
         force_cosine: float

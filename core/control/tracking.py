@@ -15,7 +15,7 @@ from core.kernel import kernel
 from core.record import Record
 
 
-class Tracking(Record):
+class TrackingGains(Record):
     """Desired amplitude, damping added, gain of the adaptation per sample."""
 
     target: float
@@ -30,7 +30,7 @@ class Phasor(Record):
     cosine: float
 
 
-def fill_tracking(p: Tracking, target: float, mass: float, damping: float, omega: float, dt_ms: float) -> None:
+def fill_tracking(p: TrackingGains, target: float, mass: float, damping: float, omega: float, dt_ms: float) -> None:
     """Pack the law for a mass in mg whose errors die away with a rate in 1/ms, at a carrier of rad/ms."""
     p.target = target
     p.added_damping = 2.0 * mass * damping
@@ -39,7 +39,12 @@ def fill_tracking(p: Tracking, target: float, mass: float, damping: float, omega
 
 @kernel
 def follow(
-    p: Tracking, f: Phasor, q: float, velocity: float, carrier: tuple[float, float, float, float, float], engaged: float
+    p: TrackingGains,
+    f: Phasor,
+    q: float,
+    velocity: float,
+    carrier: tuple[float, float, float, float, float],
+    engaged: float,
 ) -> tuple[float, float]:
     """Return the force on a mass and its error, and learn while the law drives.
 

@@ -19,7 +19,7 @@ from core.record import Record
 from core.units import rate_deg_s
 
 
-class MeasuredPorts(BlockPorts):
+class TwoAxisMeasuredPorts(BlockPorts):
     """The measurements of both axes, and whether the controller drives."""
 
     x_measured: float = reads("sensor.x.displacement", "um", "measured displacement along x")
@@ -50,7 +50,7 @@ class PartnerPorts(BlockPorts):
     partner_x: float = output("uN", "force along x of a partner")
 
 
-class RatePorts(MeasuredPorts):
+class RatePorts(TwoAxisMeasuredPorts):
     """Ports of every controller of the sense slot: the carrier in, the rate it reads out."""
 
     sine: float = reads("@drive.sine", "1", "carrier in step with the displacement along x")

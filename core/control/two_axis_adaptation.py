@@ -28,7 +28,7 @@ from typing import Any
 from core.block import Context
 from core.control.rate_bound import SLOW_MS, judge
 from core.control.two_axis import share_kept, two_axis
-from core.control.two_axis_estimates import Asked, EstimatePorts, Estimates, Gains, PackedLaw
+from core.control.two_axis_estimates import AxisEstimates, Gains, HeldTones, PackedLaw, TwoAxisEstimatePorts
 from core.elementary import sin, sin_of_turns
 from core.kernel import kernel
 from core.units import RAD_MS_PER_DEG_S
@@ -69,7 +69,7 @@ def larger(half: float) -> float:
 
 
 @kernel
-def asked(p: Asked, t: float) -> tuple[float, float, float, float]:
+def asked(p: HeldTones, t: float) -> tuple[float, float, float, float]:
     """Return desired displacements at a time in ms, and velocities per unit of time."""
     x = p.cycles_x * t
     y = p.cycles_y * t
@@ -82,7 +82,7 @@ def asked(p: Asked, t: float) -> tuple[float, float, float, float]:
 
 
 @kernel
-def held(p: Asked, t: float) -> tuple[float, float, float, float]:
+def held(p: HeldTones, t: float) -> tuple[float, float, float, float]:
     """Return the desired motion as a held force needs it: half a sample later, and larger."""
     q1, q2, v1, v2 = asked(p, t + p.ahead_ms)
     return p.larger_x * q1, p.larger_y * q2, p.larger_x * v1, p.larger_y * v2
@@ -90,7 +90,7 @@ def held(p: Asked, t: float) -> tuple[float, float, float, float]:
 
 @kernel
 def velocity_errors(
-    p: PackedLaw, s: Estimates, x: EstimatePorts, q1: float, q2: float, v1: float, v2: float
+    p: PackedLaw, s: AxisEstimates, x: TwoAxisEstimatePorts, q1: float, q2: float, v1: float, v2: float
 ) -> tuple[float, float]:
     """Return the errors of both velocities against the desired velocities, without the ripple of the held force."""
     a = p.asked
@@ -103,7 +103,7 @@ def velocity_errors(
 
 
 @kernel
-def adapt(g: Gains, s: Estimates, e1: float, e2: float, q1: float, q2: float, v1: float, v2: float) -> None:
+def adapt(g: Gains, s: AxisEstimates, e1: float, e2: float, q1: float, q2: float, v1: float, v2: float) -> None:
     """Adapt the estimates to the velocity error ``e``, with the motion that the law multiplies them with."""
     s.kxx -= g.stiffness * e1 * q1
     s.kxy -= 0.5 * g.stiffness * (e1 * q2 + e2 * q1)
@@ -116,7 +116,7 @@ def adapt(g: Gains, s: Estimates, e1: float, e2: float, q1: float, q2: float, v1
 
 
 @kernel
-def push(s: Estimates, q1: float, q2: float, v1: float, v2: float) -> tuple[float, float]:
+def push(s: AxisEstimates, q1: float, q2: float, v1: float, v2: float) -> tuple[float, float]:
     r"""Return :math:`(\hat K+\hat nS)q+\hat D\dot q+2\hat\Omega S\dot q`."""
     return (
         s.kxx * q1 + (s.kxy - s.skew) * q2 + s.dxx * v1 + (s.dxy - 2.0 * s.omega) * v2,
@@ -125,7 +125,7 @@ def push(s: Estimates, q1: float, q2: float, v1: float, v2: float) -> tuple[floa
 
 
 @kernel
-def write(p: PackedLaw, s: Estimates, x: EstimatePorts) -> None:
+def write(p: PackedLaw, s: AxisEstimates, x: TwoAxisEstimatePorts) -> None:
     """Write the estimates, and their trust."""
     unit = p.asked.unit_ms
     s.rate += (1.0 - p.kept) * (s.omega - s.rate)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.control.two_axis import MeasuredPorts
+from core.control.two_axis import TwoAxisMeasuredPorts
 from core.ports import output, tap
 from core.record import Record
 
@@ -12,7 +12,7 @@ NOT_EXCITING = (
 )
 
 
-class Asked(Record):
+class HeldTones(Record):
     """Amplitudes, frequencies in turns per ms and in rad per unit of time, by how much a held force is larger.
 
     Half a sample, the unit of time, a twelfth of the squared sample in that unit, a beat.
@@ -54,7 +54,7 @@ class Basis(Record):
     repeats: float
 
 
-class Claim(Record):
+class RateClaim(Record):
     """Begin of these beats; the estimates then; least and most rate; whether a bound is claimed, and its rate."""
 
     begun_ms: float
@@ -69,7 +69,7 @@ class Claim(Record):
     of: float
 
 
-class Estimates(Record):
+class AxisEstimates(Record):
     """Stiffness, antisymmetric stiffness, damping and rate, per unit of mass; the rate that is read, and its claim."""
 
     kxx: float
@@ -81,7 +81,7 @@ class Estimates(Record):
     dyy: float
     omega: float
     rate: float
-    claim: Claim
+    claim: RateClaim
 
 
 class PackedLaw(Record):
@@ -90,7 +90,7 @@ class PackedLaw(Record):
     Factor of the rotation in the law's rate, and the share that the low-pass keeps.
     """
 
-    asked: Asked
+    asked: HeldTones
     gains: Gains
     basis: Basis
     force_x: float
@@ -103,7 +103,7 @@ class PackedLaw(Record):
     kept: float
 
 
-class EstimatePorts(MeasuredPorts):
+class TwoAxisEstimatePorts(TwoAxisMeasuredPorts):
     """Forces along both axes, the rate, and the other estimates."""
 
     x: float = output("uN", "force along x this controller asks for")

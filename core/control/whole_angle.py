@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from core.block import Block, BlockParams, Context, Equation, Stage, parameter
-from core.control.two_axis import MeasuredPorts, share_kept, two_axis
+from core.control.two_axis import TwoAxisMeasuredPorts, share_kept, two_axis
 from core.elementary import atan2, cos, floor, sin
 from core.ports import output, tap
 from core.record import Record
@@ -108,7 +108,7 @@ class WholeAngle(Block):
         rate: float
         begun: float
 
-    class Ports(MeasuredPorts):
+    class Ports(TwoAxisMeasuredPorts):
         """Forces along both axes, the angle and the rate."""
 
         x: float = output("uN", "force along x this controller asks for")

@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from core.block import BlockParams
-from core.device.device import Device, Printed
+from core.device.device import Device, PrintedFigures
 from core.device.drawn_gyroscope import DrawnGyroscope
 from core.device.geometry import Geometry
 from core.device.gyroscope import GyroscopeTable
@@ -50,7 +50,7 @@ def device(overrides: dict[str, Any]) -> Device:
             "transfer_function": TransferFunction,
             "gyroscope": GyroscopeTable,
             "drawn_gyroscope": DrawnGyroscope,
-            "printed": Printed,
+            "printed": PrintedFigures,
         }
         fields = {name: list(table.model_fields) for name, table in tables.items()}
         raise from_validation(error, fields).under("device") from None

@@ -19,7 +19,7 @@ from core.errors import InputError, from_validation
 from core.units import BOLTZMANN, EPSILON_0, damping_un_ms_um, force_un_per_v, mass_mg, stiffness_un_um
 
 
-class Printed(BlockParams):
+class PrintedFigures(BlockParams):
     """Figures that the dissertation prints and that differ from the figures of the device's parameters."""
 
     mass_kg: float | None = parameter(None, "mass", "kg", gt=0, live=False)
@@ -95,7 +95,7 @@ class Device(BlockParams):
     drawn_gyroscope: DrawnGyroscope | None = parameter(
         None, "data of a device with two axes in addition to the drawing", live=False
     )
-    printed: Printed | None = parameter(None, "printed figures of the dissertation", live=False)
+    printed: PrintedFigures | None = parameter(None, "printed figures of the dissertation", live=False)
 
     @model_validator(mode="after")
     def _complete(self) -> Self:

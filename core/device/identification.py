@@ -16,7 +16,7 @@ ITERATIONS = 30
 
 
 @dataclass(frozen=True)
-class Tone:
+class SweepTone:
     """One frequency of a sweep: response in um/V, its standard error, and the share of power at that tone."""
 
     frequency_hz: float
@@ -25,7 +25,7 @@ class Tone:
     coherence: float
 
 
-def tone(frequency_hz: float, dt_ms: float, voltage: FloatArray, displacement: FloatArray, *, held: bool) -> Tone:
+def tone(frequency_hz: float, dt_ms: float, voltage: FloatArray, displacement: FloatArray, *, held: bool) -> SweepTone:
     r"""Return the response at one tone from a steady record, by least squares.
 
     A voltage held by a converter reaches the device as :math:`\mathrm{sinc}(fT)\,e^{-j\pi fT}` of its samples; the fit
@@ -55,7 +55,7 @@ def tone(frequency_hz: float, dt_ms: float, voltage: FloatArray, displacement: F
     if drive == 0.0:
         raise InputError("there is no voltage at this tone", "reference.amplitude_v")
     spread = math.sqrt(float(rest @ rest) / max(len(rest) - 3, 1)) * math.sqrt(2.0 / len(rest))
-    return Tone(
+    return SweepTone(
         frequency_hz=frequency_hz,
         response=complex(complex(xr, xi) / drive),
         error=spread / abs(drive),
@@ -91,7 +91,7 @@ class Identified:
     read_quality_phase_slope: float | None
 
 
-def identify(tones: list[Tone], force_n_per_v: float) -> Identified:
+def identify(tones: list[SweepTone], force_n_per_v: float) -> Identified:
     r"""Fit a mass, a damper and a spring to a sweep.
 
     .. math:: \min_{m,\beta,k}\sum_i\frac1{\sigma_i^2}\left|H_i-\frac{F}{k-m\omega_i^2+j\beta\omega_i}\right|^2

@@ -8,7 +8,7 @@ from core.block import Equation
 
 
 @dataclass(frozen=True)
-class Quantity:
+class DeviceFigure:
     """A figure: its name among the metrics of a device, words, unit and equation."""
 
     name: str
@@ -18,8 +18,8 @@ class Quantity:
 
 
 QUANTITIES = (
-    Quantity("mass_kg", "Mass", "kg", Equation("effective mass", r"m=m_s+\tfrac14m_t+\tfrac{12}{35}m_b", "1.3.3")),
-    Quantity(
+    DeviceFigure("mass_kg", "Mass", "kg", Equation("effective mass", r"m=m_s+\tfrac14m_t+\tfrac{12}{35}m_b", "1.3.3")),
+    DeviceFigure(
         "stiffness_n_m",
         "Stiffness",
         "N/m",
@@ -32,7 +32,7 @@ QUANTITIES = (
             why="it belongs to all eight beams, k = 2 k_s, and the length is the distance between adjacent beams",
         ),
     ),
-    Quantity(
+    DeviceFigure(
         "damping_ns_m",
         "Damping",
         "N s/m",
@@ -46,7 +46,7 @@ QUANTITIES = (
             "shears, it is not squeezed",
         ),
     ),
-    Quantity(
+    DeviceFigure(
         "f0_hz",
         "Resonance",
         "Hz",
@@ -59,14 +59,14 @@ QUANTITIES = (
             "given to the ratio of the widths",
         ),
     ),
-    Quantity("quality_factor", "Quality factor", "1", Equation("quality factor", r"Q=\sqrt{km}/\beta", "1.3.1")),
-    Quantity(
+    DeviceFigure("quality_factor", "Quality factor", "1", Equation("quality factor", r"Q=\sqrt{km}/\beta", "1.3.1")),
+    DeviceFigure(
         "static_gain_um_per_v",
         "Static gain",
         "um/V",
         Equation("static displacement per volt", r"x/v=F/k", "1.3.1"),
     ),
-    Quantity(
+    DeviceFigure(
         "force_n_per_v",
         "Force per volt",
         "N/V",
@@ -79,7 +79,7 @@ QUANTITIES = (
             "the structural thickness",
         ),
     ),
-    Quantity(
+    DeviceFigure(
         "pull_in_v",
         "Pull-in bias",
         "V",
@@ -93,7 +93,7 @@ QUANTITIES = (
         ),
     ),
     *(
-        Quantity(
+        DeviceFigure(
             f"gyro.mode_hz.{n}",
             f"Mode {n}",
             "Hz",
@@ -102,7 +102,7 @@ QUANTITIES = (
         for n in (1, 2)
     ),
     *(
-        Quantity(
+        DeviceFigure(
             f"gyro.quality_factor.{n}",
             f"Quality factor of mode {n}",
             "1",
@@ -110,20 +110,20 @@ QUANTITIES = (
         )
         for n in (1, 2)
     ),
-    Quantity("gyro.split_hz", "Split of the modes", "Hz", Equation("split", r"f_2-f_1", "6.1.3")),
-    Quantity(
+    DeviceFigure("gyro.split_hz", "Split of the modes", "Hz", Equation("split", r"f_2-f_1", "6.1.3")),
+    DeviceFigure(
         "gyro.axis_deg",
         "Axis of stiffness",
         "deg",
         Equation("principal axis nearest to x", r"\tfrac12\arctan\frac{2k_{xy}}{k_{xx}-k_{yy}}", "6.1.3"),
     ),
-    Quantity(
+    DeviceFigure(
         "gyro.tilt_deg",
         "Tilt of the locus",
         "deg",
         Equation("long axis", r"\tfrac12\arctan\frac{2\,\mathrm{Re}\,G}{1-|G|^2},\quad G=y/x", "6.1.5"),
     ),
-    Quantity(
+    DeviceFigure(
         "gyro.scale_pm_per_dps",
         "Scale factor",
         "pm/(deg/s)",
@@ -131,7 +131,7 @@ QUANTITIES = (
             "open loop", r"\frac{|y|}{\Omega}=\frac{2m_c\omega_1A}{|k_{yy}-m_y\omega_1^2+j\omega_1d_{yy}|}", "6.1.2"
         ),
     ),
-    Quantity(
+    DeviceFigure(
         "gyro.zero_rate_dps",
         "Zero rate output",
         "deg/s",
@@ -141,32 +141,32 @@ QUANTITIES = (
             "6.1.2",
         ),
     ),
-    Quantity(
+    DeviceFigure(
         "gyro.quadrature_dps",
         "Quadrature as a rate",
         "deg/s",
         Equation("cross stiffness, y held at zero", r"\Omega_q=\frac{k_{xy}}{2m_c\omega_x}", "6.1.3"),
     ),
-    Quantity(
+    DeviceFigure(
         "gyro.damping_rate_dps",
         "Cross damping as a rate",
         "deg/s",
         Equation("cross damping", r"\Omega_d=\frac{d_{xy}}{2m_c}", "6.1.3"),
     ),
-    Quantity(
+    DeviceFigure(
         "gyro.floor_deg_per_h_rthz",
         "Thermal floor",
         "deg/h/rtHz",
         Equation("Brownian force, one-sided", r"\Omega_n=\frac{\sqrt2\sqrt{4k_BTd_{yy}}}{2m_c\omega_xA}", "6.1.2"),
     ),
-    Quantity(
+    DeviceFigure(
         "gyro.arw_deg_per_rt_h",
         "Angle random walk",
         "deg/rt h",
         Equation("Brownian force, two-sided", r"N=\Omega_n/\sqrt2", "6.1.2"),
     ),
     *(
-        Quantity(
+        DeviceFigure(
             f"gyro.mass_{axis}_kg",
             f"Mass along {axis}",
             "kg",
@@ -179,14 +179,14 @@ QUANTITIES = (
         )
         for axis, other in (("x", "y"), ("y", "x"))
     ),
-    Quantity(
+    DeviceFigure(
         "gyro.coriolis_mass_kg",
         "Mass the rate acts on",
         "kg",
         Equation("moves along both axes", r"m_c=m_p+\tfrac12(m_{bx}+m_{tx}+m_{by}+m_{ty})", "6.1.2"),
     ),
     *(
-        Quantity(
+        DeviceFigure(
             f"gyro.stiffness_{axis}_n_m",
             f"Stiffness along {axis}",
             "N/m",
@@ -195,7 +195,7 @@ QUANTITIES = (
         for axis in ("x", "y")
     ),
     *(
-        Quantity(
+        DeviceFigure(
             f"gyro.force_{axis}_nn_per_v2",
             f"Comb force along {axis}",
             "nN/V^2",
@@ -203,13 +203,13 @@ QUANTITIES = (
         )
         for axis in ("x", "y")
     ),
-    Quantity(
+    DeviceFigure(
         "gyro.sense_ff_per_um",
         "Capacitance along y",
         "fF/um",
         Equation("difference of the two sides", r"\frac{dC}{dy}=4n\varepsilon_0\frac tg", "2.2.1.1"),
     ),
-    Quantity(
+    DeviceFigure(
         "gyro.sense_af_per_dps",
         "Capacitance per rate",
         "aF/(deg/s)",

@@ -70,7 +70,7 @@ QUANTITIES: dict[str, Callable[[Geometry], float]] = {
 
 
 @dataclass(frozen=True)
-class Spread:
+class DeviceSpread:
     """Devices of one drawing from one process: arrays of the drawn numbers and of the resulting parameters."""
 
     drawn: dict[str, FloatArray]
@@ -90,7 +90,7 @@ class Spread:
         return float(np.corrcoef(self.found[first], self.found[second])[0, 1])
 
 
-def draw(geometry: Geometry, tolerances: Tolerances, draws: int, seed: int, cut: float = 3.0) -> Spread:
+def draw(geometry: Geometry, tolerances: Tolerances, draws: int, seed: int, cut: float = 3.0) -> DeviceSpread:
     """Draw devices: independent normal deviations, cut (drawn again) beyond some standard deviations.
 
     Parameters
@@ -128,7 +128,7 @@ def draw(geometry: Geometry, tolerances: Tolerances, draws: int, seed: int, cut:
         if np.min(width) <= 0.0:
             raise InputError("vanishes in some of the devices; the tolerances are too wide", f"device.geometry.{name}")
     values: dict[str, Any] = {**geometry.model_dump(), **drawn}
-    return Spread(drawn, evaluate(Geometry.model_construct(**values)))
+    return DeviceSpread(drawn, evaluate(Geometry.model_construct(**values)))
 
 
 def sensitivity(geometry: Geometry, name: str, change: float) -> dict[str, float]:

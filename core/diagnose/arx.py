@@ -30,7 +30,7 @@ SIZE = 4
 """Number of coefficients."""
 
 
-class Estimator(Record):
+class ArxEstimate(Record):
     """Estimated coefficients, and the lower triangle of their covariance."""
 
     theta: Vector = vector(SIZE)
@@ -47,7 +47,7 @@ def coefficients_of(params: Any, context: Context) -> list[tuple[float, float, f
     return [coefficients(item.oscillator(context.device), context.dt_ms) for item in params.hypotheses]
 
 
-def put_at_hypotheses(banks: Iterable[Estimator], params: Any, context: Context) -> None:
+def put_at_hypotheses(banks: Iterable[ArxEstimate], params: Any, context: Context) -> None:
     """Let the estimator of every hypothesis begin there."""
     for bank, theta in zip(banks, coefficients_of(params, context), strict=False):
         bank.theta[:] = theta

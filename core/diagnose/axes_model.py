@@ -35,7 +35,7 @@ class AxesModel(Record):
     psi_y: float
 
 
-class Tick(NamedTuple):
+class AxesTick(NamedTuple):
     """A device over a tick: transition, its derivative by the rate, effect of forces."""
 
     phi: FloatArray
@@ -43,7 +43,7 @@ class Tick(NamedTuple):
     push: FloatArray
 
 
-def over_a_tick(device: TwoAxis, h: float) -> Tick:
+def over_a_tick(device: TwoAxis, h: float) -> AxesTick:
     r"""Return a device over a tick.
 
     .. math:: \Phi=e^{Ah},\quad N=\frac{\partial}{\partial\Omega}e^{(A+\Omega A_\Omega)h}\Big|_0,\quad
@@ -74,7 +74,7 @@ def over_a_tick(device: TwoAxis, h: float) -> Tick:
     push = np.column_stack([part[:, axis] for axis in (0, 1) for part in (start, middle, end)])
     # the derivative of an exponential is a corner of the exponential of both (Van Loan 1978)
     both = np.block([[system * h, swirl * h], [np.zeros((4, 4)), system * h]])
-    return Tick(moved[:4, :4], exponential(both)[:4, 4:], push)
+    return AxesTick(moved[:4, :4], exponential(both)[:4, 4:], push)
 
 
 def force_noise(device: TwoAxis, assumed_un: tuple[float, float], context: Context) -> FloatArray:
@@ -84,7 +84,9 @@ def force_noise(device: TwoAxis, assumed_un: tuple[float, float], context: Conte
     return covariance
 
 
-def steady(tick: Tick, forces: FloatArray, noise_um: float, omega: float, ticks: int) -> tuple[FloatArray, FloatArray]:
+def steady(
+    tick: AxesTick, forces: FloatArray, noise_um: float, omega: float, ticks: int
+) -> tuple[FloatArray, FloatArray]:
     r"""Return gain and residual covariance in the limit, for displacements measured every ``ticks`` ticks.
 
     The Riccati equation is solved with displacements over the noise of a measurement and velocities over that times

@@ -12,7 +12,7 @@ from core.diagnose.lanes import LANE
 from core.record import Record, Vector, vector
 
 
-class External(Judge):
+class ExternalDiagnoser(Judge):
     r"""The probabilities come from outside, :math:`P_i=f(y_i,u_{i-1},\dots)`: from a function.
 
     It is called once the sample has been measured, as every other diagnoser. `core.board.hosted` calls it; any other

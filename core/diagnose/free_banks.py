@@ -9,8 +9,8 @@ from core.block import Context, Equation, Stage, parameter
 from core.diagnose.arx import (
     REGRESSOR,
     SIZE,
+    ArxEstimate,
     ArxParams,
-    Estimator,
     WeighedBank,
     between_updates,
     gather_voltage,
@@ -78,7 +78,7 @@ class FreeBanks(WeighedBank):
         """Scratch, and an estimator for each bank."""
 
         product: Vector = vector(SIZE)
-        banks: Records[Estimator] = several(LANE)
+        banks: Records[ArxEstimate] = several(LANE)
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:

@@ -9,8 +9,8 @@ from core.block import Context, Equation, Stage, parameter
 from core.diagnose.arx import (
     REGRESSOR,
     SIZE,
+    ArxEstimate,
     ArxParams,
-    Estimator,
     WeighedBank,
     between_updates,
     gather_voltage,
@@ -28,7 +28,7 @@ from core.noise import key, normal
 from core.record import Records, Vector, several, vector
 
 
-class Bank(Estimator):
+class ReferenceEstimator(ArxEstimate):
     """An estimator and its own record: two true samples and two measured ones."""
 
     clean1: float
@@ -83,7 +83,7 @@ class ReferenceBanks(WeighedBank):
 
         g: Vector = vector(SIZE)
         product: Vector = vector(SIZE)
-        banks: Records[Bank] = several(LANE)
+        banks: Records[ReferenceEstimator] = several(LANE)
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:

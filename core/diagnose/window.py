@@ -45,7 +45,7 @@ class Packed(KalmanBank.Packed):
     span: float
 
 
-class Sample(Record):
+class WindowSample(Record):
     """Cosine, sine, and the normalised residuals of all models."""
 
     cosine: float
@@ -65,7 +65,7 @@ class State(KalmanBank.State):
     cosine_new: Vector = vector(LANE)
     sine_new: Vector = vector(LANE)
     power_new: Vector = vector(LANE)
-    ring: Records[Sample] = tail()
+    ring: Records[WindowSample] = tail()
 
 
 def tone_hz(params: Any, context: Context) -> float:

@@ -8,7 +8,7 @@ from core.block import Context, Equation, parameter
 from core.device.frame import Damage
 from core.device.geometry import drawn
 from core.faults.fault import FaultParams, severity
-from core.faults.structure import Bending, Effects, StructureFault, effects
+from core.faults.structure import Bending, FaultEffects, StructureFault, effects
 
 EXTENTS = {
     "end": (Damage(lost_ends=(2,)), Bending(10.0 / 9.4, 21.6 / 39.7, 0.0, 80.0, -3.5e10)),
@@ -54,6 +54,6 @@ class BrokenTruss(StructureFault):
         severity: float = severity("1", "how far the truss is broken")
 
     @classmethod
-    def whole(cls, params: Any, context: Context) -> Effects:
+    def whole(cls, params: Any, context: Context) -> FaultEffects:
         """Return a share of the effects of a clean break."""
         return effects(drawn(context), *EXTENTS[params.extent]).scaled(params.severity)

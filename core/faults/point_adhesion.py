@@ -8,7 +8,7 @@ from core.block import Context, Equation, parameter
 from core.device.frame import Damage
 from core.device.geometry import Geometry, drawn
 from core.faults.fault import FaultParams, severity
-from core.faults.structure import Bending, Effects, StructureFault, effects, linear
+from core.faults.structure import Bending, FaultEffects, StructureFault, effects, linear
 
 FITTED = Damage(adhesion=("inner", 0.75))
 BENDING = Bending(15.6 / 9.4, 37.8 / 39.7, 1.0e8, 1089.0, 1.18e11)
@@ -61,7 +61,7 @@ class PointAdhesion(StructureFault):
         severity: float = severity("1", "how firmly the point is held")
 
     @classmethod
-    def whole(cls, params: Any, context: Context) -> Effects:
+    def whole(cls, params: Any, context: Context) -> FaultEffects:
         """Return a share of the effects of a point that is held firmly."""
         damage = Damage(adhesion=(params.beam, params.position))
         bending = BENDING.scaled(linear(drawn(context), damage)[3] / linear(Geometry(), FITTED)[3])

@@ -8,7 +8,7 @@ from core.block import Context, Equation, parameter
 from core.device.frame import Damage
 from core.device.geometry import drawn
 from core.faults.fault import FaultParams, severity
-from core.faults.structure import Bending, Effects, StructureFault, effects
+from core.faults.structure import Bending, FaultEffects, StructureFault, effects
 
 
 class StiffnessOneSide(StructureFault):
@@ -38,7 +38,7 @@ class StiffnessOneSide(StructureFault):
         severity: float = severity("1", "added stiffness of one side, share of nominal")
 
     @classmethod
-    def whole(cls, params: Any, context: Context) -> Effects:
+    def whole(cls, params: Any, context: Context) -> FaultEffects:
         """Return the effects of a side with this stiffness."""
         whole = effects(drawn(context), Damage(side_scale=1.0 + params.severity), Bending())
         whole.stiffness = 0.5 * params.severity

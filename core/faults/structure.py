@@ -18,7 +18,7 @@ from core.ports import BlockPorts
 from core.record import Record
 
 
-class Effects(Record):
+class FaultEffects(Record):
     """Effect of a fault on each channel at full severity: added shares of five scales, then four sums themselves."""
 
     stiffness: float
@@ -31,9 +31,9 @@ class Effects(Record):
     turn: float
     turn_cubic: float
 
-    def scaled(self, factor: float) -> Effects:
+    def scaled(self, factor: float) -> FaultEffects:
         """Return a share of the effects."""
-        return Effects(factor * self.array)
+        return FaultEffects(factor * self.array)
 
 
 @dataclass(frozen=True)
@@ -72,10 +72,10 @@ def linear(geometry: Geometry, damage: Damage) -> tuple[float, float, float, flo
     )
 
 
-def effects(geometry: Geometry, damage: Damage, bending: Bending) -> Effects:
+def effects(geometry: Geometry, damage: Damage, bending: Bending) -> FaultEffects:
     """Return the effect of the full fault on each channel: added shares for scales, the sums themselves."""
     along, sideways, turning, turn = linear(geometry, damage)
-    whole = Effects.zeros()
+    whole = FaultEffects.zeros()
     whole.stiffness = along - 1.0
     whole.lateral = sideways - 1.0
     whole.lateral_reach = bending.reach_y - 1.0
@@ -94,7 +94,7 @@ class StructureFault(Fault):
     class Packed(PackedFault):
         """Severity and profile with the effects at full severity behind them."""
 
-        effects: Effects
+        effects: FaultEffects
 
     class Ports(BlockPorts):
         """The suspension: five scales, then four sums."""
@@ -111,7 +111,7 @@ class StructureFault(Fault):
         severity: float = severity("1", "present severity")
 
     @classmethod
-    def whole(cls, params: Any, context: Context) -> Effects:
+    def whole(cls, params: Any, context: Context) -> FaultEffects:
         """Return the effects at full severity, which is not 0."""
         raise NotImplementedError
 
@@ -119,7 +119,7 @@ class StructureFault(Fault):
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack severity, profile and effects."""
         p: StructureFault.Packed = super().pack(params, context)
-        p.effects = cls.whole(params, context) if params.severity != 0.0 else Effects.zeros()
+        p.effects = cls.whole(params, context) if params.severity != 0.0 else FaultEffects.zeros()
         return p
 
     @staticmethod

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from core.block import Equation, Stage
-from core.identify.filtered import Filtered, FilterParams, N, follow_voltage, observe
+from core.identify.filtered import Filtered, N, RegressorFilterParams, follow_voltage, observe
 from core.identify.identifier import ExcitationPorts, between_updates, excite
 
 
@@ -31,7 +31,7 @@ class Excitation(Filtered):
         Stage("Windows", "phi", "excitation excitation_relative identifiable", ("persistent excitation",)),
     )
 
-    class Params(FilterParams):
+    class Params(RegressorFilterParams):
         """Window, threshold and filters."""
 
     Ports = ExcitationPorts

@@ -12,7 +12,7 @@ from core.identify.identifier import PHYSICAL
 from core.record import Record, Vector, vector
 
 
-class External(Estimator):
+class ExternalIdentifier(Estimator):
     r"""The estimate comes from outside, :math:`\hat\theta_i=f(y_i,u_{i-1},\dots)`: from a function.
 
     It is called once the sample has been measured, as every other identifier. `core.board.hosted` calls it; any other

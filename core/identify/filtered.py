@@ -39,7 +39,7 @@ N = 3
 COEFFICIENTS = ("gain", "a1", "a2")
 
 
-class FilterParams(ExcitationParams):
+class RegressorFilterParams(ExcitationParams):
     """The filters."""
 
     filter_pole: float = parameter(
@@ -52,7 +52,7 @@ class FilterParams(ExcitationParams):
     )
 
 
-class FilteredParams(FilterParams, IdentifierParams):
+class FilteredParams(RegressorFilterParams, IdentifierParams):
     """Parameters of every identifier of kp, a1 and a2."""
 
     start: Literal["nominal", "zero"] = parameter("nominal", "estimate at the start", equation="3.3.2.8", live=False)

@@ -8,7 +8,7 @@ from core.block import Block, Context
 from core.device.two_axis import TwoAxis
 from core.diagnose.axes_hypothesis import AxesModels
 from core.kernel import kernel
-from core.loop.score import TOLERANCE, Factors, Score, Turns, count, holds, nothing_counted, take_turns
+from core.loop.score import TOLERANCE, Factors, Score, ScoreTiming, count, holds, nothing_counted, take_turns
 from core.ports import reads
 from core.record import Records, tail
 
@@ -34,7 +34,7 @@ class AxesScore(Block):
     Params = AxesModels
     State = Score.State
 
-    class Packed(Turns):
+    class Packed(ScoreTiming):
         """In addition the hypotheses."""
 
         hypotheses: Records[AxesFactors] = tail()

@@ -40,7 +40,7 @@ class Factors(Record):
     gain: float
 
 
-class Turns(Record):
+class ScoreTiming(Record):
     """Number of hypotheses, ticks between two verdicts, limit of an average of normalised residuals squared."""
 
     count: Choice
@@ -78,7 +78,7 @@ class Score(Block):
     )
     Params = BankParams
 
-    class Packed(Turns):
+    class Packed(ScoreTiming):
         """In addition the hypotheses."""
 
         hypotheses: Records[Factors] = tail()
@@ -150,7 +150,7 @@ class Score(Block):
         count(p, s, x, n, truth)
 
 
-def take_turns(p: Turns, n: int, context: Context) -> None:
+def take_turns(p: ScoreTiming, n: int, context: Context) -> None:
     """Pack the common fields of a score with this number of hypotheses."""
     samples = round(2.0 * SPAN) - 1
     p.count, p.every, p.limit = n, context.every, chi_square(samples, CHANCE) / samples
@@ -179,7 +179,7 @@ def holds(h: Factors, x: Score.Ports) -> bool:
 
 
 @kernel
-def count(p: Turns, s: Score.State, x: Score.Ports, n: int, truth: int) -> None:
+def count(p: ScoreTiming, s: Score.State, x: Score.Ports, n: int, truth: int) -> None:
     """Compare the winner with the truth, and count."""
     winner = winner_of(x.probability, n)
     if not math.isfinite(x.probability[winner]):

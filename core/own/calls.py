@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from core.kernel import is_kernel
-from core.own.expressions import Checked, Expressions, called
+from core.own.expressions import Checked, OwnExpressions, called
 from core.own.guarded import floored, signed
-from core.own.kinds import NUMBER, TRUTH, Count, Number, Part, signature
+from core.own.kinds import NUMBER, TRUTH, Count, NumberKind, RecordKind, signature
 from core.own.text import refuse
 from core.own.values import Mathematics
 from core.record import Record
@@ -19,7 +19,7 @@ COST_OF_CALL = 30
 """Operations that a call of an elementary function counts as."""
 
 
-class Calls(Expressions):
+class OwnCalls(OwnExpressions):
     """Checks calls."""
 
     def own_call(self, node: ast.Call, function: ast.FunctionDef, arguments: Sequence[Checked]) -> Checked:
@@ -84,15 +84,15 @@ class Calls(Expressions):
         (argument,) = node.args if len(node.args) == 1 else (node,)
         if isinstance(argument, ast.Attribute) and argument.attr == "count":
             kind, made = self.value(argument.value)
-            if isinstance(kind, Part) and self.counts(kind.record):
+            if isinstance(kind, RecordKind) and self.counts(kind.record):
                 return Count(), called("int", ast.Attribute(made, "count", ast.Load()))
         return refuse(node, "int(...) is allowed in an index only, or as int(p.count) of a bank")
 
     def _taken(self, node: ast.expr, taken: Any) -> ast.expr:
         """Check an argument of a kernel of the library."""
-        if isinstance(taken, Number):
+        if isinstance(taken, NumberKind):
             return self.number(node)
         kind, made = self.value(node)
-        if not isinstance(kind, Part) or not issubclass(kind.record, taken):
+        if not isinstance(kind, RecordKind) or not issubclass(kind.record, taken):
             refuse(node, f"must be a record {taken.__name__}")
         return made

@@ -16,7 +16,7 @@ import numpy as np
 from core.block import Block, BlockParams, Context, Oscillator
 from core.errors import InputError
 from core.kernel import is_kernel
-from core.own.kinds import Number, signature
+from core.own.kinds import NumberKind, signature
 from core.own.offered import MATHEMATICS, PYTHON
 from core.own.text import refuse
 from core.own.values import (
@@ -300,10 +300,10 @@ class Evaluator:
             refuse(node, f"takes {len(taken)} arguments by their place")
         given = []
         for value, kind in zip(arguments, taken, strict=True):
-            fits = isinstance(value, int | float) if isinstance(kind, Number) else isinstance(value, kind)  # type: ignore[arg-type]
+            fits = isinstance(value, int | float) if isinstance(kind, NumberKind) else isinstance(value, kind)  # type: ignore[arg-type]
             if not fits:
                 refuse(node, "is given something of another kind")
-            given.append(float(value) if isinstance(kind, Number) else value)
+            given.append(float(value) if isinstance(kind, NumberKind) else value)
         with np.errstate(all="ignore"):
             return plain(function)(*given)
 

@@ -18,10 +18,10 @@ from core.own.kinds import (
     TRUTH,
     Count,
     Kind,
-    Number,
+    NumberKind,
     Numbers,
-    Part,
-    Parts,
+    RecordKind,
+    RecordsKind,
     Signals,
     Truth,
     Whole,
@@ -48,7 +48,7 @@ def called(name: str, *arguments: ast.expr) -> ast.expr:
     return ast.Call(named(name), list(arguments), [])
 
 
-class Expressions:
+class OwnExpressions:
     """Checks expressions within one function.
 
     Attributes
@@ -82,7 +82,7 @@ class Expressions:
     def as_number(self, node: ast.expr, checked: Checked) -> ast.expr:
         """Return a checked expression as a number."""
         kind, made = checked
-        if isinstance(kind, Number):
+        if isinstance(kind, NumberKind):
             return made
         if isinstance(kind, Whole):
             if kind.low == kind.high and isinstance(made, ast.Constant):
@@ -151,7 +151,7 @@ class Expressions:
         found = None
         if isinstance(kind, Signals):
             found = of_port(kind.ports, node.attr)
-        elif isinstance(kind, Part):
+        elif isinstance(kind, RecordKind):
             found = of_field(kind, node.attr)
         if found is None:
             refuse(node, f"has no {node.attr}")
@@ -166,10 +166,10 @@ class Expressions:
             return NUMBER, named("_inf")
         return kind, ast.Attribute(owner, node.attr, ast.Load())
 
-    def item(self, node: ast.Subscript) -> tuple[Kind, Numbers | Parts, ast.expr, ast.expr, bool]:
+    def item(self, node: ast.Subscript) -> tuple[Kind, Numbers | RecordsKind, ast.expr, ast.expr, bool]:
         """Return the item of an index, the vector, both written anew, and whether the item is proved to exist."""
         kind, owner = self.value(node.value)
-        if not isinstance(kind, Numbers | Parts):
+        if not isinstance(kind, Numbers | RecordsKind):
             refuse(node, "is no vector")
         is_known = True
         if isinstance(kind, Numbers) and is_int_of_data(node.slice):
@@ -185,7 +185,7 @@ class Expressions:
                 refuse(node.slice, "may be no hypothesis; count them with range(int(p.count))")
             if kind.count and not (bounds.low >= 0 and bounds.high < kind.count):
                 refuse(node.slice, f"is from {bounds.low} to {bounds.high}; there are {kind.count} items, from 0")
-        inner: Kind = NUMBER if isinstance(kind, Numbers) else Part(kind.record, kind.is_written)
+        inner: Kind = NUMBER if isinstance(kind, Numbers) else RecordKind(kind.record, kind.is_written)
         return inner, kind, owner, index, is_known
 
     def _subscript(self, node: ast.Subscript) -> Checked:

@@ -13,7 +13,7 @@ from core.record import RECORD, RECORDS, SCALAR, VECTOR, Field, Record, record_o
 
 
 @dataclass(frozen=True)
-class Number:
+class NumberKind:
     """A float64."""
 
 
@@ -61,7 +61,7 @@ class Numbers:
 
 
 @dataclass(frozen=True)
-class Part:
+class RecordKind:
     """A record."""
 
     record: type[Record]
@@ -69,7 +69,7 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Parts:
+class RecordsKind:
     """Several records of one kind."""
 
     record: type[Record]
@@ -96,24 +96,28 @@ class Nothing:
     """The kind of a function that returns nothing."""
 
 
-Kind = Number | Truth | Whole | Count | Numbers | Part | Parts | Signals | Several | Nothing
-NUMBER, TRUTH, NOTHING = Number(), Truth(), Nothing()
+Kind = NumberKind | Truth | Whole | Count | Numbers | RecordKind | RecordsKind | Signals | Several | Nothing
+NUMBER, TRUTH, NOTHING = NumberKind(), Truth(), Nothing()
 
 
-def of_field(owner: Part, name: str) -> tuple[Kind, bool] | None:
+def of_field(owner: RecordKind, name: str) -> tuple[Kind, bool] | None:
     """Return the kind of a field of a record, and whether it may be written; None where there is no such field."""
     field = next((field for field in owner.record.layout.fields if field.name == name), None)
     return None if field is None else (_of(field, owner), owner.is_written and not field.is_choice)
 
 
-def _of(field: Field, owner: Part) -> Kind:
+def _of(field: Field, owner: RecordKind) -> Kind:
     if field.kind == SCALAR:
         return NUMBER
     if field.kind == VECTOR:
         return Numbers(field.count, owner.is_written)
     inner = record_of(owner.record._declared[field.name][0])
     assert inner is not None and field.kind in (RECORD, RECORDS)
-    return Part(inner, owner.is_written) if field.kind == RECORD else Parts(inner, field.count, owner.is_written)
+    return (
+        RecordKind(inner, owner.is_written)
+        if field.kind == RECORD
+        else RecordsKind(inner, field.count, owner.is_written)
+    )
 
 
 def of_port(ports: type[BlockPorts], name: str) -> tuple[Kind, bool] | None:

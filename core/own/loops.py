@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from core.diagnose.lanes import LANE as MOST_HYPOTHESES
-from core.own.calls import Calls
+from core.own.calls import OwnCalls
 from core.own.expressions import called
 from core.own.kinds import Count, Whole
 from core.own.text import refuse
@@ -16,7 +16,7 @@ from core.record import Record
 MOST_ROUNDS = 4096
 
 
-class Loops(Calls):
+class OwnLoops(OwnCalls):
     """Checks loops.
 
     Attributes

@@ -18,15 +18,15 @@ from core.own.kinds import (
     NUMBER,
     Count,
     Kind,
-    Number,
+    NumberKind,
     Numbers,
-    Part,
-    Parts,
+    RecordKind,
+    RecordsKind,
     Several,
     Truth,
     Whole,
 )
-from core.own.loops import Loops
+from core.own.loops import OwnLoops
 from core.own.text import refuse
 from core.own.values import as_read
 from core.record import Record
@@ -36,7 +36,7 @@ MOST_OPERATIONS = 50_000
 MOST_FUNCTIONS = 60
 
 
-class Steps(Loops):
+class OwnSteps(OwnLoops):
     """Checks functions: the step, and those it calls.
 
     Parameters
@@ -76,7 +76,7 @@ class Steps(Loops):
             self.check_name(argument, argument.arg)
         self.kinds, self.factor = dict(zip(taken, kinds, strict=True)), 1
         self.times, self._returned = _assigned(node), None
-        if any(self.times[name] and not isinstance(self.kinds[name], Number | Truth) for name in taken):
+        if any(self.times[name] and not isinstance(self.kinds[name], NumberKind | Truth) for name in taken):
             refuse(node, "assigns to an argument that is no number")
         body, ends = self.body(node.body)
         result = self._returned or NOTHING
@@ -205,7 +205,7 @@ class Steps(Loops):
         if isinstance(kind, Whole | Count) and not is_once:
             value, kind = self.as_number(target, (kind, value)), NUMBER
         before = self.kinds.get(target.id)
-        if not is_once and not isinstance(kind, Number | Truth):
+        if not is_once and not isinstance(kind, NumberKind | Truth):
             refuse(target, f"{target.id} is assigned more than once, and is no number")
         if before is not None and before != kind:
             refuse(target, f"{target.id} is something else above")
@@ -227,7 +227,7 @@ class Steps(Loops):
             refuse(target, "cannot be assigned to")
         if not is_written:
             refuse(target, f"a step may not write {ast.unparse(target)}")
-        if not isinstance(kind, Number):
+        if not isinstance(kind, NumberKind):
             refuse(target, "is no single number")
         if isinstance(target, ast.Attribute) or is_known:
             made.append(ast.Assign([place], value))
@@ -266,7 +266,9 @@ class Steps(Loops):
             kind, value = self.value(node.value)
             if isinstance(kind, Whole | Count):
                 kind, value = NUMBER, self.as_number(node.value, (kind, value))
-        if isinstance(kind, Numbers | Part | Parts) or (self._returned is not None and self._returned != kind):
+        if isinstance(kind, Numbers | RecordKind | RecordsKind) or (
+            self._returned is not None and self._returned != kind
+        ):
             refuse(node, "returns numbers, the same on all ways")
         self._returned = kind
         made.append(ast.Return(value))

@@ -27,9 +27,9 @@ from core.kernel import kernel
 from core.own.declare import Declaration
 from core.own.evaluate import Evaluator
 from core.own.guarded import signed
-from core.own.kinds import NOTHING, NUMBER, Kind, Part, Signals
+from core.own.kinds import NOTHING, NUMBER, Kind, RecordKind, Signals
 from core.own.public import AXES, check_ports, slot_of
-from core.own.steps import Steps
+from core.own.steps import OwnSteps
 from core.own.text import UnitError, read, refuse
 from core.own.values import Own
 from core.reference.waveform import Waveform
@@ -112,7 +112,7 @@ def unit(name: str, source: str) -> Unit:
     check_ports(node, family, declared_ports)
     packed = declared.inner.get("Packed", declared.base.Packed)
     state = declared.inner.get("State", declared.base.State)
-    steps = Steps(declared.names, Judge.Packed if issubclass(declared.base, Judge) else None)
+    steps = OwnSteps(declared.names, Judge.Packed if issubclass(declared.base, Judge) else None)
     space: dict[str, Any] = {
         **_attributes(declared, family),
         **declared.inner,
@@ -121,10 +121,10 @@ def unit(name: str, source: str) -> Unit:
         "__doc__": declared.values["__doc__"],
     }
     space |= _methods(declared)
-    kinds: list[Kind] = [Part(packed, False), Part(state, True), Signals(declared_ports)]
+    kinds: list[Kind] = [RecordKind(packed, False), RecordKind(state, True), Signals(declared_ports)]
     entry, result = "step", cast(Kind, NOTHING)
     if family == "reference":
-        entry, kinds, result = "shape", [Part(packed, False), NUMBER], NUMBER
+        entry, kinds, result = "shape", [RecordKind(packed, False), NUMBER], NUMBER
     method = declared.methods.get(entry)
     if method is not None:
         returned = steps.function(method, kinds, entry)
@@ -243,7 +243,7 @@ def _file(name: str, mark: str) -> str:
     return f"<unit {name} {mark}>"
 
 
-def _function(steps: Steps, entry: str, name: str, mark: str) -> FunctionType:
+def _function(steps: OwnSteps, entry: str, name: str, mark: str) -> FunctionType:
     """Return the checked functions as Python's own, to be compiled; nothing of them has run."""
     tree = ast.fix_missing_locations(ast.Module(list(steps.written), []))
     text = ast.unparse(tree)

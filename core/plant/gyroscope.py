@@ -3,7 +3,7 @@ r"""Vibrating gyroscope: one mass on two axes of a plane that turns."""
 from __future__ import annotations
 
 from core.block import Equation
-from core.plant.two_axis_body import Motion
+from core.plant.two_axis_body import TwoAxisMotion
 from core.plant.two_axis_plant import TwoAxisPlant, TwoAxisPorts, move, start
 from core.record import Record
 
@@ -51,7 +51,7 @@ class Gyroscope(TwoAxisPlant):
     class State(Record):
         """The device as it is now, with its motion."""
 
-        motion: Motion
+        motion: TwoAxisMotion
 
     class Ports(TwoAxisPorts):
         """The ports of a gyroscope."""

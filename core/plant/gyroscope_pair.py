@@ -12,7 +12,7 @@ from core.device.device import Device
 from core.errors import InputError
 from core.kernel import flush_tiny
 from core.plant.gyroscope import EQUATIONS
-from core.plant.two_axis_body import Body, Motion, pack_body, push_x, push_y, take
+from core.plant.two_axis_body import TwoAxisBody, TwoAxisMotion, pack_body, push_x, push_y, take
 from core.plant.two_axis_motion import advance
 from core.plant.two_axis_plant import TwoAxisPlant, TwoAxisPorts, move, start
 from core.ports import output, reads
@@ -66,13 +66,13 @@ class GyroscopePair(TwoAxisPlant):
     class Packed(TwoAxisPlant.Packed):
         """In addition the partner."""
 
-        partner: Body
+        partner: TwoAxisBody
 
     class State(Record):
         """Both devices as they are now, with their motion."""
 
-        motion: Motion
-        partner: Motion
+        motion: TwoAxisMotion
+        partner: TwoAxisMotion
 
     class Ports(TwoAxisPorts):
         """In addition the forces on the partner, the effects of the environment on it, and its motion."""

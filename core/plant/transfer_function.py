@@ -12,7 +12,7 @@ from core.plant.shuttle import PackedMotion, Shuttle, at_rest_sideways, coeffici
 from core.record import Record
 
 
-class TransferFunction(Shuttle):
+class TransferFunctionPlant(Shuttle):
     r"""A plant without units, :math:`a_2\ddot x+a_1\dot x+a_0x=b_0u`: chapter 4 and appendix B.
 
     Exact for a held drive, whatever the signs: :math:`1/(s-0.2)` grows, :math:`1/s^2` drifts. Faults of mass,

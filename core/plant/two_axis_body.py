@@ -23,7 +23,7 @@ MOST_PARTS = 32
 """Parts of a sample beyond which the bench is refused: the modes swing some ten times within it."""
 
 
-class Body(Record):
+class TwoAxisBody(Record):
     """A nominal device, its thermal noise per root of damping, and the parts and terms of a sample."""
 
     mass_x: float
@@ -44,7 +44,7 @@ class Body(Record):
     terms: float
 
 
-class Motion(Record):
+class TwoAxisMotion(Record):
     r"""A device as it is now, the force on it over one sample, and its motion.
 
     The force at the share a of the sample is :math:`f+a(rise+a\,bend)`.
@@ -71,7 +71,7 @@ class Motion(Record):
     y_velocity: float
 
 
-def pack_body(b: Body, device: TwoAxis, context: Context, stream: str, *, thermal_noise: bool) -> None:
+def pack_body(b: TwoAxisBody, device: TwoAxis, context: Context, stream: str, *, thermal_noise: bool) -> None:
     r"""Pack a device.
 
     The held thermal force is raised by :math:`\frac{\omega h/2}{\sin\omega h/2}`, so that its density at the resonance
@@ -116,7 +116,7 @@ def held_density(share: float) -> float:
 
 
 @kernel
-def take(b: Body, m: Motion, mass_scale: float, stiffness_scale: float, damping_scale: float) -> None:
+def take(b: TwoAxisBody, m: TwoAxisMotion, mass_scale: float, stiffness_scale: float, damping_scale: float) -> None:
     """Take the nominal device with all of its masses, stiffness and damping multiplied."""
     m.mass_x = b.mass_x * mass_scale
     m.mass_y = b.mass_y * mass_scale
@@ -130,7 +130,7 @@ def take(b: Body, m: Motion, mass_scale: float, stiffness_scale: float, damping_
 
 
 @kernel
-def push_x(m: Motion, start: float, middle: float, end: float, acceleration: float) -> None:
+def push_x(m: TwoAxisMotion, start: float, middle: float, end: float, acceleration: float) -> None:
     """Set the force along x: the parabola through three values, constant if held, and the force of the frame."""
     to_middle, to_end = middle - start, end - start
     m.force_x = start - m.mass_x * acceleration
@@ -138,7 +138,7 @@ def push_x(m: Motion, start: float, middle: float, end: float, acceleration: flo
 
 
 @kernel
-def push_y(m: Motion, start: float, middle: float, end: float, acceleration: float) -> None:
+def push_y(m: TwoAxisMotion, start: float, middle: float, end: float, acceleration: float) -> None:
     """Set the force along y like that along x."""
     to_middle, to_end = middle - start, end - start
     m.force_y = start - m.mass_y * acceleration

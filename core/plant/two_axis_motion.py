@@ -6,11 +6,11 @@ import math
 
 from core.kernel import kernel
 from core.noise import normal
-from core.plant.two_axis_body import Body, Motion
+from core.plant.two_axis_body import TwoAxisBody, TwoAxisMotion
 
 
 @kernel
-def advance(b: Body, s: Motion, rate: float, tick: float) -> None:
+def advance(b: TwoAxisBody, s: TwoAxisMotion, rate: float, tick: float) -> None:
     r"""Advance over the sample that starts at ``tick``, with the rate held.
 
     .. math:: a_{n+2}=\frac{M^{-1}\left[h^2f_n-(n+1)\,h\,(D+2m_c\Omega S)\,a_{n+1}-h^2K\,a_n\right]}{(n+1)(n+2)},

@@ -9,7 +9,7 @@ from core.block import Block, BlockParams, Context, Oscillator, parameter
 from core.device.two_axis import TwoAxis
 from core.elementary import atan2
 from core.kernel import flush_tiny, kernel
-from core.plant.two_axis_body import Body, Motion, pack_body, push_x, push_y, take
+from core.plant.two_axis_body import TwoAxisBody, TwoAxisMotion, pack_body, push_x, push_y, take
 from core.plant.two_axis_motion import advance
 from core.ports import BlockPorts, output, reads, tap
 from core.record import Record
@@ -65,7 +65,7 @@ class TwoAxisPlant(Block):
     class Packed(Record):
         """The device, and the start."""
 
-        body: Body
+        body: TwoAxisBody
         initial_x_um: float
         initial_y_um: float
         initial_x_velocity_um_ms: float
@@ -94,7 +94,7 @@ def start(p: TwoAxisPlant.Packed, x: TwoAxisPorts) -> None:
 
 
 @kernel
-def move(b: Body, m: Motion, x: TwoAxisPorts) -> None:
+def move(b: TwoAxisBody, m: TwoAxisMotion, x: TwoAxisPorts) -> None:
     """Advance a device with the effects of faults and environment, unless it starts; write energy and orbit."""
     take(b, m, x.mass_scale, x.stiffness_scale, x.damping_scale)
     m.damping_xy += x.cross_damping
@@ -114,7 +114,7 @@ def move(b: Body, m: Motion, x: TwoAxisPorts) -> None:
 
 
 @kernel
-def look(m: Motion, x: TwoAxisPorts) -> None:
+def look(m: TwoAxisMotion, x: TwoAxisPorts) -> None:
     """Write energy and orbit."""
     q1, q2, v1, v2 = x.x, x.y, x.x_velocity, x.y_velocity
     kinetic = m.mass_x * v1 * v1 + m.mass_y * v2 * v2

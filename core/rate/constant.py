@@ -8,7 +8,7 @@ from core.rate.drift import DriftParams
 from core.rate.generator import NOISE, RateGenerator
 
 
-class Constant(RateGenerator):
+class ConstantRate(RateGenerator):
     r"""Constant rate, :math:`\Omega(t)=\Omega_0`."""
 
     title = "Constant rate"

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from core.block import Equation, parameter
-from core.rate.constant import Constant
+from core.rate.constant import ConstantRate
 from core.rate.generator import NOISE
 
 
-class Noise(Constant):
+class Noise(ConstantRate):
     r"""Constant rate with noise of the tactical grade, :math:`\Omega(t)=\Omega_0+\Omega_n`.
 
     The usual figures cross where a record of a few minutes shows them: white noise and floor at 9 s, floor and random
@@ -17,7 +17,7 @@ class Noise(Constant):
     title = "Constant rate with noise"
     equations = (Equation("rate", r"\Omega(t)=\Omega_0+\Omega_n"), NOISE)
 
-    class Params(Constant.Params):
+    class Params(ConstantRate.Params):
         """The rate, and noise to begin with."""
 
         angle_random_walk_deg_rt_h: float = parameter(

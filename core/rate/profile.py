@@ -14,7 +14,7 @@ from core.rate.generator import NOISE, RateGenerator
 from core.record import Choice, Record, Records, tail
 
 
-class Point(BlockParams):
+class RateBreakpoint(BlockParams):
     """One breakpoint."""
 
     at_ms: float = parameter(0.0, "moment", "ms", ge=0, le=1e9)
@@ -28,7 +28,7 @@ class PackedPoint(Record):
     deg_per_s: float
 
 
-class Profile(RateGenerator):
+class RateProfile(RateGenerator):
     r"""Rate by breakpoints, :math:`\Omega(t)=\Omega_i+(\Omega_{i+1}-\Omega_i)\frac{t-t_i}{t_{i+1}-t_i}`.
 
     Before the first breakpoint and after the last one the rate is theirs.
@@ -43,8 +43,8 @@ class Profile(RateGenerator):
     class Params(DriftParams):
         """The breakpoints."""
 
-        points: list[Point] = parameter(
-            [Point(), Point(at_ms=100.0, deg_per_s=100.0)],
+        points: list[RateBreakpoint] = parameter(
+            [RateBreakpoint(), RateBreakpoint(at_ms=100.0, deg_per_s=100.0)],
             "the breakpoints, by rising moment",
             equation="rate",
             live=False,
@@ -68,7 +68,7 @@ class Profile(RateGenerator):
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the breakpoints."""
-        p: Profile.Packed = super().pack(params, context)
+        p: RateProfile.Packed = super().pack(params, context)
         p.count = len(params.points)
         for point, packed in zip(params.points, p.points, strict=True):
             packed.at_ms, packed.deg_per_s = point.at_ms, point.deg_per_s

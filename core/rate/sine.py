@@ -12,7 +12,7 @@ from core.rate.drift import DriftParams
 from core.rate.generator import NOISE, RateGenerator
 
 
-class Sine(RateGenerator):
+class SineRate(RateGenerator):
     r"""Rate that swings, :math:`\Omega(t)=\Omega_0\sin(2\pi ft+\varphi)`."""
 
     title = "Sine of the rate"
@@ -35,7 +35,7 @@ class Sine(RateGenerator):
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack frequency and phase."""
-        p: Sine.Packed = super().pack(params, context)
+        p: SineRate.Packed = super().pack(params, context)
         p.frequency_per_ms, p.phase = params.frequency_hz / 1e3, params.phase_deg / 360.0
         return p
 

@@ -21,7 +21,7 @@ RING = 16
 OCTAVES = tuple(str(2**level) for level in range(LEVELS))
 
 
-class Stage(Record):
+class AllanStage(Record):
     """The last means, the place of the next, how many there are, and the first mean of a pair."""
 
     ring: Vector = vector(RING)
@@ -32,7 +32,7 @@ class Stage(Record):
 
 
 @kernel
-def push(stage: Stage, value: float) -> None:
+def push(stage: AllanStage, value: float) -> None:
     """Keep a mean, and forget the oldest."""
     place = int(stage.place)
     stage.ring[place] = value
@@ -41,7 +41,7 @@ def push(stage: Stage, value: float) -> None:
 
 
 @kernel
-def difference(stage: Stage, count: int) -> float:
+def difference(stage: AllanStage, count: int) -> float:
     """Return the difference of the means of the last ``count`` values and of as many before."""
     place = int(stage.place)
     late = 0.0
@@ -100,7 +100,7 @@ class Allan(Block):
         samples: float
         squares: Vector = vector(LEVELS)
         averages: Vector = vector(LEVELS)
-        stages: Records[Stage] = several(STAGES)
+        stages: Records[AllanStage] = several(STAGES)
 
     class Ports(BlockPorts):
         """The estimate, and its deviation."""

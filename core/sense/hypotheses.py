@@ -30,7 +30,7 @@ class Odds(Grating):
     same_v: float
 
 
-class Hypothesis(Filter):
+class FringeHypothesis(Filter):
     """A filter, its score, whether it is followed."""
 
     score: float
@@ -42,7 +42,7 @@ class Followed(Record):
 
     best: float
     changes: float
-    hypotheses: Records[Hypothesis] = several(MOST)
+    hypotheses: Records[FringeHypothesis] = several(MOST)
 
 
 @kernel
@@ -52,7 +52,7 @@ def alike(p: Odds, hypothesis: Filter, x: float, v: float) -> bool:
 
 
 @kernel
-def mirror(p: Odds, s: Followed, hypothesis: Hypothesis, extreme: float) -> None:
+def mirror(p: Odds, s: Followed, hypothesis: FringeHypothesis, extreme: float) -> None:
     """Add the reflection of a hypothesis in an extreme of the light, unless a similar one or only better ones exist."""
     x = 2.0 * extreme - hypothesis.x
     v = -hypothesis.v
@@ -86,7 +86,7 @@ def mirror(p: Odds, s: Followed, hypothesis: Hypothesis, extreme: float) -> None
 
 
 @kernel
-def follow(p: Odds, hypothesis: Hypothesis, z: float) -> None:
+def follow(p: Odds, hypothesis: FringeHypothesis, z: float) -> None:
     """Correct one hypothesis, which has been predicted, and score it."""
     value, first, second = series(p, hypothesis.x)
     # to second order: near an extreme of the light the slope vanishes and only the curvature counts
@@ -96,7 +96,7 @@ def follow(p: Odds, hypothesis: Hypothesis, z: float) -> None:
 
 
 @kernel
-def turns(p: Odds, s: Followed, hypothesis: Hypothesis, x: float, v: float) -> None:
+def turns(p: Odds, s: Followed, hypothesis: FringeHypothesis, x: float, v: float) -> None:
     """Add the reflection of a hypothesis that came from (x, v), if it passed an extreme or turned near one."""
     half = math.pi / p.wave
     before = floor((x - p.offset) / half)

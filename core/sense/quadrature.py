@@ -36,7 +36,7 @@ def separation(spacing_um: float, pitch_um: float) -> tuple[float, float]:
     return cos(delta), math.copysign(max(abs(sine), 1e-3), sine)
 
 
-class Quadrature(Sensor):
+class QuadratureSensor(Sensor):
     r"""Displacement from the phase of two beams (6.3).
 
     .. math:: x=x_0+\frac{\Lambda}{2\pi}\,\mathrm{unwrap}\,\mathrm{atan2}(\sin\varphi,\cos\varphi),\qquad

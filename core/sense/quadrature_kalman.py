@@ -10,7 +10,7 @@ from core.elementary import floor
 from core.ports import BlockPorts, reads, tap
 from core.record import Record
 from core.sense.dual_beam import DualBeam
-from core.sense.quadrature import Quadrature
+from core.sense.quadrature import QuadratureSensor
 from core.sense.sensor import (
     ERROR_PORT,
     LAST_PORT,
@@ -87,7 +87,7 @@ class QuadratureKalman(Tracker):
     @classmethod
     def noise_um(cls, params: Any, context: Context) -> float:
         """Return the noise of the phase as displacement; the filter's own error is smaller but not white."""
-        return Quadrature.noise_um(calibrated(context, "quadrature", Quadrature.Params), context)
+        return QuadratureSensor.noise_um(calibrated(context, "quadrature", QuadratureSensor.Params), context)
 
     @classmethod
     def ambiguity_um(cls, params: Any, context: Context) -> float:

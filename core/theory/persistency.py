@@ -23,7 +23,7 @@ ROUNDING = 1e-13
 
 
 @dataclass(frozen=True)
-class Excitation:
+class RegressorExcitation:
     """The excitation of a regressor by an input.
 
     Parameters
@@ -49,12 +49,12 @@ class Excitation:
         return float(self.eigenvalues[-1] / least) if least > 0.0 else math.inf
 
 
-def excitation(gram: FloatArray) -> Excitation:
+def excitation(gram: FloatArray) -> RegressorExcitation:
     """Judge a mean Gram matrix, shape (n, n)."""
     size = np.sqrt(np.diag(gram))
     # Divide by one size after the other: the product of two small sizes may underflow.
     relative = 0.0 if np.any(size == 0.0) else float(_eigenvalues(gram / size[:, None] / size)[0])
-    return Excitation(_eigenvalues(gram), relative)
+    return RegressorExcitation(_eigenvalues(gram), relative)
 
 
 def _eigenvalues(matrix: FloatArray) -> FloatArray:

@@ -24,7 +24,7 @@ MOST = 20
 
 
 @dataclass(frozen=True)
-class Verdict:
+class PositiveRealVerdict:
     """Verdict on a transfer function, with its reasons.
 
     Parameters
@@ -75,7 +75,7 @@ def real_part(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
     return np.asarray(product[even] * (-1.0) ** (powers[even] // 2), dtype=np.float64)
 
 
-def positive_real(numerator: Sequence[float], denominator: Sequence[float]) -> Verdict:
+def positive_real(numerator: Sequence[float], denominator: Sequence[float]) -> PositiveRealVerdict:
     r"""Judge :math:`N(s)/D(s)`; coefficients highest power first.
 
     It is strictly positive real when D is Hurwitz, the relative degree is -1, 0 or 1,
@@ -115,7 +115,7 @@ def positive_real(numerator: Sequence[float], denominator: Sequence[float]) -> V
         reasons.append("the real part vanishes too fast at high frequency")
     if n[0] * d[0] < 0.0 and abs(degree) == 1:
         reasons.append("the sign at high frequency is wrong")
-    return Verdict(
+    return PositiveRealVerdict(
         strictly_positive_real=not reasons,
         positive_real=abs(degree) <= 1 and lowest >= -TINY and n[0] * d[0] > 0.0 and _axis_poles_are_positive(n, d),
         hurwitz=hurwitz,

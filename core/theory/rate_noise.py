@@ -39,7 +39,7 @@ FLOOR = 2.0 * math.log(2.0) / math.pi
 
 
 @dataclass(frozen=True)
-class Figure:
+class RateNoiseFigure:
     """One of the three figures.
 
     Parameters
@@ -61,9 +61,9 @@ class Figure:
 class RateNoise:
     """The three figures: deg/rt h, deg/h, deg/h/rt h, and the averaging times in s that they were fitted to."""
 
-    angle_random_walk: Figure
-    bias_instability: Figure
-    rate_random_walk: Figure
+    angle_random_walk: RateNoiseFigure
+    bias_instability: RateNoiseFigure
+    rate_random_walk: RateNoiseFigure
     from_s: float = 0.0
     to_s: float = 0.0
 
@@ -157,14 +157,14 @@ def _least_squares(taus: FloatArray, variances: FloatArray, times: FloatArray) -
     return terms, covariance, misfit
 
 
-def _figure(which: int, terms: FloatArray, covariance: FloatArray, needs: str) -> Figure:
+def _figure(which: int, terms: FloatArray, covariance: FloatArray, needs: str) -> RateNoiseFigure:
     """Return one figure; a figure below the noise has an upper limit, and needs another record."""
     term, deviation, scale = float(terms[which]), math.sqrt(covariance[which, which]), SCALES[which]
     if term > STANDS_OUT * deviation:
         value = math.sqrt(term)
-        return Figure(scale * value, scale * 0.5 * deviation / value)
+        return RateNoiseFigure(scale * value, scale * 0.5 * deviation / value)
     most = scale * math.sqrt(term + STANDS_OUT * deviation)
-    return Figure(None, most, f"is below the noise, at most {format_si(most, UNITS[which], 3)}; needs {needs}")
+    return RateNoiseFigure(None, most, f"is below the noise, at most {format_si(most, UNITS[which], 3)}; needs {needs}")
 
 
 def _seconds(duration_s: float) -> str:
@@ -172,5 +172,5 @@ def _seconds(duration_s: float) -> str:
 
 
 def _nothing(reason: str) -> RateNoise:
-    none = Figure(None, reason=reason)
+    none = RateNoiseFigure(None, reason=reason)
     return RateNoise(none, none, none)

@@ -20,13 +20,13 @@ from core.compile.code import PLACES, POINTER, begun
 from core.compile.machine import compiled, loaded
 from core.compile.numbers import DOUBLE, I64
 from core.ports import RESERVED
-from core.wall.host import FUEL, Instance, function_address
+from core.wall.host import FUEL, WalledInstance, function_address
 
 BUSY, CONTEXT, MEMORY, FUNCTION, STACK = range(5)
 """Columns of the table of instances: whether one is in use, its store, its memory, its step, the place of its stack."""
 
 
-class Behind(NamedTuple):
+class PortSignal(NamedTuple):
     """The signal behind a port: its name, its length, and whether the step may write it."""
 
     signal: str
@@ -39,7 +39,7 @@ class Sizes(NamedTuple):
 
     parameters: int
     state: int
-    ports: tuple[Behind, ...]
+    ports: tuple[PortSignal, ...]
 
     @property
     def signals(self) -> int:
@@ -79,7 +79,7 @@ class Crossing:
         Boards side by side.
     """
 
-    def __init__(self, instances: Sequence[Instance], sizes: Sizes, width: int) -> None:
+    def __init__(self, instances: Sequence[WalledInstance], sizes: Sizes, width: int) -> None:
         self._sizes, self._width, self._instances = sizes, width, instances
         self._room, self._top = instances[0].room, instances[0].stack_top
         self._cells = np.array([[0, a.context, a.memory, a.function, a.stack] for a in instances], dtype=np.int64)

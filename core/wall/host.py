@@ -26,7 +26,7 @@ INSTALL = "install wasmtime: pip install '.[wall]' in a checkout; or set units t
 
 
 @dataclass(frozen=True)
-class Instance:
+class WalledInstance:
     """A step in a memory of its own, by addresses of this process.
 
     Attributes
@@ -125,7 +125,7 @@ def _signature(kind: Any) -> str:
     return " ".join([*map(str, kind.params), "->", *map(str, kind.results)])
 
 
-def instance_of(module: Any, numbers: int) -> Instance:
+def instance_of(module: Any, numbers: int) -> WalledInstance:
     """Return an instance of a module that has been checked, with room for so many numbers.
 
     Raises
@@ -152,7 +152,7 @@ def instance_of(module: Any, numbers: int) -> Instance:
         raise InputError(f"does not fit behind the wall: {str(error).splitlines()[0]}") from None
     if not 0 <= free <= (own + 1) * PAGE or free % 8:
         raise InputError("says of no place in its memory that it is free")
-    return Instance(
+    return WalledInstance(
         context=_address(store._context()),
         function=ctypes.addressof(step._func),
         stack=ctypes.addressof(stack._global),

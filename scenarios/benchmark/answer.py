@@ -14,7 +14,7 @@ from core.board.fold import alike
 from core.diagnose.hypothesis import BankParams
 from core.errors import InputError
 from scenarios.benchmark.figures import classed, surprise
-from scenarios.benchmark.track import Case, Track
+from scenarios.benchmark.track import BenchmarkTrack, Case
 from scenarios.run import run
 
 NEUTRAL = {"estimate": 1.0, "loss": 0.0}
@@ -39,7 +39,7 @@ def _moved(block: type[Block]) -> str:
     return next((port.name for port in block.outputs if port.name in NEUTRAL), "")
 
 
-def section(block: type[Block], track: Track) -> Document:
+def section(block: type[Block], track: BenchmarkTrack) -> Document:
     """Return a diagnoser as it is put on the bench: its own defaults, and the hypotheses of the track if it has any."""
     if not _is_bank(block):
         return {"kind": block.name}
@@ -48,7 +48,7 @@ def section(block: type[Block], track: Track) -> Document:
 
 
 @dataclass(frozen=True)
-class Answer:
+class CaseProbabilities:
     """The probabilities of one diagnoser in one case, sample by sample.
 
     Attributes
@@ -67,7 +67,9 @@ class Answer:
     digest: str
 
 
-def answers(track: Track, case: Case, diagnosers: Mapping[str, Document], units: Document) -> dict[str, Answer]:
+def answers(
+    track: BenchmarkTrack, case: Case, diagnosers: Mapping[str, Document], units: Document
+) -> dict[str, CaseProbabilities]:
     """Run a case with diagnosers side by side on the same samples; return the answer of each.
 
     Parameters
@@ -92,17 +94,17 @@ def answers(track: Track, case: Case, diagnosers: Mapping[str, Document], units:
     return {name: _answer(track, result.trace, name, result.board.diagnosers[name].block) for name in diagnosers}
 
 
-def _answer(track: Track, trace: Mapping[str, FloatArray], name: str, block: type[Block]) -> Answer:
+def _answer(track: BenchmarkTrack, trace: Mapping[str, FloatArray], name: str, block: type[Block]) -> CaseProbabilities:
     if not _is_bank(block):
         output = _moved(block)
         said = np.ascontiguousarray(trace[f"{name}.{output}"])
-        return Answer(np.abs(said - NEUTRAL[output]), None, _digest(said))
+        return CaseProbabilities(np.abs(said - NEUTRAL[output]), None, _digest(said))
     names = [item.name for item in track.hypotheses]
     said = np.ascontiguousarray([trace[f"{name}.probability.{hypothesis}"] for hypothesis in names])
     groups = [*track.classes.values()]
     places = [next(i for i, group in enumerate(groups) if hypothesis in group) for hypothesis in names]
     p = classed(said, np.array(places, dtype=np.int64), len(groups))
-    return Answer(surprise(p[0]), p, _digest(said))
+    return CaseProbabilities(surprise(p[0]), p, _digest(said))
 
 
 def _digest(said: FloatArray) -> str:

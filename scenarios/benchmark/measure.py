@@ -11,7 +11,7 @@ import numpy as np
 from core.block import Block, FloatArray
 from core.board.document import Document
 from core.board.library import library_of
-from scenarios.benchmark.answer import Answer, answers, section, unscored
+from scenarios.benchmark.answer import CaseProbabilities, answers, section, unscored
 from scenarios.benchmark.figures import (
     BINS,
     alarms,
@@ -26,7 +26,7 @@ from scenarios.benchmark.figures import (
 )
 from scenarios.benchmark.results import WITHIN_SAMPLES, CaseDigest, LeftOut, Results, Row, bins, hash_of
 from scenarios.benchmark.seeds import BENCHMARK, SeedList
-from scenarios.benchmark.track import WARM, Case, Track, tracks
+from scenarios.benchmark.track import WARM, BenchmarkTrack, Case, tracks
 from scenarios.key import code_version
 from scenarios.studies.detectors import threshold_at
 
@@ -103,7 +103,7 @@ def _source(block: type[Block]) -> str:
 
 
 def _rows(
-    name: str, track: Track, sections: Mapping[str, Document], own: Document, seeds: SeedList, told: Told
+    name: str, track: BenchmarkTrack, sections: Mapping[str, Document], own: Document, seeds: SeedList, told: Told
 ) -> list[Row]:
     """Measure diagnosers on one track, all of them side by side."""
     healthy, cases = seeds.calibration(name), seeds.cases[name]
@@ -112,7 +112,7 @@ def _rows(
         for unit, answer in answers(track, track.healthy(seed), sections, own).items():
             calm[unit].append(answer.evidence[WARM:])
         told(name, number, len(healthy) + len(cases))
-    judges = {unit: Judge(unit, name, records) for unit, records in calm.items()}
+    judges = {unit: TrackJudge(unit, name, records) for unit, records in calm.items()}
     for number, seed in enumerate(cases, len(healthy) + 1):
         case = track.case(seed)
         for unit, answer in answers(track, case, sections, own).items():
@@ -121,7 +121,7 @@ def _rows(
     return [judge.row() for judge in judges.values()]
 
 
-class Judge:
+class TrackJudge:
     """Sets the threshold of one diagnoser on one track, and adds up its cases.
 
     Parameters
@@ -142,7 +142,7 @@ class Judge:
         self._false_alarms = self._healthy_samples = 0
         self._cases: list[CaseDigest] = []
 
-    def take(self, case: Case, answer: Answer) -> None:
+    def take(self, case: Case, answer: CaseProbabilities) -> None:
         """Add the answer in a case."""
         alarm = alarms(answer.evidence, self._threshold, WARM, case.onset)
         self._false_alarms += alarm.episodes

@@ -65,7 +65,7 @@ Seed = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{32}$")]
 Salt = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
 
 
-class Hidden(Table):
+class SecretSeeds(Table):
     """A list of seeds that is secret until it is revealed, and a salt that makes it impossible to guess."""
 
     salt: Salt
@@ -83,14 +83,14 @@ class Hidden(Table):
         return digest.hexdigest()
 
 
-def hidden_of(salt: str, tracks: tuple[str, ...]) -> Hidden:
+def hidden_of(salt: str, tracks: tuple[str, ...]) -> SecretSeeds:
     r"""Return the list of a salt, of 128 bits each of :math:`\text{SHA-256}(\text{salt track number})`."""
     count, _ = LISTS["public"]
 
     def seed(track: str, number: int) -> str:
         return hashlib.sha256(f"{salt} {track} {number}".encode()).digest()[:SEED_BYTES].hex()
 
-    return Hidden(salt=salt, cases={track: [seed(track, 1 + i) for i in range(count)] for track in tracks})
+    return SecretSeeds(salt=salt, cases={track: [seed(track, 1 + i) for i in range(count)] for track in tracks})
 
 
 def hidden_list(text: str, tracks: tuple[str, ...]) -> SeedList:
@@ -102,9 +102,9 @@ def hidden_list(text: str, tracks: tuple[str, ...]) -> SeedList:
         When it is malformed, lacks a track, or is not the list that was committed.
     """
     try:
-        hidden = Hidden.model_validate(read_toml(text, "--seeds"))
+        hidden = SecretSeeds.model_validate(read_toml(text, "--seeds"))
     except ValidationError as error:
-        raise from_validation(error, {"": [*Hidden.model_fields]}).under("--seeds") from None
+        raise from_validation(error, {"": [*SecretSeeds.model_fields]}).under("--seeds") from None
     if {*hidden.cases} != {*tracks}:
         raise InputError(f"needs seeds for each track and no other: {', '.join(tracks)}", "--seeds")
     if (found := hidden.commitment()) != COMMITMENT:

@@ -39,7 +39,7 @@ class FaultDraw(Table):
     truth: str
 
 
-class Track(Table):
+class BenchmarkTrack(Table):
     """A question, and how its cases are drawn: a pair of numbers is the ends of a range, all of it equally likely.
 
     Attributes
@@ -125,17 +125,17 @@ def _drawn(value: Any, seed: str, name: str) -> Any:
 
 
 @cache
-def tracks() -> dict[str, Track]:
+def tracks() -> dict[str, BenchmarkTrack]:
     """Return the tracks by name, in their order."""
     folder = files(__package__) / "tracks"
     found = {
-        entry.name.removesuffix(".toml"): Track.model_validate(read_toml(entry.read_text("utf-8"), entry.name))
+        entry.name.removesuffix(".toml"): BenchmarkTrack.model_validate(read_toml(entry.read_text("utf-8"), entry.name))
         for entry in folder.iterdir()
     }
     return dict(sorted(found.items(), key=lambda item: item[1].place))
 
 
-def track(name: str) -> Track:
+def track(name: str) -> BenchmarkTrack:
     """Return one track.
 
     Raises

@@ -18,7 +18,7 @@ from core.board.commands import MakeSafe
 from core.board.lane import Lane
 from core.board.observer import cautions, warnings
 from core.board.pattern import Pattern, Uneven
-from core.board.pending import Pending, Queue
+from core.board.pending import PendingCommand, PendingQueue
 from core.compile.machine import WIDTH
 from core.errors import InputError
 from scenarios.campaign.outcome import Outcome, outcome, summed
@@ -99,7 +99,7 @@ def _together(
     names: list[str],
     told: dict[str, str],
     samples: int,
-    waits: dict[int, Queue],
+    waits: dict[int, PendingQueue],
     runs: Sequence[Run],
     chosen: list[int],
 ) -> dict[int, Outcome]:
@@ -144,7 +144,7 @@ def warned(scenario: Scenario, board: Lane, told: dict[str, str], trace: dict[st
     return list(dict.fromkeys(chain(scenario.warnings, (text for _, text in found))))
 
 
-def waiting(scenario: Scenario, board: Board) -> Queue:
+def waiting(scenario: Scenario, board: Board) -> PendingQueue:
     """Return the commands of a scenario as they wait at its first tick.
 
     Raises
@@ -152,12 +152,12 @@ def waiting(scenario: Scenario, board: Board) -> Queue:
     InputError
         When one could never be carried out.
     """
-    queue = Queue()
+    queue = PendingQueue()
     for position, commands in enumerate(scenario.events):
         for command in commands:
             try:
                 check(board.spec, command)
             except InputError as error:
                 raise error.under(f"events.{position}") from None
-            queue.add(Pending(command, "scenario", command.tick(board.dt_ms) or 0))
+            queue.add(PendingCommand(command, "scenario", command.tick(board.dt_ms) or 0))
     return queue

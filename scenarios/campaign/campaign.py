@@ -43,7 +43,7 @@ Others = list[list[str]]
 """Outcomes of all runs but the first, point by point."""
 
 
-class Table(Protocol):
+class ResultTable(Protocol):
     """The table of results."""
 
     def have(self, keys: Sequence[str]) -> set[str]:
@@ -56,7 +56,7 @@ class Table(Protocol):
         """Add outcomes in one transaction; an outcome that the table has already stays as it is."""
 
 
-class Trace(Protocol):
+class TraceKeeper(Protocol):
     """Keeps the trace of the first run of a campaign; it is called in a worker process, so it can be pickled."""
 
     def __call__(self, document: dict[str, Any], seed: int, others: Others) -> tuple[Outcome, Any]:
@@ -100,7 +100,7 @@ def compute(runs: list[Run], version: str) -> tuple[Found, float]:
     return [(key, one.model_dump_json()) for key, one in found], (time.perf_counter() - began) / len(runs)
 
 
-def compute_traced(trace: Trace, run: Run, others: Others, version: str) -> tuple[Found, float, Any]:
+def compute_traced(trace: TraceKeeper, run: Run, others: Others, version: str) -> tuple[Found, float, Any]:
     """Carry out the run whose trace is kept; in a worker. Return its outcome, its time, and the additional result."""
     _check_version(version)
     key, point, seed = run
@@ -137,12 +137,12 @@ class Campaign:
     def __init__(
         self,
         sweep: Sweep,
-        table: Table,
+        table: ResultTable,
         *,
         workers: int = 1,
         scheduler: str = "",
         processes: Processes | None = None,
-        trace: Trace | None = None,
+        trace: TraceKeeper | None = None,
         on_progress: Callable[[int, int], None] = lambda _done, _all: None,
     ) -> None:
         self.sweep = sweep

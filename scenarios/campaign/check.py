@@ -12,7 +12,7 @@ from numbers import Real
 from typing import Any
 
 from core.errors import InputError
-from scenarios.campaign.points import Axis, Point, Points, Rows, Step, Values
+from scenarios.campaign.points import Point, Points, RowsAxis, Step, SweepAxis, Values
 from scenarios.campaign.sweep import Sweep
 from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
@@ -35,7 +35,7 @@ def check(sweep: Sweep) -> Scenario:
     number, scenario = _first(points)
     first = [_step(axis, number) for axis in points.varied]
     for position, axis in enumerate(points.varied):
-        for step in axis.ends(number) if isinstance(axis, Rows) else _telling(axis):
+        for step in axis.ends(number) if isinstance(axis, RowsAxis) else _telling(axis):
             steps = [*first[:position], step, *first[position + 1 :]]
             scenario = Scenario.load(points.of(steps).document, like=scenario)
     return Scenario.load(_longest(sweep, first).document, like=scenario)
@@ -44,7 +44,7 @@ def check(sweep: Sweep) -> Scenario:
 def _first(points: Points) -> tuple[int, Scenario]:
     """Return the first row of numbers that can be carried out, and the scenario of this point."""
     refusals: list[InputError] = []
-    for number in range(max((min(len(axis), MOST) for axis in points.varied if isinstance(axis, Rows)), default=1)):
+    for number in range(max((min(len(axis), MOST) for axis in points.varied if isinstance(axis, RowsAxis)), default=1)):
         try:
             return number, Scenario.load(points.of(_step(axis, number) for axis in points.varied).document)
         except InputError as error:
@@ -52,12 +52,12 @@ def _first(points: Points) -> tuple[int, Scenario]:
     raise refusals[0]
 
 
-def _step(axis: Axis, number: int) -> Step:
+def _step(axis: SweepAxis, number: int) -> Step:
     """Return a row of numbers, of other axes the first step."""
-    return axis[min(number, len(axis) - 1)] if isinstance(axis, Rows) else axis[0]
+    return axis[min(number, len(axis) - 1)] if isinstance(axis, RowsAxis) else axis[0]
 
 
-def _telling(axis: Axis) -> list[Step]:
+def _telling(axis: SweepAxis) -> list[Step]:
     """Return the steps of a variant or a grid that show whether it was mistyped."""
     steps = [axis[number] for number in range(len(axis))]
     least: dict[str, tuple[Any, int]] = {}
@@ -82,8 +82,8 @@ def _longest(sweep: Sweep, first: Sequence[Step]) -> Point:
     return Point(usual.labels, values, usual.base)
 
 
-def _sets_length(axis: Axis) -> bool:
-    some = 1 if isinstance(axis, Rows) else len(axis)  # all rows set the same
+def _sets_length(axis: SweepAxis) -> bool:
+    some = 1 if isinstance(axis, RowsAxis) else len(axis)  # all rows set the same
     return any(LENGTH & axis[number][1].keys() for number in range(some))
 
 

@@ -23,7 +23,7 @@ MOST_TURNS = 8
 """Number of thresholds that are found exactly; where there are more, the result depends on chance."""
 
 
-class Wanted(Table):
+class ThresholdGoal(Table):
     """The claim and the number that are looked at."""
 
     metric: str = Field(min_length=1, max_length=200)
@@ -42,7 +42,7 @@ class Wanted(Table):
         return self
 
     @classmethod
-    def checked(cls, values: dict[str, Any], field: str = "") -> Wanted:
+    def checked(cls, values: dict[str, Any], field: str = "") -> ThresholdGoal:
         """Check the request of a user.
 
         Raises
@@ -113,7 +113,7 @@ class Halving:
         Whether the claim holds for a figure.
     """
 
-    def __init__(self, wanted: Wanted, bears_out: Callable[[float | None], bool]) -> None:
+    def __init__(self, wanted: ThresholdGoal, bears_out: Callable[[float | None], bool]) -> None:
         self._wanted, self._bears_out = wanted, bears_out
         self._tried: dict[float, Tried] = {}
         self.rounds = 0

@@ -35,7 +35,7 @@ Read = Callable[[list[str]], Iterable[tuple[str, str]]]
 """Reads outcomes, JSON texts, from the table of results by their keys."""
 
 
-class Parts:
+class ParquetParts:
     """The files of a campaign.
 
     Parameters
@@ -182,7 +182,7 @@ class Parts:
         _put(self.path(number), fitted(table, schema))
 
 
-def write_runs(parts: Parts, file: BinaryIO, *, kind: Literal["csv", "parquet"]) -> int:
+def write_runs(parts: ParquetParts, file: BinaryIO, *, kind: Literal["csv", "parquet"]) -> int:
     """Write a row for each run, without the verdicts of single samples; return the number of rows."""
     rows = 0
     schema = parts.schema() or pa.schema([])

@@ -20,7 +20,7 @@ Step = tuple[Labels, Values]
 """One step of an axis: its label in tables, and the values it writes over a scenario."""
 
 
-class Axis(Protocol):
+class SweepAxis(Protocol):
     """Steps to combine with the steps of other axes."""
 
     def __len__(self) -> int:
@@ -30,7 +30,7 @@ class Axis(Protocol):
         """Return a step."""
 
 
-class Rows:
+class RowsAxis:
     """An axis whose steps are rows of an array: a step as a dictionary takes hundreds of bytes.
 
     Parameters
@@ -98,7 +98,7 @@ class Points(Sequence[Point]):
         Varied fields.
     """
 
-    def __init__(self, axes: Sequence[Axis], base: dict[str, Any]) -> None:
+    def __init__(self, axes: Sequence[SweepAxis], base: dict[str, Any]) -> None:
         self.varied, self._base = axes, base
         self._count = math.prod(len(axis) for axis in axes)
 
@@ -135,7 +135,7 @@ class Points(Sequence[Point]):
         """Return the values that some points write to a numeric field; nan where they write none."""
         for axis in reversed(self.varied):
             numbers, steps = np.divmod(numbers, len(axis))
-            if isinstance(axis, Rows):
+            if isinstance(axis, RowsAxis):
                 if path in axis.paths:
                     return axis.column(path)[steps]
             elif any(path in axis[at][1] for at in range(len(axis))):
@@ -146,7 +146,7 @@ class Points(Sequence[Point]):
         """Return the names of labels, in their order, and whether one of the values is a text."""
         found: dict[str, bool] = {}
         for axis in self.varied:
-            for number in range(1 if isinstance(axis, Rows) else len(axis)):  # the rows of an array are numbers
+            for number in range(1 if isinstance(axis, RowsAxis) else len(axis)):  # the rows of an array are numbers
                 for name, value in axis[number][0].items():
                     found[name] = found.get(name, False) or isinstance(value, str)
         return found

@@ -13,7 +13,7 @@ from core.block import FloatArray, IntArray
 from core.errors import unknown
 from scenarios.arrow import pa, pc
 from scenarios.campaign.columns import named
-from scenarios.campaign.parts import PART, Parts
+from scenarios.campaign.parts import PART, ParquetParts
 from scenarios.campaign.sums import Sums
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import PointTally, Tallies
@@ -59,7 +59,7 @@ class Survey:
         Its files.
     """
 
-    def __init__(self, sweep: Sweep, parts: Parts) -> None:
+    def __init__(self, sweep: Sweep, parts: ParquetParts) -> None:
         self.sweep, self.parts = sweep, parts
         self._schema = parts.schema() or pa.schema([])
 
@@ -207,7 +207,7 @@ class Survey:
 def listed(document: dict[str, Any], folder: Path, points: Sequence[int]) -> bytes:
     """Return the tallies of some points as JSON; in a worker, from the files of the campaign."""
     sweep = Sweep(document)
-    return Survey(sweep, Parts(sweep, folder)).listed(points)
+    return Survey(sweep, ParquetParts(sweep, folder)).listed(points)
 
 
 def _only(sums: Sums, figures: Sequence[str] | None) -> Sums:

@@ -13,7 +13,7 @@ from core.block import FloatArray
 from core.device.spread import Tolerances, draw
 from core.errors import InputError, from_validation, short
 from core.table import Table, Words
-from scenarios.campaign.points import Axis, Contents, Point, Points, Rows, Step, Values
+from scenarios.campaign.points import Contents, Point, Points, RowsAxis, Step, SweepAxis, Values
 from scenarios.edit import with_values
 from scenarios.key import run_key
 from scenarios.library import get
@@ -64,7 +64,7 @@ class LatinHypercube(Table):
         return np.array(columns).T
 
 
-class ProcessSpread(Table):
+class ProcessDeviations(Table):
     """Standard deviations of a process that makes devices of the scenario's drawing."""
 
     devices: int = Field(ge=1, le=MAX_POINTS)
@@ -75,7 +75,7 @@ class ProcessSpread(Table):
     film_gap_um: float = Field(Tolerances.film_gap_um, ge=0)
     youngs_modulus_gpa: float = Field(Tolerances.youngs_modulus_gpa, ge=0)
 
-    def steps(self, base: Scenario) -> Rows:
+    def steps(self, base: Scenario) -> RowsAxis:
         """Return the numbers of each drawn device."""
         geometry = base.spec.device.geometry
         if geometry is None:
@@ -83,17 +83,17 @@ class ProcessSpread(Table):
         tolerances = Tolerances(**self.model_dump(exclude={"devices", "seed"}))
         drawn = draw(geometry, tolerances, self.devices, self.seed).drawn
         paths = [f"device.geometry.{name}" for name in drawn]
-        return Rows(paths, np.array(list(drawn.values())).T, "device")
+        return RowsAxis(paths, np.array(list(drawn.values())).T, "device")
 
 
-class Variant(Table):
+class SweepVariant(Table):
     """One of several alternatives, such as a controller or a set of diagnosers."""
 
     name: str = Field(min_length=1, max_length=100)
     set: Values
 
 
-class Head(Table):
+class CampaignHead(Table):
     """The file of a campaign."""
 
     schema_: Literal[1] = Field(1, alias="schema")
@@ -102,10 +102,10 @@ class Head(Table):
     scenario: str | dict[str, Any]
     set: Values = Field({})
     seeds: Seeds = Seeds()
-    variants: list[Variant] = Field([], max_length=1000)
+    variants: list[SweepVariant] = Field([], max_length=1000)
     grid: dict[str, list[Any]] = Field({})
     latin_hypercube: LatinHypercube | None = None
-    process_spread: ProcessSpread | None = None
+    process_spread: ProcessDeviations | None = None
 
 
 class Sweep:
@@ -126,7 +126,7 @@ class Sweep:
     def __init__(self, document: dict[str, Any]) -> None:
         self.document = document
         try:
-            self.head = Head.model_validate(document)
+            self.head = CampaignHead.model_validate(document)
         except ValidationError as error:
             raise from_validation(error, {"": [*FIELDS]}) from None
         source = self.head.scenario
@@ -161,10 +161,10 @@ class Sweep:
             for seed in self.seeds:
                 yield run_key(content, seed), point, seed
 
-    def _axes(self) -> list[Axis]:
+    def _axes(self) -> list[SweepAxis]:
         """Return the axes to combine: the steps of each, with their labels and values."""
         head = self.head
-        axes: list[Axis] = []
+        axes: list[SweepAxis] = []
         if head.variants:
             _distinct([variant.name for variant in head.variants], "variants", "variants of one name")
             steps: list[Step] = [({"variant": variant.name}, variant.set) for variant in head.variants]
@@ -176,12 +176,12 @@ class Sweep:
             _distinct(labels, f"grid.{path}", "points of one value")
             axes.append([({path: label}, {path: value}) for label, value in zip(labels, choices, strict=True)])
         if head.latin_hypercube is not None:
-            axes.append(Rows([*head.latin_hypercube.ranges], head.latin_hypercube.values()))
+            axes.append(RowsAxis([*head.latin_hypercube.ranges], head.latin_hypercube.values()))
         if head.process_spread is not None:
             axes.append(head.process_spread.steps(self.base))
         return axes
 
-    def _check_paths(self, axes: list[Axis]) -> None:
+    def _check_paths(self, axes: list[SweepAxis]) -> None:
         """Refuse settings that make the labels of points wrong: seeds that are not used, values written over."""
         head = self.head
         ranges = head.latin_hypercube.ranges if head.latin_hypercube is not None else {}
@@ -192,7 +192,7 @@ class Sweep:
                 raise InputError("the noise seeds of a campaign belong in [seeds]", f"{where}.seed", "set [seeds]")
         taken: set[str] = set()
         for axis in axes:
-            some = 1 if isinstance(axis, Rows) else len(axis)  # all rows set the same
+            some = 1 if isinstance(axis, RowsAxis) else len(axis)  # all rows set the same
             paths = {path for number in range(some) for path in axis[number][1]}
             for path in sorted(paths & taken):
                 text = "has values in two of variants, grid, latin_hypercube and process_spread"
@@ -200,7 +200,7 @@ class Sweep:
             taken |= paths
 
 
-FIELDS = tuple("schema" if name == "schema_" else name for name in Head.model_fields)
+FIELDS = tuple("schema" if name == "schema_" else name for name in CampaignHead.model_fields)
 
 
 def _distinct(labels: list[str | float], field: str, what: str) -> None:

@@ -9,10 +9,10 @@ from typing import Any
 from core.errors import InputError, unknown
 from core.format import format_short
 from scenarios.campaign.campaign import Campaign, Found
-from scenarios.campaign.campaign import Table as Results
+from scenarios.campaign.campaign import ResultTable as Results
 from scenarios.campaign.check import check
 from scenarios.campaign.executor import Processes
-from scenarios.campaign.halving import ROUNDS, Halving, Wanted
+from scenarios.campaign.halving import ROUNDS, Halving, ThresholdGoal
 from scenarios.campaign.outcome import Outcome
 from scenarios.campaign.sweep import Sweep
 from scenarios.claims import holds
@@ -22,7 +22,7 @@ from scenarios.run import build
 from scenarios.schema import Scenario
 
 
-class Memory:
+class ResultMemory:
     """A table of results that lasts as long as its process."""
 
     def __init__(self) -> None:
@@ -76,7 +76,7 @@ class Search(Campaign):
     def __init__(
         self,
         scenario: Scenario,
-        wanted: Wanted,
+        wanted: ThresholdGoal,
         table: Results,
         *,
         workers: int = 1,

@@ -14,8 +14,8 @@ from core.errors import InputError
 from core.format import format_number, format_percent, format_short
 from scenarios.benchmark.figures import scores
 from scenarios.games.draw import NOISE_SEEDS, distances
-from scenarios.games.game import DIAGNOSER, Fact, Game, HandIn, Outcome, device_fact
-from scenarios.games.states import DATA_SHEET_UM, GAME, GIVEN, SIXTH, UNKNOWN, Hidden
+from scenarios.games.game import DIAGNOSER, Fact, Game, GameInput, Outcome, device_fact
+from scenarios.games.states import DATA_SHEET_UM, GAME, GIVEN, SIXTH, UNKNOWN, HiddenState
 from scenarios.run import run
 from scenarios.schema import Scenario
 
@@ -25,7 +25,7 @@ GUESS = 1.0 - 1.0 / (UNKNOWN + 1)
 """Brier's score of even odds on six."""
 
 
-class Settings(HandIn):
+class FilterAssumptions(GameInput):
     """The assumptions of the bank, and a sixth hypothesis; factors of 1 mean none."""
 
     assumed_noise_scale: float = parameter(
@@ -68,7 +68,7 @@ class Settings(HandIn):
         }
 
 
-def document(hidden: Hidden, settings: Settings) -> Document:
+def document(hidden: HiddenState, settings: FilterAssumptions) -> Document:
     """Return the bench of a seed with the bank set so."""
     about = {"id": BeTheFilter.id, "title": BeTheFilter.title}
     return {**hidden.document, **about, "diagnosers": {DIAGNOSER: settings.bank}}
@@ -89,7 +89,7 @@ class Sixth(NamedTuple):
     nearest: int
 
 
-def sixth_of(hidden: Hidden, settings: Settings) -> Sixth:
+def sixth_of(hidden: HiddenState, settings: FilterAssumptions) -> Sixth:
     r"""Return how the sixth hypothesis counts, :math:`w=\max(0,1-|Y_6-Y_x|/\min_j|Y_j-Y_x|)`."""
     if settings.sixth is None:
         return Sixth(0.0, 0)
@@ -98,7 +98,7 @@ def sixth_of(hidden: Hidden, settings: Settings) -> Sixth:
     return Sixth(max(0.0, 1.0 - own / min(given)), apart.index(min(apart)))
 
 
-class BeTheFilter(Game[Settings]):
+class BeTheFilter(Game[FilterAssumptions]):
     """Tune the bank of an unknown device by proper scoring."""
 
     id = GAME
@@ -132,18 +132,18 @@ class BeTheFilter(Game[Settings]):
         ),
     )
     attempts = 5
-    form = Settings
+    form = FilterAssumptions
     turned = ("assumed_noise_scale", "process_noise_v", "probability_floor")
 
-    def bench(self, seed: int, handed: Settings | None = None) -> Document:
+    def bench(self, seed: int, handed: FilterAssumptions | None = None) -> Document:
         """Return the live bench of a seed as a scenario, the bank set to the answer."""
-        hidden = Hidden(seed)
-        return {**document(hidden, handed or Settings()), "seed": hidden.draws.whole("live", NOISE_SEEDS)}
+        hidden = HiddenState(seed)
+        return {**document(hidden, handed or FilterAssumptions()), "seed": hidden.draws.whole("live", NOISE_SEEDS)}
 
-    def judge(self, seed: int, handed: Settings) -> Outcome:
+    def judge(self, seed: int, handed: FilterAssumptions) -> Outcome:
         """Return the points of an answer, with the points of the default settings."""
-        hidden = Hidden(seed)
-        usual, sixth = Settings(), sixth_of(hidden, handed)
+        hidden = HiddenState(seed)
+        usual, sixth = FilterAssumptions(), sixth_of(hidden, handed)
         brier, credit = _brier(hidden, handed, sixth), sixth.credit
         mean, ordinary = brier["all"], points(_brier(hidden, usual, sixth_of(hidden, usual))["all"])
         worth = points(mean)
@@ -170,7 +170,7 @@ class BeTheFilter(Game[Settings]):
 
     def hidden(self, seed: int) -> list[Fact]:
         """Return the hidden values of a seed."""
-        one = Hidden(seed)
+        one = HiddenState(seed)
         scale = one.noise_um**2 / DATA_SHEET_UM**2
         fault = ", ".join(
             f"{name} x {format_number(value, 3)}"
@@ -191,7 +191,7 @@ def points(brier: float) -> float:
     return 100.0 * (1.0 - brier / GUESS)
 
 
-def _brier(hidden: Hidden, settings: Settings, sixth: Sixth) -> dict[str, float]:
+def _brier(hidden: HiddenState, settings: FilterAssumptions, sixth: Sixth) -> dict[str, float]:
     """Return mean Brier scores over the noise seeds: of all samples, of the five states, of the unknown fault."""
     truth = hidden.truth
     scenario = Scenario.load({**document(hidden, settings), "samples": len(truth)})

@@ -12,7 +12,7 @@ from core.errors import InputError, unknown
 from core.format import format_number, format_percent, format_short
 from scenarios.games.draw import NOISE_SEEDS, Draws
 from scenarios.games.edge import GAME, MISSED, RUNS, Edge, document
-from scenarios.games.game import Fact, Game, HandIn, Kind, Outcome, device_fact
+from scenarios.games.game import Fact, Game, GameInput, Kind, Outcome, device_fact
 from scenarios.schema import Scenario
 
 RANGES: dict[str, tuple[float, float]] = {
@@ -38,7 +38,7 @@ def _kind(name: str) -> Kind:
     return Kind(name=name, title=block.title, unit=str(unit), minimum=low, maximum=high)
 
 
-class Named(HandIn):
+class Named(GameInput):
     """A fault and its severity."""
 
     fault: str = parameter("added_mass", "the fault that the bank shall miss")

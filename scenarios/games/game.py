@@ -21,11 +21,11 @@ MOST = 2**53
 """The largest seed."""
 
 
-class HandIn(BlockParams):
+class GameInput(BlockParams):
     """The numbers that a person hands in."""
 
 
-H = TypeVar("H", bound=HandIn)
+H = TypeVar("H", bound=GameInput)
 
 
 class Outcome(BaseModel):

@@ -40,7 +40,7 @@ FIRST, EACH, CHANGES = 1500, 1000, 6
 """Samples of the healthy beginning and of each of the states that come then, and how many these are."""
 
 
-class Hidden:
+class HiddenState:
     """The hidden values of a seed.
 
     Attributes

@@ -12,7 +12,7 @@ from core.board.board import Board
 from core.board.commands import Set
 from core.device.device import Device
 from core.device.frequency import figures
-from core.device.identification import Identified, Tone, identify, tone
+from core.device.identification import Identified, SweepTone, identify, tone
 from core.errors import InputError
 
 WIDE = (0.25, 2.0)
@@ -22,10 +22,10 @@ NEAR = 1.5
 
 
 @dataclass(frozen=True)
-class Sweep:
+class SineSweep:
     """The measured response, by rising frequency, and the device identified from it."""
 
-    tones: list[Tone]
+    tones: list[SweepTone]
     found: Identified
 
 
@@ -44,7 +44,7 @@ def sweep_sine(
     stop_hz: float | None = None,
     most_ticks: int | None = None,
     believed: Device | None = None,
-) -> Sweep:
+) -> SineSweep:
     """Identify the device of a board in its present state, on a copy; the board itself does not change.
 
     A first pass of sines spans the range, a second one spans the resonance found. At each tone the sweep waits for the
@@ -103,7 +103,7 @@ def sweep_sine(
         raise InputError("too close to half the sample rate", "study.stop_hz")
     held = not copy.spec.is_analogue
 
-    def measure(frequencies: FloatArray) -> list[Tone]:
+    def measure(frequencies: FloatArray) -> list[SweepTone]:
         with np.errstate(over="ignore"):  # endless periods are refused as too long
             periods = float(np.sum(1e3 / frequencies))
         ticks = (len(frequencies) * settle * decay_ms + cycles * periods) / copy.dt_ms
@@ -124,10 +124,10 @@ def sweep_sine(
         known = {entry.frequency_hz for entry in tones}
         tones += measure(np.array([f for f in np.linspace(low, high, points) if f not in known]))
     tones.sort(key=lambda entry: entry.frequency_hz)
-    return Sweep(tones, identify(tones, device.signed_force_n_per_v))
+    return SineSweep(tones, identify(tones, device.signed_force_n_per_v))
 
 
-def _measure(board: Board, hertz: float, amplitude_v: float, cycles: float, settle_ms: float, held: bool) -> Tone:
+def _measure(board: Board, hertz: float, amplitude_v: float, cycles: float, settle_ms: float, held: bool) -> SweepTone:
     """Play one tone and fit it."""
     sine = {"kind": "sine", "amplitude_v": amplitude_v, "frequency_hz": hertz}
     board.apply(Set(set={"controller.kind": "open_loop", "reference": sine}), "sweep")

@@ -11,7 +11,7 @@ from core.errors import InputError
 from core.faults.fault import FaultParams
 from core.format import format_percent, format_short
 from core.loop.guard import BEYOND_TRAVEL, ON_THE_RAIL, REASONS
-from scenarios.narrator.samples import Samples, rms
+from scenarios.narrator.samples import NarratorSignals, rms
 from scenarios.narrator.sentence import Kind, Sentence
 from scenarios.narrator.words import change, figure, length, listed, moment, uncapital
 
@@ -42,7 +42,7 @@ class Doings:
         guard: Any = spec.guard.params
         self._limits = {f"guard.{name}": getattr(guard, name) for name in ("travel_um", "rail_ms")}
 
-    def sentence(self, entry: LogEntry, samples: Samples) -> Sentence | None:
+    def sentence(self, entry: LogEntry, samples: NarratorSignals) -> Sentence | None:
         """Say an entry; nothing if it is of another kind."""
         command = entry.command or {}
         if entry.kind == "set":
@@ -65,7 +65,7 @@ class Doings:
         text = f"At {moment(numbers['time_ms'])} {text}."
         return Sentence(tick=tick, kind=kind, text=text, signals=signals, span=(tick, tick), numbers=numbers)
 
-    def _switch(self, tick: int, old: Any, new: str, samples: Samples) -> Sentence:
+    def _switch(self, tick: int, old: Any, new: str, samples: NarratorSignals) -> Sentence:
         came, went = self._title("control", new), self._title("control", old)
         restarts = f"{came} starts anew"
         text = restarts if old == new or not old else f"{came} takes the drive over from {went}"
@@ -78,7 +78,7 @@ class Doings:
             text += f"; before, the error was {figure(error, 'um')} (RMS over {length((tick - first) * self._dt_ms)})"
         return self._said("switch", tick, text, signals, numbers)
 
-    def _fault(self, entry: LogEntry, command: dict[str, Any], samples: Samples) -> Sentence:
+    def _fault(self, entry: LogEntry, command: dict[str, Any], samples: NarratorSignals) -> Sentence:
         name, severity = command["fault"], float(command["severity"])
         title, size = uncapital(self._title("faults", name)), self._severity(name, severity)
         before = (entry.old or {}).get("severity")
@@ -90,7 +90,7 @@ class Doings:
         text = f"{begins}{self._course(command.get('profile', {}))}; {changed or f'it changes {self._changes(name)}'}"
         return self._said("fault", entry.tick, text, [f"faults.{name}", *signals], numbers | numbers_now)
 
-    def _heal(self, entry: LogEntry, samples: Samples) -> Sentence | None:
+    def _heal(self, entry: LogEntry, samples: NarratorSignals) -> Sentence | None:
         names = list(entry.old or {})
         if not names:  # all were to be healed, and none was there
             return None
@@ -101,7 +101,9 @@ class Doings:
         faults = {"faults": float(len(names))}
         return self._said("heal", entry.tick, text, [*(f"faults.{name}" for name in names), *signals], faults | numbers)
 
-    def _factors(self, tick: int, faults: Sequence[str], samples: Samples) -> tuple[dict[str, float], str, list[str]]:
+    def _factors(
+        self, tick: int, faults: Sequence[str], samples: NarratorSignals
+    ) -> tuple[dict[str, float], str, list[str]]:
         """Return the factors on the nominal device that faults change at a tick, in words too, and their signals."""
         numbers, said, signals = {}, [], []
         blocks = [self._library.blocks("faults").get(name) for name in faults]

@@ -15,7 +15,7 @@ from core.board.rows import Rows
 from core.board.spec import Spec
 from core.signals import Signal
 from scenarios.narrator.doings import MEASURED, MODEL, SCALES, TOLD, TRIPS, Doings
-from scenarios.narrator.samples import Samples
+from scenarios.narrator.samples import NarratorSignals
 from scenarios.narrator.sentence import KINDS, Sentence
 from scenarios.narrator.settling import Settling
 from scenarios.narrator.verdicts import Verdicts
@@ -51,7 +51,7 @@ class Narrator:
             Verdicts(name, spec.diagnosers[name], turns[name], spec.dt_ms, len(chosen) == 1) for name in chosen
         ]
         self._doings, self._settling = Doings(spec), Settling(spec.dt_ms)
-        self._samples = Samples(
+        self._samples = NarratorSignals(
             column, outputs, [name for name in (MODEL, MEASURED, *SCALES.values()) if name in column]
         )
         self._followed = [f"{name}.{port}" for name in chosen for port in PORTS if f"{name}.{port}" in column]

@@ -25,7 +25,7 @@ def _keep(ring: Any, outputs: FloatArray, taps: FloatArray, columns: IntArray, f
             ring[k, (first + i) % places] = value
 
 
-class Samples:
+class NarratorSignals:
     """Gives signals by their names, rounded to single precision as recordings and the history keep them.
 
     So a replay has the same sentences as the bench.
@@ -65,9 +65,9 @@ class Samples:
             _keep(self._ring, rows.outputs, rows.taps, self._kept, rows.first_tick)
         self._rows, self.first = None, self.end
 
-    def copy(self) -> Samples:
+    def copy(self) -> NarratorSignals:
         """Return an independent copy."""
-        twin = Samples(self._columns, self._outputs, list(self._places))
+        twin = NarratorSignals(self._columns, self._outputs, list(self._places))
         twin._ring, twin.began, twin.first, twin.end = self._ring.copy(), self.began, self.end, self.end
         return twin
 

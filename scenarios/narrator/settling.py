@@ -10,7 +10,7 @@ import numpy as np
 from core.block import FloatArray
 from core.kernel import kernel
 from scenarios.narrator.doings import MEASURED, MODEL, SPAN
-from scenarios.narrator.samples import Samples
+from scenarios.narrator.samples import NarratorSignals
 from scenarios.narrator.sentence import Sentence
 from scenarios.narrator.words import figure, length, moment
 
@@ -64,7 +64,7 @@ class Settling:
         self._after = None if told.kind == "trip" else (told.tick, "healing" if told.kind == "heal" else told.kind)
         self._at, self._sums = told.tick, np.zeros(4)
 
-    def look(self, samples: Samples, until: int) -> Iterator[Sentence]:
+    def look(self, samples: NarratorSignals, until: int) -> Iterator[Sentence]:
         """Tell whether the error came back before a tick."""
         if self._after is None or self._at >= until or MODEL not in samples or MEASURED not in samples:
             return

@@ -11,7 +11,7 @@ from core.board.spec import Section
 from core.diagnose.hypothesis import ModelList
 from core.format import format_count, format_percent
 from core.loop.score import HELD
-from scenarios.narrator.samples import Samples, rms
+from scenarios.narrator.samples import NarratorSignals, rms
 from scenarios.narrator.sentence import Sentence
 from scenarios.narrator.words import figure, hypothesis_words, length, moment
 
@@ -55,7 +55,7 @@ class Verdicts:
         self._changed: int | None = None
         self._missed: list[list[FloatArray]] = []
 
-    def look(self, samples: Samples, changes: Mapping[str, list[tuple[int, int]]]) -> Iterator[Sentence]:
+    def look(self, samples: NarratorSignals, changes: Mapping[str, list[tuple[int, int]]]) -> Iterator[Sentence]:
         """Tell the verdicts in the rows of now, by tick and value of each change of winner and truth."""
         if samples.first == 0:
             self._held = self._nominal
@@ -77,14 +77,16 @@ class Verdicts:
             if old is not None:
                 yield self._sentence(samples, last, old, next(one for one in reversed(truths) if one[0] <= last))
 
-    def _truths(self, samples: Samples, changes: list[tuple[int, int]]) -> Iterator[tuple[int, int, int | None]]:
+    def _truths(
+        self, samples: NarratorSignals, changes: list[tuple[int, int]]
+    ) -> Iterator[tuple[int, int, int | None]]:
         """Return tick and value of each change of the truth, and when it changed last; the beginning is no change."""
         for tick, value in changes:
             self._changed = tick if tick != samples.began else None
             self._truth = value
             yield tick, value, self._changed
 
-    def _gather(self, samples: Samples, stop: int) -> None:
+    def _gather(self, samples: NarratorSignals, stop: int) -> None:
         """Gather the residual of the model that wins now, and of the model whose verdict holds."""
         first = samples.first + (self._since - samples.first) % self._every
         first = max(first, self._since)
@@ -93,12 +95,14 @@ class Verdicts:
             names = [f"{self._name}.{port}.{self._models[model]}" for model in (self._winner, self._held)]
             self._missed = [*self._missed, [samples.values(name, first, stop, self._every) for name in names]]
 
-    def _port(self, samples: Samples) -> str:
+    def _port(self, samples: NarratorSignals) -> str:
         """Return the signal by which models miss: residuals, or else normalised ones."""
         ports = ("residual", "nis")
         return next((port for port in ports if f"{self._name}.{port}.{self._models[0]}" in samples), "")
 
-    def _sentence(self, samples: Samples, tick: int, old: int, truth: tuple[int, int | None, int | None]) -> Sentence:
+    def _sentence(
+        self, samples: NarratorSignals, tick: int, old: int, truth: tuple[int, int | None, int | None]
+    ) -> Sentence:
         """Say a verdict."""
         new, numbers = self._winner, {"time_ms": tick * self._dt_ms}
         probability = samples.at(f"{self._name}.probability.{self._models[new]}", tick)
@@ -121,7 +125,9 @@ class Verdicts:
             numbers=numbers,
         )
 
-    def _misses(self, samples: Samples, new: int, old: int, numbers: dict[str, float], signals: list[str]) -> str:
+    def _misses(
+        self, samples: NarratorSignals, new: int, old: int, numbers: dict[str, float], signals: list[str]
+    ) -> str:
         """Return the text with the residual of the model that wins, and of the previous winner."""
         port, said = self._port(samples), []
         if not port:

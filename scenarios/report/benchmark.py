@@ -5,7 +5,7 @@ from __future__ import annotations
 from core.format import format_number, format_share, format_si
 from scenarios.benchmark.figures import WIDE, Estimate
 from scenarios.benchmark.results import Results, Row
-from scenarios.benchmark.track import Track
+from scenarios.benchmark.track import BenchmarkTrack
 
 HEAD = (
     "log score",
@@ -21,7 +21,7 @@ HEAD = (
 NONE = "-"
 
 
-def benchmark_text(results: Results, tracks: dict[str, Track]) -> str:
+def benchmark_text(results: Results, tracks: dict[str, BenchmarkTrack]) -> str:
     """Return all measured tracks, the data to recompute them, and the diagnosers that are left out."""
     lines = []
     for name, track in tracks.items():

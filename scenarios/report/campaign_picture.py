@@ -14,7 +14,7 @@ from pydantic import BaseModel, Field
 
 from core.block import FloatArray
 from core.errors import unknown
-from scenarios.campaign.points import Labels, Rows
+from scenarios.campaign.points import Labels, RowsAxis
 from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import PointTally
@@ -99,7 +99,7 @@ def campaign_picture(
         raise unknown("figure", figure, figures, "figure")
     figure = figure or next(iter(figures), "")
     grid = [path for path, choices in sweep.head.grid.items() if _is_varied(choices)]
-    drawn = [path for axis in sweep.points.varied if isinstance(axis, Rows) for path in axis.paths]
+    drawn = [path for axis in sweep.points.varied if isinstance(axis, RowsAxis) for path in axis.paths]
     kind = "ranking" if drawn or len(grid) > 2 else BY_NUMBERS[len(grid)]
     numbers = [*drawn, *grid]
     there = {number: point for number, point in points.items() if figure in point.metrics}

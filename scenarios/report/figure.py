@@ -26,8 +26,8 @@ from scenarios.measure.blocks import BLOCK, blocks, largest, loaded, mean
 from scenarios.metric_name import metric_scale
 from scenarios.narrator.words import diagnosis_words
 from scenarios.report.axis import Axis
-from scenarios.report.palette import Look, hypothesis, signal
-from scenarios.report.svg import Bar, Chart, Lane, Mark, Series, thin
+from scenarios.report.palette import LineStyle, hypothesis, signal
+from scenarios.report.svg import AreaRow, Bar, Chart, EventMark, Series, thin
 from scenarios.run import Result
 
 COLUMNS = 160
@@ -59,10 +59,10 @@ def figure(result: Result) -> Chart:
     return _followed(result) if asked else _motion(result)
 
 
-def marks(result: Result) -> list[Mark]:
+def marks(result: Result) -> list[EventMark]:
     """Return the events of the bench, each at its moment."""
     dt_ms = result.board.dt_ms
-    return [Mark(one.tick * dt_ms, one.text) for one in result.board.log if one.kind in DONE and one.tick]
+    return [EventMark(one.tick * dt_ms, one.text) for one in result.board.log if one.kind in DONE and one.tick]
 
 
 def _title(result: Result) -> str:
@@ -210,7 +210,7 @@ def _lanes(result: Result) -> Chart | None:
     names = [words.get(one, one) for one in next(iter(scores.values())).names]
     for name in list(scores)[:MOST_LANES]:
         areas = _areas(result, f"{name}.truth", is_truth=True) + _areas(result, f"{name}.winner", is_truth=False)
-        lanes.append(Lane(name.replace("_", " "), areas))
+        lanes.append(AreaRow(name.replace("_", " "), areas))
         for said in blocks(result.signal(f"{name}.truth"), result.signal(f"{name}.winner")):
             seen |= {int(value) for value in np.unique(said) if value >= 0}
     keys = [(names[i], hypothesis(i)) for i in sorted(seen) if i < len(names)]
@@ -218,7 +218,7 @@ def _lanes(result: Result) -> Chart | None:
     return Chart(_title(result), Axis(TIME, "ms", span), marks=marks(result), lanes=lanes, keys=keys)
 
 
-def _areas(result: Result, name: str, *, is_truth: bool) -> list[tuple[float, float, Look, bool]]:
+def _areas(result: Result, name: str, *, is_truth: bool) -> list[tuple[float, float, LineStyle, bool]]:
     """Return the hypothesis named at each moment; moments without one stay empty."""
     values = result.signal(name)
     picked = np.linspace(0, len(values) - 1, 2 * COLUMNS).astype(np.int64)
@@ -253,7 +253,7 @@ def _sensed(result: Result) -> Chart:
     """Show how far the sensor is from the truth over some periods."""
     at = _last_periods(result.signal("plant.displacement"))
     error = _thin(result, np.subtract, "sensor.displacement", "plant.displacement", at=at)
-    line = Series("error", *error, look=Look(3))
+    line = Series("error", *error, look=LineStyle(3))
     return Chart(_title(result), Axis(TIME, "ms"), Axis("measured less true", "um"), [line])
 
 

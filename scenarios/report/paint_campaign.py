@@ -7,7 +7,7 @@ from scenarios.report.axis import Axis
 from scenarios.report.campaign_picture import CampaignPicture, Part
 from scenarios.report.heat_map import Cell, HeatMap, paint_map
 from scenarios.report.point_name import label_scale, label_text, name_of
-from scenarios.report.rows import Row, RowChart, paint_rows
+from scenarios.report.rows import ReportRow, RowChart, paint_rows
 from scenarios.report.svg import Chart, Series, paint
 
 
@@ -20,7 +20,9 @@ def paint_campaign(shown: CampaignPicture) -> list[str]:
         return [_map(shown, part, scale) for part in shown.parts]
     figure = Axis(scale.title, "", (scale.shown(shown.low), scale.shown(shown.high)))
     if shown.kind == "rows":
-        rows = [Row(name_of(part.labels), scale.shown(part.mean[0]), scale.shown(part.std[0])) for part in shown.parts]
+        rows = [
+            ReportRow(name_of(part.labels), scale.shown(part.mean[0]), scale.shown(part.std[0])) for part in shown.parts
+        ]
         return [paint_rows(RowChart(scale.name, figure, rows))]
     x = label_scale(shown.across, [value for part in shown.parts for value in part.x])
     chart = Chart(
@@ -43,7 +45,7 @@ def paint_campaign(shown: CampaignPicture) -> list[str]:
 
 def _ranking(shown: CampaignPicture, scale: MetricScale) -> str:
     """Paint the correlation of the figure with each number."""
-    rows = [Row(label_scale(one.name, []).name, one.correlation) for one in shown.ranking]
+    rows = [ReportRow(label_scale(one.name, []).name, one.correlation) for one in shown.ranking]
     axis = Axis("rank correlation (grey: by chance)", "", (-1.0, 1.0))
     return paint_rows(RowChart(f"{scale.name}: what it goes with", axis, rows, True, shown.chance))
 

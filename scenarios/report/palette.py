@@ -18,16 +18,16 @@ DASHES: list[list[int]] = PALETTE["dashes"]
 
 
 @dataclass(frozen=True)
-class Look:
+class LineStyle:
     """Colour and dash of a line; the colour is a class of the style, which has one for each scheme."""
 
     slot: int
     dash: str = ""
 
     @staticmethod
-    def of(slot: int, dash: int) -> Look:
+    def of(slot: int, dash: int) -> LineStyle:
         """Return the look of a place in the palette."""
-        return Look(slot, " ".join(map(str, DASHES[dash % len(DASHES)])))
+        return LineStyle(slot, " ".join(map(str, DASHES[dash % len(DASHES)])))
 
     @property
     def stroke(self) -> str:
@@ -60,21 +60,21 @@ def _colours(colours: list[str]) -> str:
     return "".join(f".s{slot} {{ stroke: {c} }} .f{slot} {{ fill: {c} }} " for slot, c in enumerate(colours))
 
 
-def line(number: int) -> Look:
+def line(number: int) -> LineStyle:
     """Return the look of a line by its place among others."""
-    return Look.of(1 + number % (SLOTS - 1), number)
+    return LineStyle.of(1 + number % (SLOTS - 1), number)
 
 
-def hypothesis(index: int) -> Look:
+def hypothesis(index: int) -> LineStyle:
     """Return the look of a hypothesis by its place in the list."""
     order = PALETTE["hypotheses"]
-    return Look.of(order[index % len(order)], index // len(order))
+    return LineStyle.of(order[index % len(order)], index // len(order))
 
 
-def signal(name: str, number: int) -> Look:
+def signal(name: str, number: int) -> LineStyle:
     """Return the look of a signal: its own, or the look of its place among others."""
     known = PALETTE["signals"].get(name)
-    return Look.of(*known) if known else line(number)
+    return LineStyle.of(*known) if known else line(number)
 
 
 def ramp(share: float) -> str:

@@ -14,7 +14,7 @@ TALL = 22
 
 
 @dataclass(frozen=True)
-class Row:
+class ReportRow:
     """A name and its figure, with a deviation or none."""
 
     name: str
@@ -28,7 +28,7 @@ class RowChart:
 
     title: str
     axis: Axis
-    rows: Sequence[Row]
+    rows: Sequence[ReportRow]
     is_from_zero: bool = False
     """Bars from zero in place of dots."""
     chance: float = 0.0

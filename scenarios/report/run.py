@@ -14,7 +14,7 @@ from scenarios.narrator.words import diagnosis_words
 from scenarios.report.axis import Axis
 from scenarios.report.figure import TIME, figure, marks
 from scenarios.report.html import as_toml, page
-from scenarios.report.palette import Look, hypothesis, signal
+from scenarios.report.palette import LineStyle, hypothesis, signal
 from scenarios.report.svg import Chart, Series, thin
 from scenarios.run import Result
 
@@ -139,7 +139,7 @@ def _charts(result: Result) -> list[Chart]:
     return charts
 
 
-def _series(said: str, result: Result, name: str, look: Look | None = None) -> Series:
+def _series(said: str, result: Result, name: str, look: LineStyle | None = None) -> Series:
     """Return a signal as a line."""
     samples, values = thin(np.asarray, result.signal(name))
     return Series(said, (samples * result.board.dt_ms).tolist(), values, look=look)

@@ -16,7 +16,7 @@ import numpy as np
 from core.block import FloatArray, IntArray
 from scenarios.measure.blocks import loaded
 from scenarios.report.axis import Axis, Scale
-from scenarios.report.palette import Look, line, style
+from scenarios.report.palette import LineStyle, line, style
 
 LETTER = 5.9
 """Width of a letter, px; it decides where a legend starts its next row."""
@@ -33,12 +33,12 @@ class Series:
     y: Sequence[float]
     spread: Sequence[float] | None = None
     is_stepped: bool = False
-    look: Look | None = None
+    look: LineStyle | None = None
     is_dotted: bool = False
 
 
 @dataclass(frozen=True)
-class Mark:
+class EventMark:
     """A moment on the x axis, and the event at it."""
 
     x: float
@@ -46,11 +46,11 @@ class Mark:
 
 
 @dataclass(frozen=True)
-class Lane:
+class AreaRow:
     """A named row of areas: from, to, look, and whether it is the thin strip of the truth."""
 
     name: str
-    areas: Sequence[tuple[float, float, Look, bool]]
+    areas: Sequence[tuple[float, float, LineStyle, bool]]
 
 
 @dataclass(frozen=True)
@@ -73,10 +73,10 @@ class Chart:
     x: Axis = NOTHING
     y: Axis = NOTHING
     series: Sequence[Series] = ()
-    marks: Sequence[Mark] = ()
-    lanes: Sequence[Lane] = ()
+    marks: Sequence[EventMark] = ()
+    lanes: Sequence[AreaRow] = ()
     bars: Sequence[Bar] = ()
-    keys: Sequence[tuple[str, Look]] = ()
+    keys: Sequence[tuple[str, LineStyle]] = ()
     """Names of a legend where they differ from the names of the lines."""
 
 
@@ -205,7 +205,7 @@ def _field(chart: Chart, size: Size, top: int) -> list[str]:
     return parts
 
 
-def _lanes(lanes: Sequence[Lane], across: Callable[[float], float], left: int, top: int, bottom: int) -> list[str]:
+def _lanes(lanes: Sequence[AreaRow], across: Callable[[float], float], left: int, top: int, bottom: int) -> list[str]:
     """Paint lanes below each other; the strip of the truth is thin and above the verdicts."""
     parts: list[str] = []
     height = (bottom - top) / max(1, len(lanes))
@@ -239,20 +239,22 @@ def _bars(bars: Sequence[Bar], size: Size, top: int) -> list[str]:
         parts.append(f'<path d="M{left} {y}H{right}" class="grid"/>')
         parts.append(f'<path d="M{low} {y}H{max(high, low + 2)}" class="area s3" stroke-width="7"/>')
         dot = f'cx="{place(bar.value, left)}" cy="{y}" r="4"'
-        parts.append(f"<circle {dot} {Look(1 if bar.holds else 5).fill}><title>{escape(bar.name)}</title></circle>")
+        parts.append(
+            f"<circle {dot} {LineStyle(1 if bar.holds else 5).fill}><title>{escape(bar.name)}</title></circle>"
+        )
         parts.append(f'<text x="{right + 8}" y="{y + 4}">{escape(bar.text)}</text>')
     return parts
 
 
-def _keys(series: Sequence[Series]) -> list[tuple[str, Look]]:
+def _keys(series: Sequence[Series]) -> list[tuple[str, LineStyle]]:
     """Return name and look of every line, where there are several."""
     named = [(one.name, one.look or line(number)) for number, one in enumerate(series) if one.name]
     return named if len(series) > 1 else []
 
 
-def _wrapped(keys: Sequence[tuple[str, Look]], width: float) -> list[list[tuple[float, str, Look]]]:
+def _wrapped(keys: Sequence[tuple[str, LineStyle]], width: float) -> list[list[tuple[float, str, LineStyle]]]:
     """Put the names of a legend into rows, each with where it begins."""
-    rows: list[list[tuple[float, str, Look]]] = []
+    rows: list[list[tuple[float, str, LineStyle]]] = []
     at = math.inf
     for name, look in keys:
         wide = 34 + LETTER * len(name) + 10
@@ -264,7 +266,7 @@ def _wrapped(keys: Sequence[tuple[str, Look]], width: float) -> list[list[tuple[
     return rows
 
 
-def _legend(rows: Sequence[Sequence[tuple[float, str, Look]]], top: float) -> list[str]:
+def _legend(rows: Sequence[Sequence[tuple[float, str, LineStyle]]], top: float) -> list[str]:
     """Paint the names of the lines."""
     parts = []
     for row, entries in enumerate(rows):

@@ -11,7 +11,7 @@ from scenarios.sheets.begin import begin
 from scenarios.sheets.expression import evaluate, inserted
 from scenarios.sheets.look import limits_of, setting_of
 from scenarios.sheets.read import at, line_of, read_sheet
-from scenarios.sheets.sheet import Answered, Choice, Hold, Number, Section, Sheet
+from scenarios.sheets.sheet import Answered, Choice, Hold, NumberQuestion, Sheet, SheetSection
 
 
 def check(text: str, name: str) -> Sheet:
@@ -30,13 +30,13 @@ def check(text: str, name: str) -> Sheet:
     except InputError as error:
         raise at(name, line_of(lines, 0, len(lines), error.field), "", error) from None
     facts = dict(beginning.facts)
-    _try(sheet, lines, Section("", sheet.intro, None, "", 1), facts, board)
+    _try(sheet, lines, SheetSection("", sheet.intro, None, "", 1), facts, board)
     for section in sheet.sections:
         _try(sheet, lines, section, facts, board)
     return sheet
 
 
-def _try(sheet: Sheet, lines: list[str], section: Section, facts: dict[str, float], board: Board) -> None:
+def _try(sheet: Sheet, lines: list[str], section: SheetSection, facts: dict[str, float], board: Board) -> None:
     """Try the formulas, signals and settings of a section; the facts of its step exist from then on."""
     step = section.step
     try:
@@ -82,7 +82,7 @@ def _try_answer(step: Answered, facts: dict[str, float]) -> None:
     asked = step.asks
     if isinstance(asked, Choice):
         return
-    assert isinstance(asked, Number)
+    assert isinstance(asked, NumberQuestion)
     evaluate(asked.value, facts, "number.value")
     for position, mistake in enumerate(asked.mistakes):
         evaluate(mistake.value, facts, f"number.mistakes.{position}.value")

@@ -10,20 +10,20 @@ from core.errors import InputError, short
 from core.format import format_percent, format_short, unit_text
 from scenarios.sheets.expression import evaluate
 from scenarios.sheets.quantity import parse_quantity, unit_of
-from scenarios.sheets.sheet import Answered, Choice, Number
+from scenarios.sheets.sheet import Answered, Choice, NumberQuestion
 
 SMALLEST = 1e-12
 """Tolerance of a number that should be 0 when the sheet gives only a relative one."""
 
 
-class Verdict(NamedTuple):
+class AnswerVerdict(NamedTuple):
     """The share of the points that an answer earns, and the reason."""
 
     share: float
     reason: str
 
 
-def judge(step: Answered, text: str, facts: Mapping[str, float]) -> Verdict:
+def judge(step: Answered, text: str, facts: Mapping[str, float]) -> AnswerVerdict:
     """Judge an answer.
 
     Raises
@@ -38,7 +38,7 @@ def judge(step: Answered, text: str, facts: Mapping[str, float]) -> Verdict:
 def can_judge(step: Answered, facts: Mapping[str, float]) -> bool:
     """Return whether an answer can be judged: not if it needs the measurement of a step that was left out."""
     asked = step.asks
-    if isinstance(asked, Number):
+    if isinstance(asked, NumberQuestion):
         try:
             for formula in (asked.value, *(mistake.value for mistake in asked.mistakes)):
                 evaluate(formula, facts)
@@ -55,43 +55,45 @@ def solution(step: Answered, facts: Mapping[str, float]) -> str:
     return format_short(evaluate(asked.value, facts), asked.unit)
 
 
-def _choice(asked: Choice, text: str) -> Verdict:
+def _choice(asked: Choice, text: str) -> AnswerVerdict:
     for option in asked.options:
         if option.id == text:
             word = "right" if option.share == 1.0 else "partly right" if option.share else "wrong"
-            return Verdict(option.share, f"{word}: {option.because}" if option.because else word)
+            return AnswerVerdict(option.share, f"{word}: {option.because}" if option.because else word)
     raise InputError(f"no option is called {short(text)}", "answer", f"one of {', '.join(o.id for o in asked.options)}")
 
 
-def _number(asked: Number, text: str, facts: Mapping[str, float]) -> Verdict:
+def _number(asked: NumberQuestion, text: str, facts: Mapping[str, float]) -> AnswerVerdict:
     """Compare a number with the right one; the first of these cases that fits decides."""
     given = parse_quantity(text)
     to_base, base = unit_of(asked.unit)
     right = evaluate(asked.value, facts) * to_base
     if given.base == base:
         if _near(given.value, right, asked.within, asked.within_absolute * to_base):
-            return Verdict(1.0, "right")
+            return AnswerVerdict(1.0, "right")
         if asked.partly is not None and _near(given.value, right, asked.partly.within, 0.0):
-            return Verdict(asked.partly.share, f"within {format_percent(asked.partly.within, 0)}")
+            return AnswerVerdict(asked.partly.share, f"within {format_percent(asked.partly.within, 0)}")
         if asked.wrong_unit and _is_prefix_away(given.value, right, asked.within):
             power = round(math.log10(abs(given.value / right)))
-            return Verdict(asked.wrong_unit, f"right value, wrong unit: it is a factor of 1e{power} away")
+            return AnswerVerdict(asked.wrong_unit, f"right value, wrong unit: it is a factor of 1e{power} away")
         for mistake in asked.mistakes:
             if _near(given.value, evaluate(mistake.value, facts) * to_base, asked.within, 0.0):
-                return Verdict(mistake.share, mistake.because)
+                return AnswerVerdict(mistake.share, mistake.because)
         if asked.wrong_sign and _near(-given.value, right, asked.within, asked.within_absolute * to_base):
-            return Verdict(asked.wrong_sign, "right value, wrong sign")
+            return AnswerVerdict(asked.wrong_sign, "right value, wrong sign")
         if asked.right_sign and given.value * right > 0.0:
-            return Verdict(asked.right_sign, "right sign, wrong value")
-        return Verdict(0.0, "wrong")
+            return AnswerVerdict(asked.right_sign, "right sign, wrong value")
+        return AnswerVerdict(0.0, "wrong")
     named = "no unit" if not given.base else "wrong unit"
     number = given.value / given.factor
     if asked.wrong_unit and (
         _near(number, right / to_base, asked.within, asked.within_absolute)
         or _is_prefix_away(number, right / to_base, asked.within)
     ):
-        return Verdict(asked.wrong_unit, f"right value, {named}; it is asked in {unit_text(asked.unit) or 'no unit'}")
-    return Verdict(0.0, f"wrong, and {named}" if base else "wrong: it has no unit")
+        return AnswerVerdict(
+            asked.wrong_unit, f"right value, {named}; it is asked in {unit_text(asked.unit) or 'no unit'}"
+        )
+    return AnswerVerdict(0.0, f"wrong, and {named}" if base else "wrong: it has no unit")
 
 
 def _near(value: float, right: float, relative: float, absolute: float) -> bool:

@@ -8,11 +8,11 @@ from pydantic import BaseModel
 
 from core.errors import InputError
 from scenarios.sheets.judge import can_judge, judge
-from scenarios.sheets.sheet import Answered, Blind, Hold, Prediction, Question, Sheet
+from scenarios.sheets.sheet import Answered, BlindStep, Hold, Prediction, Sheet, SheetQuestion
 
 MOST_RECORDINGS = 20
 """Recordings handed in with a sheet."""
-AnyStep = Hold | Question | Prediction | Blind
+AnyStep = Hold | SheetQuestion | Prediction | BlindStep
 
 
 class Given(BaseModel):

@@ -10,12 +10,12 @@ from pydantic import TypeAdapter, ValidationError
 from core.errors import InputError, from_validation
 from core.nesting import read_toml
 from core.text import without_mark
-from scenarios.sheets.sheet import AnyStep, Blind, Head, Hold, Prediction, Question, Section, Sheet
+from scenarios.sheets.sheet import AnyStep, BlindStep, Hold, Prediction, Sheet, SheetHead, SheetQuestion, SheetSection
 
 FENCE, MARK, END = "+++", "```step", "```"
 LONGEST = 200_000
 """Characters of a sheet."""
-_STEP: TypeAdapter[Hold | Question | Prediction | Blind] = TypeAdapter(AnyStep)
+_STEP: TypeAdapter[Hold | SheetQuestion | Prediction | BlindStep] = TypeAdapter(AnyStep)
 _AT_LINE = re.compile(r"\(at line (\d+), column \d+\)")
 
 
@@ -40,7 +40,7 @@ def read_sheet(text: str, name: str) -> Sheet:
     if lines[0].strip() != FENCE or FENCE not in (line.strip() for line in lines[1:]):
         raise at(name, 1, "", InputError(f"begins with front matter between two lines of {FENCE}"))
     end = next(i for i, line in enumerate(lines) if i and line.strip() == FENCE)
-    head = _table(name, "", lines, 1, end, Head.model_validate)
+    head = _table(name, "", lines, 1, end, SheetHead.model_validate)
     starts = [i for i in range(end + 1, len(lines)) if lines[i].startswith("## ") and not _is_fenced(lines, end, i)]
     if not starts:
         raise at(name, end + 1, "", InputError("has no section; one begins with '## '"))
@@ -58,20 +58,20 @@ def at(name: str, line: int, step: str, error: InputError) -> InputError:
     return InputError(error.message, f"{where}, {error.field}" if error.field else where, error.hint, error.code)
 
 
-def _section(name: str, lines: list[str], start: int, stop: int) -> Section:
+def _section(name: str, lines: list[str], start: int, stop: int) -> SheetSection:
     heading = lines[start].removeprefix("## ").strip()
     marks = [i for i in range(start, stop) if lines[i].strip() == MARK]
     if len(marks) > 1:
         raise at(name, marks[1] + 1, "", InputError("a section has one step; begin another section before this one"))
     if not marks:
-        return Section(heading, "\n".join(lines[start + 1 : stop]).strip(), None, "", start + 1)
+        return SheetSection(heading, "\n".join(lines[start + 1 : stop]).strip(), None, "", start + 1)
     begin = marks[0]
     end = next((i for i in range(begin + 1, stop) if lines[i].strip() == END), None)
     if end is None:
         raise at(name, begin + 1, "", InputError(f"the step has no end; it ends with a line of {END}"))
     step = _table(name, _id_of(lines, begin + 1, end), lines, begin + 1, end, _STEP.validate_python)
     text, after = ("\n".join(lines[a:b]).strip() for a, b in ((start + 1, begin), (end + 1, stop)))
-    return Section(heading, text, step, after, start + 1, begin + 1)
+    return SheetSection(heading, text, step, after, start + 1, begin + 1)
 
 
 def _table(name: str, step: str, lines: list[str], start: int, stop: int, validate: Any) -> Any:

@@ -17,13 +17,13 @@ NUMBER_COSTS = 0.25
 """Share of the points of a number that a wrong answer costs by default."""
 
 
-class Part(BaseModel):
+class SheetPart(BaseModel):
     """Base of all parts of a sheet: no field it does not know, no silent conversion."""
 
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
 
 
-class Drawn(Part):
+class Drawn(SheetPart):
     """A number that varies with the student: low, low + step, and so on up to high."""
 
     low: float
@@ -46,7 +46,7 @@ class Drawn(Part):
         return self.low + seed % self.count * self.step
 
 
-class Bench(Part):
+class SheetBench(SheetPart):
     """The bench that a sheet begins with."""
 
     scenario: str = Field(description="Id of a scenario of the library")
@@ -57,26 +57,26 @@ class Bench(Part):
     )
 
 
-class Head(Part):
+class SheetHead(SheetPart):
     """The front matter."""
 
     schema_: Literal[1] = Field(alias="schema")
     title: Words
     summary: Words
     minutes: int = Field(ge=5, le=90)
-    bench: Bench
+    bench: SheetBench
     draws: dict[Name, Drawn] = {}
     numbers: dict[Name, Formula] = Field({}, description="Named formulas, each over the facts and the ones before")
 
 
-class Hint(Part):
+class Hint(SheetPart):
     """Help, and its cost; the price is shown before."""
 
     text: Words
     costs: float = Field(ge=0, description="Points")
 
 
-class Step(Part):
+class SheetStep(SheetPart):
     """Fields of all steps."""
 
     id: Name
@@ -84,7 +84,7 @@ class Step(Part):
     hints: list[Hint] = []
 
 
-class Limits(Part):
+class Limits(SheetPart):
     """A quantity of the bench, and the value that the step requires."""
 
     label: Words
@@ -121,7 +121,7 @@ class Limits(Part):
         return self
 
 
-class Hold(Step):
+class Hold(SheetStep):
     """Conditions that hold together for a time of the device."""
 
     kind: Literal["hold"]
@@ -131,7 +131,7 @@ class Hold(Step):
     trace: list[str] = Field([], max_length=3, description="Signals with a small stored trace")
 
 
-class Option(Part):
+class Option(SheetPart):
     """One of the answers to choose from."""
 
     id: Name
@@ -140,7 +140,7 @@ class Option(Part):
     because: str = Field("", max_length=400)
 
 
-class Choice(Part):
+class Choice(SheetPart):
     """A question with answers to choose from."""
 
     options: list[Option] = Field(min_length=2, max_length=8)
@@ -154,14 +154,14 @@ class Choice(Part):
         return self
 
 
-class Partly(Part):
+class Partly(SheetPart):
     """A wider tolerance, and the share it earns."""
 
     within: float = Field(gt=0, lt=1)
     share: Share
 
 
-class Mistake(Part):
+class Mistake(SheetPart):
     """A number that a known mistake leads to, the share it earns, and the name of the mistake."""
 
     value: Formula
@@ -169,7 +169,7 @@ class Mistake(Part):
     because: Words
 
 
-class Number(Part):
+class NumberQuestion(SheetPart):
     """A question for a number."""
 
     value: Formula
@@ -183,12 +183,12 @@ class Number(Part):
     mistakes: list[Mistake] = []
 
 
-class Answered(Step):
+class Answered(SheetStep):
     """A step that is answered in words: a question, or a prediction."""
 
     question: Words
     choice: Choice | None = None
-    number: Number | None = None
+    number: NumberQuestion | None = None
     tries: int = Field(3, ge=1, le=10)
     wrong_costs: float | None = Field(None, ge=0, description="Points that a wrong answer loses")
 
@@ -199,7 +199,7 @@ class Answered(Step):
         return self
 
     @property
-    def asks(self) -> Choice | Number:
+    def asks(self) -> Choice | NumberQuestion:
         """The question."""
         asked = self.choice or self.number
         assert asked is not None
@@ -215,7 +215,7 @@ class Answered(Step):
         return NUMBER_COSTS * self.points
 
 
-class Question(Answered):
+class SheetQuestion(Answered):
     """Answered after a run."""
 
     kind: Literal["question"]
@@ -230,22 +230,22 @@ class Prediction(Answered):
     wrong_costs: float | None = 0.0
 
 
-class Blind(Step):
+class BlindStep(SheetStep):
     """A blind diagnosis: done with the first answer committed behind the opening of this step."""
 
     kind: Literal["blind"]
 
 
-AnyStep = Annotated[Hold | Question | Prediction | Blind, Field(discriminator="kind")]
+AnyStep = Annotated[Hold | SheetQuestion | Prediction | BlindStep, Field(discriminator="kind")]
 
 
 @dataclass(frozen=True)
-class Section:
+class SheetSection:
     """Text, a step perhaps, and the text that is shown once it is done."""
 
     heading: str
     text: str
-    step: Hold | Question | Prediction | Blind | None
+    step: Hold | SheetQuestion | Prediction | BlindStep | None
     after: str
     line: int
     step_line: int = 0
@@ -256,13 +256,13 @@ class Sheet:
     """A lab sheet."""
 
     id: str
-    head: Head
+    head: SheetHead
     intro: str
-    sections: tuple[Section, ...]
+    sections: tuple[SheetSection, ...]
     source: str
 
     @property
-    def steps(self) -> list[Hold | Question | Prediction | Blind]:
+    def steps(self) -> list[Hold | SheetQuestion | Prediction | BlindStep]:
         """The steps in their order."""
         return [section.step for section in self.sections if section.step is not None]
 
@@ -271,7 +271,7 @@ class Sheet:
         """The most that a student can earn."""
         return sum(step.points for step in self.steps)
 
-    def step(self, name: str) -> Hold | Question | Prediction | Blind | None:
+    def step(self, name: str) -> Hold | SheetQuestion | Prediction | BlindStep | None:
         """Return a step, or nothing."""
         return next((step for step in self.steps if step.id == name), None)
 

@@ -99,7 +99,7 @@ def solved_sample(board: Board, samples: int = 200) -> Callable[[], float]:
     return lambda: cpu_ns(lambda: solved(board, samples), samples)
 
 
-class Estimate(Record):
+class PeerEstimate(Record):
     """Estimate of four parameters, lower triangle of its covariance, regressor, scratch numbers."""
 
     theta: Vector = vector(4)
@@ -109,7 +109,9 @@ class Estimate(Record):
 
 
 @kernel
-def estimate_record(s: Estimate, regressors: FloatArray, measured: FloatArray, forgetting: float, limit: float) -> None:
+def estimate_record(
+    s: PeerEstimate, regressors: FloatArray, measured: FloatArray, forgetting: float, limit: float
+) -> None:
     """Run recursive least squares with four parameters over a record.
 
     Parameters
@@ -129,9 +131,9 @@ def estimate_record(s: Estimate, regressors: FloatArray, measured: FloatArray, f
         estimation.estimate(s.theta, s.covariance, s.regressor, s.product, n, error, forgetting, forgetting, limit)
 
 
-def estimate_start(covariance: float) -> Estimate:
+def estimate_start(covariance: float) -> PeerEstimate:
     """Return the state of ``estimate_record`` before the first sample."""
-    start = Estimate.zeros()
+    start = PeerEstimate.zeros()
     start.covariance[:] = estimation.diagonal(4, covariance)
     return start
 
@@ -146,7 +148,7 @@ def estimate_sample(regressors: FloatArray, measured: FloatArray) -> Callable[[]
     start = estimate_start(1e8)
 
     def measure() -> float:
-        s = Estimate(start.array.copy())
+        s = PeerEstimate(start.array.copy())
         return cpu_ns(lambda: estimate_record(s, regressors, measured, 0.98, 1e10), len(measured))
 
     return measure

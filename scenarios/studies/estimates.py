@@ -10,7 +10,7 @@ from core.block import BlockParams, FloatArray, parameter
 from core.errors import InputError
 from core.identify.discrete import COEFFICIENTS, Discrete
 from scenarios.studies.monte_carlo import again
-from scenarios.studies.study import Picture, Study
+from scenarios.studies.study import Study, StudyPicture
 
 if TYPE_CHECKING:
     from core.board.board import Board
@@ -19,7 +19,7 @@ SHOWN = 400
 """Samples shown of the last ones."""
 
 
-class Estimates(Study):
+class EstimatesStudy(Study):
     """Runs every identifier of the sampled plant and takes its coefficients b0, b1, a1, a2 over the second half.
 
     ``estimates.<id>.<coefficient>`` is the median, ``.<coefficient>_spread`` the range that holds the middle half of
@@ -49,14 +49,14 @@ class Estimates(Study):
         return results
 
     @classmethod
-    def picture(cls, board: Board, params: Any) -> Picture:
+    def picture(cls, board: Board, params: Any) -> StudyPicture:
         """Return a2 over the last samples, which the damping of the device decides."""
         curves = []
         for name, (found, true) in _run(board, params.samples).items():
             last = found[-SHOWN:, -1]
             at = (board.dt_ms * np.arange(params.samples - len(last), params.samples)).tolist()
             curves += [(name.replace("_", " "), at, last.tolist()), ("device", at, [float(true[-1])] * len(at))]
-        return Picture(("time", "ms"), ("a₂", ""), curves[:1] + curves[2::2] + curves[1:2])
+        return StudyPicture(("time", "ms"), ("a₂", ""), curves[:1] + curves[2::2] + curves[1:2])
 
 
 def _run(board: Board, samples: int) -> dict[str, tuple[FloatArray, FloatArray]]:

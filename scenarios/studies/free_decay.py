@@ -9,7 +9,7 @@ import numpy as np
 
 from core.block import BlockParams, FloatArray, parameter
 from core.errors import InputError
-from scenarios.studies.study import Picture, Study
+from scenarios.studies.study import Study, StudyPicture
 
 if TYPE_CHECKING:
     from core.board.board import Board
@@ -55,7 +55,7 @@ class FreeDecay(Study):
         }
 
     @classmethod
-    def picture(cls, board: Board, params: Any) -> Picture:
+    def picture(cls, board: Board, params: Any) -> StudyPicture:
         """Return the decay, and its peaks."""
         x = _let_go(board, params.duration_ms)
         every = max(1, len(x) // 600)
@@ -64,7 +64,7 @@ class FreeDecay(Study):
             ("displacement", (np.arange(0, len(x), every) * board.dt_ms).tolist(), x[::every].tolist()),
             ("peaks", at_ms.tolist(), size.tolist()),
         ]
-        return Picture(("time", "ms"), ("displacement", "um"), curves)
+        return StudyPicture(("time", "ms"), ("displacement", "um"), curves)
 
 
 def _let_go(board: Board, duration_ms: float) -> FloatArray:

@@ -9,7 +9,7 @@ import numpy as np
 from core.block import BlockParams, parameter
 from core.device.catalogue import device as catalogued
 from core.device.frequency import decibels, degrees, figures, magnitude, response, tolerance_band
-from scenarios.studies.study import Picture, Study
+from scenarios.studies.study import Study, StudyPicture
 
 if TYPE_CHECKING:
     from core.board.board import Board
@@ -62,7 +62,7 @@ class FrequencyResponse(Study):
         return bode
 
     @classmethod
-    def picture(cls, board: Board, params: Any) -> Picture:
+    def picture(cls, board: Board, params: Any) -> StudyPicture:
         """Return the magnitude of the device and of its two limits around their resonances."""
         nominal = board.spec.device.resolved
         devices = {"device": nominal}
@@ -78,7 +78,7 @@ class FrequencyResponse(Study):
             (name, hertz.tolist(), (20.0 * np.log10(abs(response(**device, frequency_hz=hertz)) * at_rest)).tolist())
             for name, device in devices.items()
         ]
-        return Picture(("frequency", "Hz"), ("magnitude", "dB"), curves, is_log_x=True)
+        return StudyPicture(("frequency", "Hz"), ("magnitude", "dB"), curves, is_log_x=True)
 
     @staticmethod
     def _limits(nominal: dict[str, float], params: Any) -> list[dict[str, float]]:

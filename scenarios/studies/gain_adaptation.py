@@ -10,7 +10,7 @@ from pydantic import Field
 from core.block import BlockParams, FloatArray, parameter
 from core.errors import InputError
 from core.theory.gain_adaptation import RULES, GainLoop, critical_gain, growth
-from scenarios.studies.study import Picture, Study
+from scenarios.studies.study import Study, StudyPicture
 
 if TYPE_CHECKING:
     from core.board.board import Board
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 NAME = "gain_adaptation"
 
 
-class GainAdaptation(Study):
+class GainAdaptationStudy(Study):
     """Runs the loop of the bench, and finds where its rule becomes unstable.
 
     ``adaptation.growth_per_s`` is the growth of the error from the second to the last quarter of the run,
@@ -56,12 +56,12 @@ class GainAdaptation(Study):
         return results
 
     @classmethod
-    def picture(cls, board: Board, params: Any) -> Picture:
+    def picture(cls, board: Board, params: Any) -> StudyPicture:
         """Return the error over the run."""
         error = _error(board, params.duration_s)
         every = max(1, len(error) // 600)
         time_ms = np.arange(0, len(error), every) * board.dt_ms
-        return Picture(("time", "ms"), ("error", "um"), [("error", time_ms.tolist(), error[::every].tolist())])
+        return StudyPicture(("time", "ms"), ("error", "um"), [("error", time_ms.tolist(), error[::every].tolist())])
 
 
 def rule_of(rule: str, form: str) -> int | None:

@@ -15,7 +15,7 @@ from core.errors import InputError
 from core.format import format_short
 from scenarios.measure.metrics import fundamental
 from scenarios.studies.monte_carlo import again
-from scenarios.studies.study import Picture, Study
+from scenarios.studies.study import Study, StudyPicture
 
 if TYPE_CHECKING:
     from core.board.board import Board
@@ -54,7 +54,7 @@ class Outputs(Study):
         return results
 
     @classmethod
-    def picture(cls, board: Board, params: Any) -> Picture:
+    def picture(cls, board: Board, params: Any) -> StudyPicture:
         """Return the motion of every stretch over the time since the reference was last at its phase of the start."""
         dt = board.dt_ms
         period = 1e3 / _tone_hz(board)
@@ -62,7 +62,7 @@ class Outputs(Study):
         for name, first, motion in _stretches(board, params):
             since = (first * dt) % period
             curves.append((name, (since + dt * np.arange(len(motion))).tolist(), motion.tolist()))
-        return Picture(("time", "ms"), ("displacement", "um"), curves)
+        return StudyPicture(("time", "ms"), ("displacement", "um"), curves)
 
 
 def _tone_hz(board: Board) -> float:

@@ -10,13 +10,13 @@ from pydantic import Field, model_validator
 from core.block import BlockParams, parameter
 from core.control.controller import normalised
 from core.theory.positive_real import positive_real
-from scenarios.studies.study import Picture, Study
+from scenarios.studies.study import Study, StudyPicture
 
 if TYPE_CHECKING:
     from core.board.board import Board
 
 
-class Case(BlockParams):
+class PositiveRealCase(BlockParams):
     """A transfer function, highest power first."""
 
     name: str = Field(pattern=r"^[a-z0-9_]{1,32}$", description="name in the figures")
@@ -38,7 +38,7 @@ class PositiveReal(Study):
     class Params(BlockParams):
         """Which transfer functions."""
 
-        cases: list[Case] = Field([], max_length=100, description="transfer functions to judge")
+        cases: list[PositiveRealCase] = Field([], max_length=100, description="transfer functions to judge")
         combine: bool = parameter(False, "judge inverse, sum and feedback of the first two too", equation="A.11.1")
 
         @model_validator(mode="after")
@@ -58,14 +58,14 @@ class PositiveReal(Study):
         return results
 
     @classmethod
-    def picture(cls, board: Board, params: Any) -> Picture:
+    def picture(cls, board: Board, params: Any) -> StudyPicture:
         """Return the real part on the imaginary axis, each over its largest size: below 0 it is not positive real."""
         omega = np.geomspace(0.01, 100.0, 200)
         curves = []
         for name, numerator, denominator in cls._cases(board, params):
             real = np.real(np.polyval(numerator, 1j * omega) / np.polyval(denominator, 1j * omega))
             curves.append((name.replace("_", " "), omega.tolist(), (real / np.max(np.abs(real))).tolist()))
-        return Picture(("angular frequency", ""), ("real part", ""), curves, is_log_x=True)
+        return StudyPicture(("angular frequency", ""), ("real part", ""), curves, is_log_x=True)
 
     @staticmethod
     def _cases(board: Board, params: Any) -> list[tuple[str, list[float], list[float]]]:

@@ -8,9 +8,9 @@ import numpy as np
 
 from core.block import BlockParams, parameter
 from core.device.geometry import Geometry
-from core.device.spread import CARRIERS, MISSING, PRINTED, Spread, Tolerances, draw, sensitivity
+from core.device.spread import CARRIERS, MISSING, PRINTED, DeviceSpread, Tolerances, draw, sensitivity
 from core.errors import InputError
-from scenarios.studies.study import Picture, Study
+from scenarios.studies.study import Study, StudyPicture
 
 if TYPE_CHECKING:
     from core.board.board import Board
@@ -28,7 +28,7 @@ SEEN_PCT = 0.01
 NAMES = {"mass": "mass_kg", "stiffness": "stiffness_n_m", "damping": "damping_ns_m", "force": "force"}
 
 
-class ProcessSpread(Study):
+class ProcessSpreadStudy(Study):
     """Draws devices from a process and gives the spread of their parameters (Table 2.1 with numbers).
 
     ``spread.<parameter>.cv_pct`` is the coefficient of variation, ``spread.sensitivity.<number>.<parameter>_pct`` the
@@ -76,14 +76,16 @@ class ProcessSpread(Study):
         return results
 
     @classmethod
-    def picture(cls, board: Board, params: Any) -> Picture:
+    def picture(cls, board: Board, params: Any) -> StudyPicture:
         """Return how many of the devices drawn have which resonance."""
         counts, edges = np.histogram(cls._drawn(board, params)[1].found["f0_hz"], 60)
         heights = [*counts.astype(float).tolist(), 0.0]
-        return Picture(("resonance", "Hz"), ("devices", ""), [("devices", edges.tolist(), heights)], is_stepped=True)
+        return StudyPicture(
+            ("resonance", "Hz"), ("devices", ""), [("devices", edges.tolist(), heights)], is_stepped=True
+        )
 
     @staticmethod
-    def _drawn(board: Board, params: Any) -> tuple[Geometry, Spread]:
+    def _drawn(board: Board, params: Any) -> tuple[Geometry, DeviceSpread]:
         """Return the drawing, and the devices drawn from the process."""
         geometry = board.spec.device.drawn_resonator
         if geometry is None:

@@ -10,7 +10,7 @@ from core.block import BlockParams, parameter
 from scenarios.measure.sensing import sensing_metrics
 from scenarios.measure.stretch import Stretch
 from scenarios.studies.monte_carlo import again
-from scenarios.studies.study import Picture, Study
+from scenarios.studies.study import Study, StudyPicture
 
 if TYPE_CHECKING:
     from core.block import FloatArray
@@ -47,13 +47,13 @@ class Sensing(Study):
         return figures
 
     @classmethod
-    def picture(cls, board: Board, params: Any) -> Picture:
+    def picture(cls, board: Board, params: Any) -> StudyPicture:
         """Return the motion and the output of the sensor, over four periods of the first run."""
         trace = _trace(board, params.duration_ms)
         shown = slice(0, min(len(trace[TRACED[0]]), round(2.0 / board.dt_ms)))
         time_ms = (np.arange(len(trace[TRACED[0]]))[shown] * board.dt_ms).tolist()
         curves = [(name.replace(".", " "), time_ms, trace[name][shown].tolist()) for name in TRACED]
-        return Picture(("time", "ms"), ("displacement", "um"), curves)
+        return StudyPicture(("time", "ms"), ("displacement", "um"), curves)
 
 
 def _trace(board: Board, duration_ms: float) -> dict[str, FloatArray]:

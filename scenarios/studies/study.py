@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Picture:
+class StudyPicture:
     """Curves over two axes, each axis with its title and the unit its values come in."""
 
     x: tuple[str, str]
@@ -43,6 +43,6 @@ class Study:
         raise NotImplementedError
 
     @classmethod
-    def picture(cls, board: Board, params: Any) -> Picture | None:  # noqa: ARG003
+    def picture(cls, board: Board, params: Any) -> StudyPicture | None:  # noqa: ARG003
         """Return the curves behind the figures, or None where the figures are enough; it is made from a fresh bench."""
         return None

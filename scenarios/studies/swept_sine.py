@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from core.board.board import Board
 
 
-class SweptSine(Study):
+class SweptSineStudy(Study):
     """Plays sines on the bench, events of its first sample included, and fits mass, damping and stiffness.
 
     ``sweep.*`` are the figures of the fit with standard errors (``*_error_*``); ``sweep.read_*`` are read off the

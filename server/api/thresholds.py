@@ -8,7 +8,7 @@ from typing import Any, Self
 from fastapi import Response
 from pydantic import Field, model_validator
 
-from scenarios.campaign.halving import Wanted
+from scenarios.campaign.halving import ThresholdGoal
 from server.api.bodies import Body
 from server.api.deps import PersonDep, RateLimited, ServiceDep
 from server.api.router import Router
@@ -18,7 +18,7 @@ from server.runs.thresholds import ThresholdRun
 router = Router(prefix="/thresholds", tags=["thresholds"])
 
 
-class NewThreshold(Body, Wanted):
+class NewThreshold(Body, ThresholdGoal):
     """The scenario, the claim and the number that are looked at."""
 
     scenario: str | dict[str, Any] | None = Field(None, description="Library id, TOML text, or document")
@@ -46,7 +46,7 @@ async def find_threshold(
     else:
         await service.benches.check(body.scenario, {})
         scenario, _ = await asyncio.to_thread(prepare, body.scenario, {}, None, service.units.named_in)
-    wanted = Wanted.model_validate(body.model_dump(include=set(Wanted.model_fields)))
+    wanted = ThresholdGoal.model_validate(body.model_dump(include=set(ThresholdGoal.model_fields)))
     await service.keeping.room()
     found, is_new = await service.thresholds.start(scenario, wanted)
     response.status_code = 202 if is_new else 200

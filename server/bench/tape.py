@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from core.board.board import Board
 from core.board.document import Document
-from core.board.pending import Queue
+from core.board.pending import PendingQueue
 from core.board.rows import Rows
 from core.board.spec import Section, Spec
 from core.errors import InputError
@@ -53,7 +53,7 @@ class Tape:
         self._group: tuple[int, NDArray[np.float32]] | None = None
         self.log = board.log
         self.trip = None
-        self.pending = Queue()
+        self.pending = PendingQueue()
         self.faults: dict[str, Any] = {}
 
     @property

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from core.board.commands import Command, ResetTrip, Set
 from core.board.inverse import inverse
-from core.board.pending import Pending
+from core.board.pending import PendingCommand
 from core.board.track import Deed
 from core.errors import InputError
 from server.bench.events import Event
@@ -23,7 +23,7 @@ AT_ONCE_S = 1.0
 """Values of the same parameters set within this time of each other, as by a slider, are one change."""
 
 
-Way = list[Command | Pending] | Journal
+Way = list[Command | PendingCommand] | Journal
 """The way from one side of a change to the other: commands, commands that wait no more, or a journal to stand at."""
 
 
@@ -108,9 +108,9 @@ class Changes:
         target.append(Change(change.shown, back))
         return self._bench.note(actor, past, text)
 
-    def _go(self, way: list[Command | Pending], actor: str) -> Way:
+    def _go(self, way: list[Command | PendingCommand], actor: str) -> Way:
         """Carry out as much of a way as possible; return the way back."""
-        back: list[Command | Pending] = []
+        back: list[Command | PendingCommand] = []
         refusal: InputError | None = None
         for step in way:
             try:
@@ -125,9 +125,9 @@ class Changes:
             raise refusal
         return back
 
-    def _step(self, step: Command | Pending, actor: str) -> Way:
+    def _step(self, step: Command | PendingCommand, actor: str) -> Way:
         bench = self._bench
-        if not isinstance(step, Pending):
+        if not isinstance(step, PendingCommand):
             return self._carry_out(step, actor)[1]
         if step not in bench.board.pending:
             raise InputError("it waits no more")

@@ -11,7 +11,7 @@ from scenarios.sheets.expression import inserted
 from scenarios.sheets.judge import can_judge, solution
 from scenarios.sheets.look import known_limits, value_text, wanted_text
 from scenarios.sheets.progress import AnyStep, Progress
-from scenarios.sheets.sheet import Answered, Blind, Choice, Hold, Number, Prediction, Sheet
+from scenarios.sheets.sheet import Answered, BlindStep, Choice, Hold, NumberQuestion, Prediction, Sheet
 from server.classroom.sheet_watch import Held
 
 State = Literal["done", "open", "closed"]
@@ -140,7 +140,7 @@ def _step(sheet: Sheet, step: AnyStep, progress: Progress, held: Held | None) ->
         asked = step.asks
         shown.question = _text(step.question, progress.facts)
         shown.options = {o.id: o.text for o in asked.options} if isinstance(asked, Choice) else {}
-        shown.unit = asked.unit if isinstance(asked, Number) else ""
+        shown.unit = asked.unit if isinstance(asked, NumberQuestion) else ""
         shown.tries_left = 0 if state.done else step.tries - len(state.answers)
         words = {o.id: o.text for o in asked.options} if isinstance(asked, Choice) else {}
         shown.answers = [
@@ -189,11 +189,11 @@ def rule_of(sheet: Sheet, step: AnyStep) -> str:
     worth = points_text(step.points)
     if isinstance(step, Hold):
         return f"{worth} when this has held for {format_short(step.for_ms, 'ms')} of device time."
-    if isinstance(step, Blind):
+    if isinstance(step, BlindStep):
         return f"{worth} times the score of your answer to the fault that is hidden here, out of 100."
     said = [f"{worth}."]
     asked = step.asks
-    if isinstance(asked, Number):
+    if isinstance(asked, NumberQuestion):
         said = [f"{worth} within {_tolerance(asked)}."]
         if asked.partly is not None:
             said.append(
@@ -218,7 +218,7 @@ def points_text(points: float) -> str:
     return f"{format_short(points, '', 3)} {'point' if points == 1.0 else 'points'}"
 
 
-def _tolerance(asked: Number) -> str:
+def _tolerance(asked: NumberQuestion) -> str:
     if asked.within_absolute:
         return format_short(asked.within_absolute, asked.unit)
     return format_percent(asked.within, 0 if (asked.within * 100).is_integer() else 1)

@@ -13,7 +13,7 @@ from core.errors import InputError
 from scenarios.sheets.begin import SEEDS
 from scenarios.sheets.look import known_limits
 from scenarios.sheets.progress import Progress
-from scenarios.sheets.sheet import Blind as BlindStep
+from scenarios.sheets.sheet import BlindStep as BlindStep
 from scenarios.sheets.sheet import Hold, Sheet
 from server.bench.bench import LiveBench
 from server.bench.benches import Benches

@@ -6,8 +6,8 @@ import os
 
 from core.errors import InputError
 from scenarios.campaign.executor import Processes
-from scenarios.campaign.halving import Threshold, Wanted
-from scenarios.campaign.threshold import Memory, Search
+from scenarios.campaign.halving import Threshold, ThresholdGoal
+from scenarios.campaign.threshold import ResultMemory, Search
 from scenarios.schema import Scenario
 
 
@@ -36,10 +36,10 @@ def find(scenario: Scenario, metric: str, over: str) -> Threshold:
     InputError
         When the scenario has no such claim or number.
     """
-    wanted = Wanted.checked({"metric": metric, **parse_range(over)}, "--over")
+    wanted = ThresholdGoal.checked({"metric": metric, **parse_range(over)}, "--over")
     processes = Processes(os.cpu_count() or 1)
     try:
-        search = Search(scenario, wanted, Memory(), processes=processes)
+        search = Search(scenario, wanted, ResultMemory(), processes=processes)
         search.run()
     finally:
         processes.shutdown()

@@ -18,7 +18,7 @@ from scenarios.campaign.campaign import Campaign, Stopped
 from scenarios.campaign.check import check
 from scenarios.campaign.cluster import check_address
 from scenarios.campaign.executor import LOST, Processes
-from scenarios.campaign.parts import Parts, write_runs
+from scenarios.campaign.parts import ParquetParts, write_runs
 from scenarios.campaign.survey import Survey, listed
 from scenarios.campaign.sweep import Sweep
 from scenarios.library import get
@@ -117,7 +117,7 @@ def carry_out(
         raise InputError(f"cannot write to {folder}: {error.strerror}", "--out") from None
     database = Database(database_url or place)
     results = Results(database)
-    parts, processes = Parts(sweep, folder / PARTS), Processes(workers)
+    parts, processes = ParquetParts(sweep, folder / PARTS), Processes(workers)
 
     def follow(done: int, total: int) -> None:
         parts.follow(done, results.outcomes)
@@ -146,7 +146,7 @@ def carry_out(
     return Ended(campaign.done, campaign.total, failed, warnings, folder)
 
 
-def write(sweep: Sweep, parts: Parts, folder: Path, processes: Processes) -> tuple[int, list[str]]:
+def write(sweep: Sweep, parts: ParquetParts, folder: Path, processes: Processes) -> tuple[int, list[str]]:
     """Write report and tables, each under a temporary name first; many points are listed by the processes meanwhile.
 
     Returns

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from scenarios.campaign.executor import pool
-from scenarios.campaign.parts import Parts
+from scenarios.campaign.parts import ParquetParts
 from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
 from scenarios.report.campaign import surveyed_report
@@ -89,10 +89,10 @@ def keep_up(document: str, folder: Path, database_url: str, *, to_end: bool, beg
 
 
 @lru_cache(2)
-def campaign(document: str, folder: Path) -> tuple[Sweep, Parts]:
+def campaign(document: str, folder: Path) -> tuple[Sweep, ParquetParts]:
     """Return a campaign and its files; which of them are whole stays known."""
     sweep = Sweep(json.loads(document))
-    return sweep, Parts(sweep, folder)
+    return sweep, ParquetParts(sweep, folder)
 
 
 def report(document: str, folder: Path, name: str) -> str:

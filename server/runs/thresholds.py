@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from core.own.admission import kept
 from scenarios.campaign.campaign import Campaign
-from scenarios.campaign.halving import Threshold, Wanted
+from scenarios.campaign.halving import Threshold, ThresholdGoal
 from scenarios.campaign.threshold import Search
 from scenarios.key import content_hash, run_key
 from scenarios.schema import Scenario
@@ -40,7 +40,7 @@ class Thresholds(Requested[ThresholdRun]):
 
     kind = "threshold"
 
-    async def start(self, scenario: Scenario, wanted: Wanted) -> tuple[ThresholdRun, bool]:
+    async def start(self, scenario: Scenario, wanted: ThresholdGoal) -> tuple[ThresholdRun, bool]:
         """Queue a search, or return the same one if it exists; true when it is new.
 
         Raises
@@ -74,7 +74,7 @@ class Thresholds(Requested[ThresholdRun]):
 
     async def campaign(self, row: RequestRow, on_progress: Callable[[int, int], None]) -> Campaign:
         """Return a search as it is carried out, on this machine."""
-        wanted = Wanted.model_validate(row.document["wanted"])
+        wanted = ThresholdGoal.model_validate(row.document["wanted"])
 
         def made() -> Campaign:
             with kept():

@@ -24,7 +24,7 @@ from scenarios.edit import parse_assignment, with_values
 from scenarios.expectation import Expectation
 from scenarios.library import get, library
 from scenarios.run import run
-from scenarios.schema import Head, Scenario
+from scenarios.schema import Scenario, ScenarioHead
 from tests.lab import document
 from tests.library_pass import results
 
@@ -282,7 +282,7 @@ def test_set_reaches_head_events_and_expectations():
     assert found.spec.diagnosers["kalman"].params.hypotheses[1].mass == 1.07
     assert found.head.metrics.tail_share == 0.5
     assert base.samples == 9000 and base.head.events[0]["severity"] == 0.05, "the original is untouched"
-    for name in Head.model_fields:
+    for name in ScenarioHead.model_fields:
         assert name in ("schema_", "id", "title", "source", "summary", "claim", "verdict", "samples", "duration_ms",
                         "events", "expect", "comparator", "metrics", "study", "printed")  # fmt: skip
 

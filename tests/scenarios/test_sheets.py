@@ -19,7 +19,7 @@ from scenarios.sheets.judge import judge
 from scenarios.sheets.look import value_text, wanted_text
 from scenarios.sheets.progress import Progress
 from scenarios.sheets.quantity import parse_quantity
-from scenarios.sheets.sheet import Limits, Question
+from scenarios.sheets.sheet import Limits, SheetQuestion
 
 DESKTOP_ALONE = re.compile(
     r"(?i:space bar|keyboard|head of the page|header|tool ?bar|side ?bar|\btabs?\b|hover|right-click|mouse|dotted)"
@@ -51,9 +51,9 @@ unit = "Hz"
 """
 
 
-def question(**number: object) -> Question:
+def question(**number: object) -> SheetQuestion:
     asked = {"value": 2000.0, "unit": "Hz", "within": 0.02, **number}
-    return Question.model_validate(
+    return SheetQuestion.model_validate(
         {"id": "q", "kind": "question", "points": 2.0, "question": "How much?", "number": asked}
     )
 
@@ -230,7 +230,7 @@ def test_what_is_drawn_differs_by_student_and_stays_the_same_for_one() -> None:
 def test_who_tries_all_options_earns_nothing_and_a_guess_gains_nothing_on_average() -> None:
     for name in sheets.ids():
         for step in sheets.get(name).steps:
-            if isinstance(step, Question) and step.choice is not None:
+            if isinstance(step, SheetQuestion) and step.choice is not None:
                 wrong = [option for option in step.choice.options if option.share == 0.0]
                 rights = len(step.choice.options) - len(wrong)
                 guessed = sum(o.share * step.points for o in step.choice.options) - len(wrong) * step.costs

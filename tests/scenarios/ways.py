@@ -83,7 +83,7 @@ def _behind_the_wall() -> Iterator[None]:
     from core.board import steps
     from core.ports import INPUT
     from core.wall import wall
-    from core.wall.crossing import Behind, Sizes
+    from core.wall.crossing import PortSignal, Sizes
 
     def address(wiring: Any, row: int, width: int = 1) -> int:
         instance = wiring.instances[row]
@@ -91,7 +91,7 @@ def _behind_the_wall() -> Iterator[None]:
         for port, place in zip(instance.block.Ports.declared, wiring.ports(row), strict=True):
             name = min((name for name, at in wiring.index.items() if at == place), key=len)
             size = 1 + sum(bool(one.startswith(f"{name}.") and at != place) for one, at in wiring.index.items())
-            behind.append(Behind(name, size, port.kind != INPUT or port.source.startswith("effects.")))
+            behind.append(PortSignal(name, size, port.kind != INPUT or port.source.startswith("effects.")))
         sizes = Sizes(len(wiring.packed(row)), len(wiring.state_of(instance.key)), tuple(behind))
         return wall.address(instance.block, sizes, width)
 

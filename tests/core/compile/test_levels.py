@@ -37,7 +37,7 @@ def shelf(monkeypatch) -> Shelf:
 class Without:
     """A shelf from which some files are hidden."""
 
-    def __init__(self, shelf: kernel_cache.Shelf, hidden: set[str]) -> None:
+    def __init__(self, shelf: kernel_cache.KernelShelf, hidden: set[str]) -> None:
         self._shelf, self._hidden, self.put = shelf, hidden, shelf.put
 
     def get(self, name: str) -> bytes | None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from core.device.frequency import response
-from core.device.identification import Tone, identify, tone
+from core.device.identification import SweepTone, identify, tone
 from core.errors import InputError
 
 M, B, K, F = 2.2090e-10, 7.09e-7, 0.0538, -1.619e-8
@@ -17,7 +17,7 @@ def tones(noise=0.0, seed=0, scale=1.0):
     generator = np.random.default_rng(seed)
     truth = response(M, scale * B, K, GRID) * F * 1e6
     jitter = noise * (generator.standard_normal(len(GRID)) + 1j * generator.standard_normal(len(GRID)))
-    return [Tone(f, complex(h), noise, 1.0) for f, h in zip(GRID, truth + jitter, strict=True)]
+    return [SweepTone(f, complex(h), noise, 1.0) for f, h in zip(GRID, truth + jitter, strict=True)]
 
 
 @pytest.mark.parametrize("scale", [1.0, 0.2, 3.0])

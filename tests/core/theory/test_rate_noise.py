@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from core.readout.allan import Allan
-from core.theory.rate_noise import Figure, RateNoise, averaging_times, fit
+from core.theory.rate_noise import RateNoise, RateNoiseFigure, averaging_times, fit
 from tests.rates import Row
 
 TAUS = 0.01 * 2.0 ** np.arange(20)
@@ -29,7 +29,7 @@ def pairs(record_s: float) -> np.ndarray:
     return np.maximum(0, round(record_s / 0.01) // stride + 1 - 2 * (m // stride))
 
 
-def figures(noise: RateNoise) -> list[Figure]:
+def figures(noise: RateNoise) -> list[RateNoiseFigure]:
     return [getattr(noise, name) for name in NAMES]
 
 

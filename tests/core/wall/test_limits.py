@@ -15,7 +15,7 @@ import pytest
 from core.control import pid
 from core.errors import InputError
 from core.wall import code, host, wall
-from core.wall.crossing import Behind, Crossing, Sizes
+from core.wall.crossing import Crossing, PortSignal, Sizes
 from scenarios import wall as built
 from scenarios.run import build
 from tests.core.own.test_own_units import with_unit
@@ -34,7 +34,7 @@ BAD = {
     "stops": STOP,
     "leaves its stack": "%r = alloca [64 x double]\nstore volatile double 1.0, ptr %r\n" + STOP,
 }
-SIZES = Sizes(2, 2, (Behind("in", 1, False), Behind("out", 1, True), Behind("three", 3, True)))
+SIZES = Sizes(2, 2, (PortSignal("in", 1, False), PortSignal("out", 1, True), PortSignal("three", 3, True)))
 
 
 @pytest.fixture(autouse=True)

@@ -46,7 +46,7 @@ def test_a_diagnoser_that_cannot_be_scored_is_named_with_the_reason(call):
 
 
 def test_hidden_seeds_are_measured_once_they_are_the_committed_ones(call, tmp_path, monkeypatch):
-    hidden = seeds.Hidden(salt="0f" * 32, cases={name: [f"{n:032x}"] for n, name in enumerate(tracks())})
+    hidden = seeds.SecretSeeds(salt="0f" * 32, cases={name: [f"{n:032x}"] for n, name in enumerate(tracks())})
     (tmp_path / "hidden.toml").write_text(tomlkit.dumps(hidden.model_dump()))
     refused = call("imm", "--track", "known", "--seeds", "hidden.toml")
     assert refused.exit_code == 2 and "is not the list that was committed" in refused.stderr

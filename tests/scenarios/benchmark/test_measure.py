@@ -12,8 +12,8 @@ import pytest
 from core import registry
 from core.diagnose.mmae import Mmae
 from scenarios.benchmark import results
-from scenarios.benchmark.answer import Answer, answers, section, unscored
-from scenarios.benchmark.measure import FALSE_ALARM_SAMPLES, Judge, measure
+from scenarios.benchmark.answer import CaseProbabilities, answers, section, unscored
+from scenarios.benchmark.measure import FALSE_ALARM_SAMPLES, TrackJudge, measure
 from scenarios.benchmark.seeds import seed_list
 from scenarios.benchmark.track import HEALTHY, WARM, Case, track, tracks
 from scenarios.run import run
@@ -83,8 +83,8 @@ def test_a_diagnoser_that_knows_the_truth_has_no_loss() -> None:
     case = chosen.case(DEMONSTRATION.cases["known"][1])
     p = np.zeros((len(chosen.classes), case.document["samples"]))
     p[0, : case.onset] = p[case.truth, case.onset :] = 1.0
-    judge = Judge("oracle", "known", [np.zeros(HEALTHY)])
-    judge.take(case, Answer(1.0 - p[0], p, ""))
+    judge = TrackJudge("oracle", "known", [np.zeros(HEALTHY)])
+    judge.take(case, CaseProbabilities(1.0 - p[0], p, ""))
     row = judge.row()
     nothing = (row.log_score, row.brier, row.delay_samples, row.missed, row.false_alarm, row.false_switches)
     assert [figure.mean for figure in nothing] == [0.0] * 6
@@ -96,13 +96,13 @@ def judged(name: str, sharpen: float) -> results.Row:
     """Return the row of the Kalman bank on a track, its odds to some power."""
     chosen, unit = track(name), {"mmae": section(Mmae, track(name))}
 
-    def answer(case: Case) -> Answer:
+    def answer(case: Case) -> CaseProbabilities:
         found = answers(chosen, case, unit, {})["mmae"]
         p = found.classes**sharpen
-        return Answer(found.evidence, p / p.sum(axis=0), found.digest)
+        return CaseProbabilities(found.evidence, p / p.sum(axis=0), found.digest)
 
     healthy = [answer(chosen.healthy(seed)) for seed in DEMONSTRATION.calibration(name)]
-    judge = Judge("mmae", name, [one.evidence[WARM:] for one in healthy])
+    judge = TrackJudge("mmae", name, [one.evidence[WARM:] for one in healthy])
     for seed in seed_list("public", NAMES).cases[name][:20]:
         case = chosen.case(seed)
         judge.take(case, answer(case))

@@ -42,7 +42,7 @@ def test_a_hidden_list_is_read_if_it_is_the_committed_one(monkeypatch: pytest.Mo
 
 def test_the_commitment_is_the_hash_that_the_document_gives() -> None:
     """SHA-256 over the salt and, track by track in the order of names, the name, a line end and the seeds."""
-    hidden = seeds.Hidden(salt="ab" * 32, cases={"b": ["01" * 16, "02" * 16], "a": ["03" * 16]})
+    hidden = seeds.SecretSeeds(salt="ab" * 32, cases={"b": ["01" * 16, "02" * 16], "a": ["03" * 16]})
     said = bytes.fromhex("ab" * 32) + b"a\n" + b"\x03" * 16 + b"b\n" + b"\x01" * 16 + b"\x02" * 16
     assert hidden.commitment() == hashlib.sha256(said).hexdigest()
 

@@ -15,7 +15,7 @@ from core.errors import InputError
 from scenarios.campaign import parts as module
 from scenarios.campaign.batch import outcomes
 from scenarios.campaign.outcome import Outcome
-from scenarios.campaign.parts import Parts
+from scenarios.campaign.parts import ParquetParts
 from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import tally
@@ -59,15 +59,15 @@ def computed() -> tuple[Sweep, dict[str, Outcome]]:
 @pytest.fixture
 def made(
     computed: tuple[Sweep, dict[str, Outcome]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> tuple[Sweep, Parts, Table]:
+) -> tuple[Sweep, ParquetParts, Table]:
     """A campaign of 36 runs in files of 10, read 4 at a time."""
     monkeypatch.setattr(module, "PART", 10)
     monkeypatch.setattr("scenarios.campaign.survey.PART", 10)
     monkeypatch.setattr(module, "AT_ONCE", 4)
-    return computed[0], Parts(computed[0], tmp_path / "runs"), Table(computed[1])
+    return computed[0], ParquetParts(computed[0], tmp_path / "runs"), Table(computed[1])
 
 
-def test_files_follow_the_table_of_results(made: tuple[Sweep, Parts, Table]) -> None:
+def test_files_follow_the_table_of_results(made: tuple[Sweep, ParquetParts, Table]) -> None:
     sweep, parts, table = made
     keys = [sweep.key(number) for number in range(len(sweep))]
     assert keys == [key for key, _, _ in sweep.runs()]
@@ -83,7 +83,7 @@ def test_files_follow_the_table_of_results(made: tuple[Sweep, Parts, Table]) -> 
     # a lost file and one of another program are made anew from the table
     parts.path(1).unlink()
     parts.path(2).write_bytes(b"PAR1")
-    again = Parts(sweep, first.parent)
+    again = ParquetParts(sweep, first.parent)
     assert again.whole() == 2 and again.keep_up(table.read) == 36
     assert [path.name for path in sorted(first.parent.iterdir())] == [f"part-0000{n}.parquet" for n in range(4)]
     rows = pq.read_table(first.parent)
@@ -91,7 +91,7 @@ def test_files_follow_the_table_of_results(made: tuple[Sweep, Parts, Table]) -> 
     assert rows["digest"].to_pylist() == [table.found[key].digest for key in keys]
 
 
-def test_arrow_and_duckdb_read_the_folder_while_it_grows(made: tuple[Sweep, Parts, Table]) -> None:
+def test_arrow_and_duckdb_read_the_folder_while_it_grows(made: tuple[Sweep, ParquetParts, Table]) -> None:
     """The second half has a figure that the first lacks; the columns of all files stay the same."""
     sweep, parts, table = made
     keys = [sweep.key(number) for number in range(len(sweep))]
@@ -121,17 +121,17 @@ def test_arrow_and_duckdb_read_the_folder_while_it_grows(made: tuple[Sweep, Part
     assert found == pytest.approx({row["controller.kind"]: row[f"{name}_mean"] for row in means})
 
 
-def test_a_campaign_that_was_changed_has_new_files(made: tuple[Sweep, Parts, Table], tmp_path: Path) -> None:
+def test_a_campaign_that_was_changed_has_new_files(made: tuple[Sweep, ParquetParts, Table], tmp_path: Path) -> None:
     _, parts, table = made
     table.show()
     parts.keep_up(table.read)
     smaller = Sweep({**DOCUMENT, "seeds": {"count": 2}})
-    changed = Parts(smaller, tmp_path / "runs")
+    changed = ParquetParts(smaller, tmp_path / "runs")
     assert changed.keep_up(table.read) == 12 and len(changed.paths()) == 2
     assert pq.read_table(tmp_path / "runs").num_rows == 12
 
 
-def test_a_survey_of_files_is_the_tally_of_outcomes(made: tuple[Sweep, Parts, Table]) -> None:
+def test_a_survey_of_files_is_the_tally_of_outcomes(made: tuple[Sweep, ParquetParts, Table]) -> None:
     sweep, parts, table = made
     table.show()
     parts.keep_up(table.read)
@@ -160,7 +160,7 @@ def same(mine: Any, other: Any) -> bool:
 
 
 def test_runs_are_counted_over_one_quantity_and_over_two(
-    made: tuple[Sweep, Parts, Table], monkeypatch: pytest.MonkeyPatch
+    made: tuple[Sweep, ParquetParts, Table], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     sweep, parts, table = made
     failed = sweep.key(0)
@@ -186,7 +186,7 @@ def test_runs_are_counted_over_one_quantity_and_over_two(
 
 
 def test_the_report_of_many_points_lists_the_first(
-    made: tuple[Sweep, Parts, Table], monkeypatch: pytest.MonkeyPatch
+    made: tuple[Sweep, ParquetParts, Table], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     sweep, parts, table = made
     monkeypatch.setattr("scenarios.report.campaign.MOST_POINTS", 3)
@@ -196,7 +196,7 @@ def test_the_report_of_many_points_lists_the_first(
     assert "36 of 36 runs" in text and "The first 3 points" in text and "<h1>Many</h1>" in text
 
 
-def test_the_picture_of_files_is_that_of_outcomes(made: tuple[Sweep, Parts, Table]) -> None:
+def test_the_picture_of_files_is_that_of_outcomes(made: tuple[Sweep, ParquetParts, Table]) -> None:
     """It is of all points, and reads no more figures than it needs."""
     sweep, parts, table = made
     table.show()
@@ -215,7 +215,7 @@ def test_the_picture_of_files_is_that_of_outcomes(made: tuple[Sweep, Parts, Tabl
 
 
 def test_a_file_of_many_runs_of_a_point_holds_what_they_add_up_to(
-    made: tuple[Sweep, Parts, Table], monkeypatch: pytest.MonkeyPatch
+    made: tuple[Sweep, ParquetParts, Table], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its stored totals equal bit for bit the totals of its runs, and none of the runs is read."""
     sweep, parts, table = made
@@ -225,19 +225,19 @@ def test_a_file_of_many_runs_of_a_point_holds_what_they_add_up_to(
     assert parts.sums(0) is None, "two points of six runs are not worth it"
     plain = Survey(sweep, parts).page(points)
     monkeypatch.setattr(module, "MANY", 5)
-    written = Parts(sweep, parts.path(0).parent.with_name("written"))
+    written = ParquetParts(sweep, parts.path(0).parent.with_name("written"))
     written.keep_up(table.read, to_end=True)
     read: list[int] = []
-    tables = Parts.tables
+    tables = ParquetParts.tables
     monkeypatch.setattr(
-        Parts, "tables", lambda self, names, numbers: (read.extend(numbers), tables(self, names, numbers))[1]
+        ParquetParts, "tables", lambda self, names, numbers: (read.extend(numbers), tables(self, names, numbers))[1]
     )
     assert Survey(sweep, written).page(points) == plain
     assert read == [number for number in range(len(written)) if written.sums(number) is None] != [*range(len(written))]
 
 
 def test_the_first_runs_are_written_before_the_rest(
-    made: tuple[Sweep, Parts, Table], monkeypatch: pytest.MonkeyPatch
+    made: tuple[Sweep, ParquetParts, Table], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     sweep, parts, table = made
     assert parts.begin(table.read) == 0 and not parts.paths()
@@ -247,5 +247,5 @@ def test_the_first_runs_are_written_before_the_rest(
     assert parts.keep_up(table.read) == 9
     monkeypatch.setattr(module, "AT_ONCE", 99)
     table.show()
-    other = Parts(sweep, parts.path(0).parent.with_name("other"))
+    other = ParquetParts(sweep, parts.path(0).parent.with_name("other"))
     assert other.begin(table.read) == 10, "no more than the file holds"

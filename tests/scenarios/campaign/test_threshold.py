@@ -11,8 +11,8 @@ import pytest
 from typer.testing import CliRunner
 
 from core.errors import InputError
-from scenarios.campaign.halving import MOST_TURNS, ROUNDS, Halving, Threshold, Wanted
-from scenarios.campaign.threshold import Memory, Search
+from scenarios.campaign.halving import MOST_TURNS, ROUNDS, Halving, Threshold, ThresholdGoal
+from scenarios.campaign.threshold import ResultMemory, Search
 from scenarios.schema import Scenario
 from server.cli.main import app
 from tests.lab import QUIET
@@ -22,7 +22,7 @@ def look(
     function: Callable[[float], float | None], bears_out: Callable[[float | None], bool], **given: Any
 ) -> tuple[Threshold, int]:
     """Halve over a function; return the result, and the number of rounds."""
-    halving = Halving(Wanted(metric="f", path="x", **given), bears_out)
+    halving = Halving(ThresholdGoal(metric="f", path="x", **given), bears_out)
     while values := halving.next():
         halving.take([(value, function(value)) for value in values])
     return halving.found(), halving.rounds
@@ -74,7 +74,7 @@ def test_every_place_that_the_grid_shows_is_told() -> None:
 
 def test_what_changes_everywhere_is_not_looked_at_for_ever() -> None:
     seen: list[int] = []
-    halving = Halving(Wanted(metric="f", path="x", low=0.0, high=64.0, points=65), within(0.5, 1.5))
+    halving = Halving(ThresholdGoal(metric="f", path="x", low=0.0, high=64.0, points=65), within(0.5, 1.5))
     while values := halving.next():
         seen.append(len(values))
         halving.take([(value, float(round(value * 1024) % 2 if value % 1 else value % 2)) for value in values])
@@ -114,8 +114,8 @@ def resonator() -> dict[str, Any]:
 
 
 def test_the_amplitude_reaches_a_micrometre_at_the_voltage_of_the_equation() -> None:
-    wanted = Wanted(metric="control.amplitude_um", path="reference.amplitude_v", low=0.5, high=10.0)
-    search = Search(Scenario.load(resonator()), wanted, Memory())
+    wanted = ThresholdGoal(metric="control.amplitude_um", path="reference.amplitude_v", low=0.5, high=10.0)
+    search = Search(Scenario.load(resonator()), wanted, ResultMemory())
     assert search.run()
     found = Threshold.model_validate(search.kept)
     (turn,) = found.turns
@@ -124,16 +124,16 @@ def test_the_amplitude_reaches_a_micrometre_at_the_voltage_of_the_equation() -> 
     assert search.done == search.total == len(found.tried) == 17 + ROUNDS
     assert search.progress == 1.0
     # the published value decides, and the expected value without a published one
-    wanted = Wanted(metric="control.effort_rms_v", path="reference.amplitude_v", low=0.5, high=10.0)
-    search = Search(Scenario.load(resonator()), wanted, Memory())
+    wanted = ThresholdGoal(metric="control.effort_rms_v", path="reference.amplitude_v", low=0.5, high=10.0)
+    search = Search(Scenario.load(resonator()), wanted, ResultMemory())
     search.run()
     assert search.kept["turns"][0]["value"] == pytest.approx(5.0 * math.sqrt(2.0), rel=1e-2)  # no whole periods
     assert not search.kept["turns"][0]["begins"]
 
 
 def test_what_was_computed_is_not_computed_again() -> None:
-    table = Memory()
-    wanted = Wanted(metric="control.amplitude_um", path="reference.amplitude_v", low=0.5, high=10.0)
+    table = ResultMemory()
+    wanted = ThresholdGoal(metric="control.amplitude_um", path="reference.amplitude_v", low=0.5, high=10.0)
     first = Search(Scenario.load(resonator()), wanted, table)
     first.run()
     put: list[Any] = []
@@ -155,7 +155,7 @@ def test_what_was_computed_is_not_computed_again() -> None:
 def test_what_cannot_be_looked_for_is_refused_by_name(given: dict[str, Any], field: str) -> None:
     usual = {"metric": "control.amplitude_um", "path": "reference.amplitude_v", "low": 0.5, "high": 10.0}
     with pytest.raises(InputError) as refused:
-        Search(Scenario.load(resonator()), Wanted(**{**usual, **given}), Memory())
+        Search(Scenario.load(resonator()), ThresholdGoal(**{**usual, **given}), ResultMemory())
     assert refused.value.field == field
 
 

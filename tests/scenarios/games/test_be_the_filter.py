@@ -10,8 +10,8 @@ import pytest
 
 from core.errors import InputError
 from scenarios.games import game_of
-from scenarios.games.be_the_filter import Settings, document
-from scenarios.games.states import DATA_SHEET_UM, GIVEN, Hidden
+from scenarios.games.be_the_filter import FilterAssumptions, document
+from scenarios.games.states import DATA_SHEET_UM, GIVEN, HiddenState
 from scenarios.run import run
 from scenarios.schema import Scenario
 
@@ -19,15 +19,15 @@ GAME = game_of("be-the-filter")
 SEEDS = range(4)
 
 
-def true_settings(hidden: Hidden, **other: float) -> Settings:
+def true_settings(hidden: HiddenState, **other: float) -> FilterAssumptions:
     """Return the settings of one who knows everything: Q and R as they are, and the unknown fault."""
     scale = (hidden.noise_um / DATA_SHEET_UM) ** 2
     factors = hidden.unknown.model_dump(include={"mass", "stiffness", "damping"})
     known = {"assumed_noise_scale": scale, "process_noise_v": hidden.drive_noise_v / math.sqrt(scale)}
-    return Settings(**{**known, **factors, **other})
+    return FilterAssumptions(**{**known, **factors, **other})
 
 
-def motion(hidden: Hidden, mass: float = 1.0, stiffness: float = 1.0, damping: float = 1.0) -> complex:
+def motion(hidden: HiddenState, mass: float = 1.0, stiffness: float = 1.0, damping: float = 1.0) -> complex:
     """Return the phasor of the motion at 2 kHz by its formula, um."""
     nominal = hidden.bench.spec.device.resolved
     w = 2.0 * math.pi * 2000.0
@@ -40,7 +40,7 @@ def motion(hidden: Hidden, mass: float = 1.0, stiffness: float = 1.0, damping: f
 
 @pytest.mark.parametrize("seed", [3, pytest.param(0, marks=pytest.mark.long)])
 def test_points_are_those_of_the_raw_probabilities(seed):
-    hidden = Hidden(seed)
+    hidden = HiddenState(seed)
     # most of the way to the unknown fault on each factor
     part = {name: getattr(hidden.unknown, name) ** 0.7 for name in ("mass", "stiffness", "damping")}
     settings = true_settings(hidden, **part)
@@ -76,8 +76,8 @@ def test_points_are_those_of_the_raw_probabilities(seed):
 
 
 def test_the_parts_make_up_the_whole():
-    hidden = Hidden(1)
-    figures = GAME.judge(1, Settings(mass=1.2)).figures
+    hidden = HiddenState(1)
+    figures = GAME.judge(1, FilterAssumptions(mass=1.2)).figures
     unknown = hidden.states.count(5) * 1000 / 7500
     assert unknown == pytest.approx(2000 / 7500)
     whole = (1 - unknown) * figures["brier_given"] + unknown * figures["brier_unknown"]
@@ -87,7 +87,7 @@ def test_the_parts_make_up_the_whole():
 def test_who_tells_the_truth_earns_more_than_who_is_too_sure_and_who_is_not_sure_enough():
     truth, sure, unsure = [], [], []
     for seed in SEEDS:
-        hidden = Hidden(seed)
+        hidden = HiddenState(seed)
         scale = true_settings(hidden).assumed_noise_scale
         for earned, factor in ((truth, 1.0), (sure, 0.25), (unsure, 4.0)):
             earned.append(GAME.judge(seed, true_settings(hidden, assumed_noise_scale=scale * factor)).points)
@@ -98,7 +98,7 @@ def test_who_tells_the_truth_earns_more_than_who_is_too_sure_and_who_is_not_sure
 
 @pytest.mark.parametrize("seed", [0, pytest.param(3, marks=pytest.mark.long)])
 def test_a_sixth_hypothesis_pays_only_near_the_unknown_fault(seed):
-    hidden = Hidden(seed)
+    hidden = HiddenState(seed)
     none = GAME.judge(seed, true_settings(hidden, mass=1.0, stiffness=1.0, damping=1.0))
     assert none.figures["credit"] == 0.0
     assert GAME.judge(seed, true_settings(hidden)).points > none.points + 40.0
@@ -111,7 +111,7 @@ def test_a_sixth_hypothesis_pays_only_near_the_unknown_fault(seed):
 
 def test_what_is_drawn_is_within_what_is_said_of_it():
     for seed in range(40):
-        hidden = Hidden(seed)
+        hidden = HiddenState(seed)
         assert not 0.75 < hidden.noise_um / DATA_SHEET_UM < 4.0 / 3.0
         assert hidden.states[0] == 0 and len(hidden.states) == 7 and hidden.states.count(5) == 2
         assert hidden.states.count(0) == 2 and len({*hidden.states}) == 5
@@ -119,13 +119,13 @@ def test_what_is_drawn_is_within_what_is_said_of_it():
         unknown = motion(hidden, **hidden.unknown.model_dump(include={"mass", "stiffness", "damping"}))
         apart = min(abs(motion(hidden, one.mass, one.stiffness, one.damping) - unknown) for one in GIVEN)
         assert 0.12 - 1e-9 < apart / abs(motion(hidden)) < 0.8 + 1e-9
-    assert Hidden(1).device != Hidden(2).device
+    assert HiddenState(1).device != HiddenState(2).device
     assert [fact.said for fact in GAME.hidden(1)] == [fact.said for fact in GAME.hidden(1)]
 
 
 def test_the_live_bench_has_other_noise_and_the_same_faults():
-    bench = GAME.bench(3, Settings(process_noise_v=0.7))
-    hidden = Hidden(3)
+    bench = GAME.bench(3, FilterAssumptions(process_noise_v=0.7))
+    hidden = HiddenState(3)
     assert bench["seed"] not in hidden.draws.noise_seeds(5)
     assert bench["diagnosers"]["kalman"]["process_noise_v"] == 0.7
     Scenario.load(bench)

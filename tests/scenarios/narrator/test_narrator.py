@@ -15,7 +15,7 @@ from core.format import format_percent, format_short, format_si
 from scenarios.library import get
 from scenarios.narrator.doings import MEASURED, MODEL
 from scenarios.narrator.narrator import Narrator
-from scenarios.narrator.samples import Samples
+from scenarios.narrator.samples import NarratorSignals
 from scenarios.narrator.sentence import Sentence
 from scenarios.narrator.settling import Settling
 from scenarios.run import Result, build, run
@@ -278,7 +278,7 @@ def test_an_error_that_stays_at_the_edge_while_the_fault_acts_is_not_back() -> N
     def told(error: Any) -> list[str]:
         settling, samples = Settling(0.01), {MODEL: model, MEASURED: model - error}
         settling.follow(Sentence(tick=0, kind="fault", text="", signals=[], span=(0, 0), numbers={}))
-        return [said.kind for said in settling.look(cast(Samples, Traces(samples)), len(ticks))]
+        return [said.kind for said in settling.look(cast(NarratorSignals, Traces(samples)), len(ticks))]
 
     assert told(error) == []
     assert told(np.where(ticks < 20_000, error, 0.02 * model)) == ["settled"]

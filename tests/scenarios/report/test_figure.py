@@ -14,7 +14,7 @@ from scenarios.library import get
 from scenarios.report.axis import Axis
 from scenarios.report.figure import figure
 from scenarios.report.palette import hypothesis, line
-from scenarios.report.svg import Bar, Chart, Lane, Mark, Series, paint, picture_file
+from scenarios.report.svg import AreaRow, Bar, Chart, EventMark, Series, paint, picture_file
 from scenarios.run import run
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -86,8 +86,8 @@ def test_a_study_without_curves_shows_what_was_measured_on_what_is_expected() ->
 def test_words_are_written_as_they_are() -> None:
     word, points = "<b>&", ([0.0, 1.0], [0.0, 1.0])
     axes: dict[str, Any] = {"x": Axis(word), "y": Axis(word)}
-    lines = Chart(word, **axes, series=[Series(word, *points)] * 2, marks=[Mark(0.5, word)])
-    lanes = Chart(word, **axes, lanes=[Lane(word, [(0.0, 1.0, line(0), True)])], keys=[(word, line(0))])
+    lines = Chart(word, **axes, series=[Series(word, *points)] * 2, marks=[EventMark(0.5, word)])
+    lanes = Chart(word, **axes, lanes=[AreaRow(word, [(0.0, 1.0, line(0), True)])], keys=[(word, line(0))])
     bars = Chart(word, bars=[Bar(word, 1.0, word, 0.5, 1.5, True)])
     # the title; names of lines in the legend, titles of both axes; tips of lines and of the mark
     for chart, texts, tips in ((lines, 1 + 2 + 2, 2 + 1), (lanes, 1 + 1 + 1 + 1, 0), (bars, 1 + 2, 1)):

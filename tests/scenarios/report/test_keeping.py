@@ -16,7 +16,7 @@ from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.report.axis import Axis
 from scenarios.report.keeping import keep
-from scenarios.report.svg import Chart, Mark, Series, paint, thin
+from scenarios.report.svg import Chart, EventMark, Series, paint, thin
 from scenarios.report.traces import TraceFile
 from scenarios.run import run
 
@@ -79,7 +79,7 @@ def test_a_spike_of_one_sample_stays_in_the_picture() -> None:
     assert np.all(np.diff(samples) > 0) and samples[int(np.argmax(thinned))] == 54_321
     samples, thinned = thin(np.negative, y[:3], most=50)
     assert samples.tolist() == [0, 1, 2] and thinned == (-y[:3]).tolist()
-    marks = [Mark(0.5, "a < b"), Mark(9.0, "outside")]
+    marks = [EventMark(0.5, "a < b"), EventMark(9.0, "outside")]
     drawing = paint(Chart("t", Axis("x"), Axis("y"), [Series("one", [0, 1], [0, 1])], marks))
     titles = [one.text for one in ElementTree.fromstring(drawing).iter(f"{SVG}title")]
     assert "a < b" in titles and "outside" not in titles

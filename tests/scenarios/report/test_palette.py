@@ -22,7 +22,7 @@ def test_lines_and_hypotheses_follow_the_rules_of_the_page():
     assert [palette.line(number).slot for number in range(8)] == [*range(1, 8), 1]
     assert palette.line(0).dash == "" and palette.line(1).dash == "8 4"
     assert [palette.hypothesis(number).slot for number in range(8)] == ORDER
-    assert palette.hypothesis(9) == palette.Look(ORDER[1], "8 4")
+    assert palette.hypothesis(9) == palette.LineStyle(ORDER[1], "8 4")
     assert len({(palette.line(n).slot, palette.line(n).dash) for n in range(42)}) == 42
     assert all(len(colours) == len(LIGHT) for colours in SHARED["colours"].values())
     assert sorted(ORDER) == list(range(len(LIGHT)))

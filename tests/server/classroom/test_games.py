@@ -14,7 +14,7 @@ from sqlalchemy import select
 
 from scenarios.campaign.executor import Processes
 from scenarios.games import GAMES, states
-from scenarios.games.states import Hidden
+from scenarios.games.states import HiddenState
 from server.store.people import GameAttemptRow
 from tests.server.classroom.group import Somebody, join, open_class, the_teacher, watcher
 from tests.server.classroom.test_blind_doors import BEFORE, LONG, fetched, run, streamed
@@ -299,7 +299,7 @@ def test_the_hidden_states_are_not_among_the_events(live: Live, group: dict[str,
     run(live, ada.bench, states.FIRST + states.EACH + 10)
     path = f"/api/v1/benches/{ada.bench}"
     whole = {one["kind"] for one in master.ask("GET", f"{path}/events").json()["events"]}
-    assert "inject" in whole or Hidden(draw_of(live, ada)).states[1] == 0
+    assert "inject" in whole or HiddenState(draw_of(live, ada)).states[1] == 0
     assert not {"inject", "heal", "scheduled"} & {
         one["kind"] for one in ada.ask("GET", f"{path}/events").json()["events"]
     }

@@ -12,7 +12,7 @@ import pytest
 from core.errors import InputError
 from scenarios import sheets
 from scenarios.sheets.judge import judge
-from scenarios.sheets.sheet import Prediction, Question
+from scenarios.sheets.sheet import Prediction, SheetQuestion
 from tests.server.classroom.at_sheet import AtSheet, response
 from tests.server.classroom.offline import Offline
 from tests.server.conftest import Live
@@ -192,12 +192,12 @@ class Attentive(Offline):
     def right(self, name: str, text: str) -> None:
         self.look()
         step = self.lesson.step(name)
-        assert isinstance(step, Question | Prediction)
+        assert isinstance(step, SheetQuestion | Prediction)
         told = [shown for shown in self.shown if self.earns(step, shown)]
         assert told == [], f"conditions have shown the answer to {name}"
         super().right(name, text)
 
-    def earns(self, step: Question | Prediction, text: str) -> bool:
+    def earns(self, step: SheetQuestion | Prediction, text: str) -> bool:
         """Whether a text earns points as the right number or a known mistake, in the unit asked for if it has none."""
         asked = step.number and step.number.model_copy(update={"partly": None, "wrong_unit": 0.0, "right_sign": 0.0})
         strict = step.model_copy(update={"number": asked})

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from scenarios.campaign.halving import Wanted
-from scenarios.campaign.threshold import Memory, Search
+from scenarios.campaign.halving import ThresholdGoal
+from scenarios.campaign.threshold import ResultMemory, Search
 from scenarios.library import get
 
 NAME = "ch3-case1-aged-mass"
@@ -26,7 +26,7 @@ def test_a_threshold_is_found_as_it_is_headless(live: Any) -> None:
     assert answer.status_code == 202, answer.text
     found = done(live, answer.json())
     assert (found["state"], found["progress"], found["error"]) == ("done", 1.0, None)
-    search = Search(get(NAME), Wanted(**ASKED), Memory())
+    search = Search(get(NAME), ThresholdGoal(**ASKED), ResultMemory())
     search.run()
     assert found["found"] == search.kept
     # 80 % more effort belongs to a severity between the two
