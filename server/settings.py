@@ -58,7 +58,7 @@ class Settings(BaseSettings):
     )
     trusted_proxies: list[str] = Field(
         [],
-        description="Addresses or networks of proxies whose `X-Forwarded-For` gives the origin of a request, for limits.",
+        description="Addresses or networks of proxies; limits count the addresses in their `X-Forwarded-For`.",
     )
     classroom: bool = Field(
         False,
