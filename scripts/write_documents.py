@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parent.parent
 SETTINGS, COMMANDS, PICTURE = "docs/settings.md", "docs/command-line.md", "docs/pictures/layers.svg"
 ABOUT = {
     "server": "serves benches, classes and runs to the page",
-    "scenarios": "what to run, and what came out",
+    "scenarios": "what to run, and its results",
     "core": "one tick, in plain numbers",
 }
 """The packages from left to right, each with its purpose."""
@@ -42,7 +42,8 @@ STYLE = """
 
 def cell(text: str) -> str:
     """Return a text as the cell of a table, with links to the documents that it names."""
-    return re.sub(r"\bdocs/([\w-]+\.md)", r"[\1](\1)", " ".join(text.split()).replace("|", "\\|"))
+    escaped = " ".join(text.split()).replace("|", "\\|").replace("<", "\\<")
+    return re.sub(r"\bdocs/([\w-]+\.md)", r"[\1](\1)", escaped)
 
 
 def settings_table() -> str:
@@ -87,9 +88,13 @@ def usual(parameter: Any) -> str:
 
 
 def layers(contracts: list[dict[str, Any]], package: str) -> list[str]:
-    """Return the layers of a package from above to below, each with the names of its modules."""
+    """Return the layers of a package from above to below, each with its folders and files."""
     (contract,) = [one for one in contracts if one.get("containers") == [package]]
-    return ["   ".join(re.findall(r"\w+", layer)) for layer in contract["layers"]]
+
+    def shown(name: str) -> str:
+        return f"{name}/" if (ROOT / package / name).is_dir() else name
+
+    return [" ".join(map(shown, re.findall(r"\w+", layer))) for layer in contract["layers"]]
 
 
 def wrapped(names: str) -> list[str]:
