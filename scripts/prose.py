@@ -31,7 +31,7 @@ RULES = {
     "a chain of passives": re.compile(rf"{DONE_TO}.*{DONE_TO}.*{DONE_TO}"),
     "a long sentence": re.compile(rf"^(?:\S+\s+){{{MOST_WORDS},}}\S+$"),
 }
-SENTENCE = re.compile(r"(?<=[.!?])\s+(?=[A-Z`*])")
+SENTENCE = re.compile(r"(?<=[.!?])\s+(?=[A-Z`*\[])")
 
 
 def said_in(path: Path) -> Iterator[tuple[int, int, str]]:
