@@ -18,7 +18,9 @@ ROOT = Path(__file__).resolve().parent.parent
 PROSE = (".md", ".py", ".ts", ".tsx")
 LEFT_OUT = ("schema.d.ts",)
 MOST_WORDS = 40
-DONE_TO = r"\b(?:is|are|was|were|be|been|being)\s+(?:\w+ly\s+|not\s+)?(?:\w+(?:ed|en|wn|ld|ought)|kept|made|read|sent|put)\b"
+DONE_TO = (
+    r"\b(?:is|are|was|were|be|been|being)\s+(?:\w+ly\s+|not\s+)?(?:\w+(?:ed|en|wn|ld|ought)|kept|made|read|sent|put)\b"
+)
 RULES = {
     "a pronoun in place of a noun": re.compile(
         r"(?:^|[,;:(] ?)(?:[Ww]hat|[Ww]hoever|[Tt]hose) (?:is|are|has|was|were|it|the|who|which|that|of|a)\b(?!.*\?)"

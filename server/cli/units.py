@@ -18,7 +18,7 @@ from server.cli.terminal import JsonOption, plainly, say, say_json
 
 UnitOption = Annotated[
     list[Path] | None,
-    typer.Option("--unit", metavar="FILE", help="A unit of your own; its file has the name of the unit. May be repeated."),
+    typer.Option("--unit", metavar="FILE", help="A unit of your own, with the name of its file. May be repeated."),
 ]
 
 
