@@ -18,7 +18,7 @@ def fmu(
     assign: Annotated[
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Any field of the scenario.")
     ] = None,
-    out: Annotated[Path, typer.Option(metavar="FILE", help="File of the FMU.")] = Path("device.fmu"),
+    out: Annotated[Path, typer.Option(metavar="FILE", help="Where the FMU goes.")] = Path("device.fmu"),
 ) -> None:
     """Write the device of a scenario as an FMU of FMI 3: its linear plant, voltage in, displacement out."""
     chosen = with_values(load(scenario), dict(parse_assignment(text) for text in assign or []))

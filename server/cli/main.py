@@ -90,7 +90,7 @@ def run(
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Any field of the scenario.")
     ] = None,
     units: UnitOption = None,
-    seed: Annotated[int | None, typer.Option(help="A seed in place of the scenario's own, 0 or more.")] = None,
+    seed: Annotated[int | None, typer.Option(help="Instead of the scenario's own, 0 or more.")] = None,
     seeds: Annotated[str | None, typer.Option(metavar="A:B", help="One run for each seed from A to B.")] = None,
     as_json: JsonOption = False,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write trace, report and script here.")] = None,
@@ -102,24 +102,20 @@ def run(
             "also of sensors that are never in use. No figure and no digest depends on it.",
         ),
     ] = False,
-    narrate: Annotated[bool, typer.Option("--narrate", help="Also print the sentences of the narrator.")] = False,
+    narrate: Annotated[bool, typer.Option("--narrate", help="Also say in plain sentences what happens.")] = False,
     controller_process: Annotated[
         str | None,
-        typer.Option(metavar="COMMAND", help="A program that drives the bench over a pipe (docs/other-languages.md)."),
+        typer.Option(metavar="COMMAND", help="A program that drives, asked over a pipe (docs/other-languages.md)."),
     ] = None,
-    controller_timeout: Annotated[
-        float, typer.Option(metavar="S", help="Longest time for an answer of this program, s.")
-    ] = 10.0,
+    controller_timeout: Annotated[float, typer.Option(metavar="S", help="Longest time for one of its answers.")] = 10.0,
     threshold: Annotated[
-        str | None,
-        typer.Option(metavar="METRIC", help="Find where in the range of --over the claim about this metric holds."),
+        str | None, typer.Option(metavar="METRIC", help="Find where this claim holds, over the range of --over.")
     ] = None,
     over: Annotated[
-        str | None,
-        typer.Option(metavar="PATH=LOW:HIGH[:log]", help="The number that --threshold varies, and its range."),
+        str | None, typer.Option(metavar="PATH=LOW:HIGH[:log]", help="The number to turn for --threshold.")
     ] = None,
 ) -> None:
-    """Run a scenario headless; exit code 0: all expectations hold, 1: some do not, 2: invalid input."""
+    """Run a scenario headless: 0 all expectations hold, 1 some do not, 2 invalid input."""
     from scenarios.campaign.single import beside, run_seeds  # each worker process loads this file, and not these
     from scenarios.outside.process import Process
     from scenarios.report.keeping import keep
@@ -193,7 +189,7 @@ def gallery(
     only: Annotated[str, typer.Option(metavar="GLOB", help="Only ids that match.")] = "*",
     as_json: JsonOption = False,
 ) -> None:
-    """Run every library scenario: claim, expectation, measured figure, verdict, and the figure of the open loop."""
+    """Run every library scenario: published claim, expectation, measured, verdict, and the figure of the open loop."""
     from scenarios.campaign.single import beside
 
     chosen = [get(name) for name in ids() if fnmatch.fnmatch(name, only)]
@@ -212,21 +208,16 @@ def gallery(
 def sweep(
     file: Annotated[Path, typer.Argument(help="Campaign in TOML.")],
     workers: Annotated[
-        int | None, typer.Option(help="Processes of this machine, 1 to 1024; without it, as many as it has processors.")
+        int | None, typer.Option(help="Processes of this machine, 1 to 1024; as many as it has processors.")
     ] = None,
     scheduler: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ADDRESS", help="Address of a Dask scheduler in place of processes, such as tcp://host:8786."
-        ),
+        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler instead, such as tcp://host:8786.")
     ] = None,
-    out: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Folder of the results; without it, sweeps/ID.")
-    ] = None,
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Where results go; sweeps/<id> if not given.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Continue the campaign in the folder.")] = False,
     units: UnitOption = None,
 ) -> None:
-    """Run a campaign; exit code 0: every run was carried out, 1: some were not, 2: invalid input."""
+    """Run a campaign: 0 every run was carried out, 1 some could not be, 2 invalid input."""
     from scenarios.campaign.campaign import Stopped
     from scenarios.campaign.executor import collect_seldom
     from server.cli.sweep import carry_out, read_sweep
@@ -289,10 +280,9 @@ def bench(as_json: JsonOption = False) -> None:
 @plainly
 def serve(
     host: Annotated[
-        str | None,
-        typer.Option(help="Address on which the server listens; beyond this machine it needs a token or --classroom."),
+        str | None, typer.Option(help="Address to listen on; anything but loopback needs a token or --classroom.")
     ] = None,
-    port: Annotated[int | None, typer.Option(help="Port on which the server listens; 0 chooses a free one.")] = None,
+    port: Annotated[int | None, typer.Option(help="Port to listen on; 0 for any free one.")] = None,
     data: Annotated[Path | None, typer.Option(help="Folder for database and recordings.")] = None,
     classroom: Annotated[
         bool, typer.Option("--classroom", help="Serve a class on this network: students join by a code, without TLS.")
@@ -300,7 +290,7 @@ def serve(
     open_page: Annotated[bool, typer.Option("--open", help="Open the page in a browser.")] = False,
     units: UnitOption = None,
 ) -> None:
-    """Serve the page."""
+    """Serve the dashboard."""
     from server.cli.serve import serve as start
     from server.settings import load_settings
 
@@ -311,7 +301,7 @@ def serve(
 @app.command()
 @plainly
 def doctor(as_json: JsonOption = False) -> None:
-    """Show the effective settings with their sources, versions, and the state of the kernel cache."""
+    """Show effective settings and where each comes from, versions and the state of the kernel cache."""
     from server.cli.doctor import examine
 
     report = examine()
