@@ -201,7 +201,7 @@ class BlindView:
 
     @property
     def document(self) -> Document:
-        """The bench without hidden values, with the present values of the parameters that may be set."""
+        """The bench as it is meant to be, with the reference and the controller of now."""
         now = document_now(self._bench)
         free = (*MAY_SET, "diagnosers") if self.blind.question.game is not None else MAY_SET  # as the player set it
         return {**self.blind.sheet, **{key: now[key] for key in free if key in now}}
