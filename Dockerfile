@@ -1,5 +1,5 @@
 # The bench in one image: page built, kernels compiled for this processor and for levels of others, one worker, no root.
-# A tag moves; README.md says how to pin it by its digest.
+# A tag moves; docs/container.md explains how to pin it by its digest.
 ARG BASE=python:3.11-slim-bookworm
 
 # ---- what both builds need

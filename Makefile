@@ -41,7 +41,7 @@ flakes: setup  ## Run a suite again and again beside busy processes; list the te
 mutations: setup  ## Plant known faults one by one, and see that the tests notice (ARGS=words of their names)
 	@.venv/bin/python scripts/mutations.py $(ARGS)
 
-check: $(PYTHON_STAMP) $(NODE_STAMP)  ## Run the static checks: format, lint, imports, types
+check: $(PYTHON_STAMP) $(NODE_STAMP)  ## Run the static checks: format, lint, imports, types; list changed sentences for a second look
 	@.venv/bin/python scripts/run_tests.py check
 
 fix: $(PYTHON_STAMP) $(NODE_STAMP)  ## Format everything and mend what the linters can mend
@@ -77,10 +77,11 @@ audit: $(PYTHON_STAMP) $(NODE_STAMP) ## List all packages into sbom/, and ask th
 	@.venv/bin/python scripts/audit.py python sbom
 	@.venv/bin/python scripts/audit.py page sbom
 
-codegen: $(PYTHON_STAMP) $(NODE_STAMP)  ## Regenerate the page's types from the service's OpenAPI document, and the answers its tests use
+codegen: $(PYTHON_STAMP) $(NODE_STAMP)  ## Regenerate the page's types, the answers its tests use, and the generated parts of the documents
 	@.venv/bin/python -m server.openapi > web/openapi.json
 	@scripts/npm --prefix web run codegen
 	@.venv/bin/python scripts/record_answers.py
+	@.venv/bin/python scripts/write_documents.py
 
 digests: $(KERNEL_STAMP)  ## Renew the digests tests hold runs to (ARGS=--draw: with other benches)
 	@.venv/bin/python -m tests.scenarios.digests --renew $(ARGS)

@@ -176,7 +176,7 @@ REFUSED = (InputError, ApiError, DBAPIError)
 
 
 def why(error: Exception) -> str:
-    """Return in words why something was refused."""
+    """Return the reason of a refusal in words; the cause of a failure of the database goes to the log alone."""
     if isinstance(error, DBAPIError):
         log.error("the database refused: %s", error.orig)
         return STORAGE

@@ -108,7 +108,7 @@ class Search(Campaign):
 
     @property
     def progress(self) -> float:
-        """Share of the rounds that is done, the grid as much as all others together."""
+        """Share of the search that is done: the grid is one half of it, all rounds after it are the other."""
         rounds = self._halving.rounds
         share = super().done / super().total if super().total else 0.0
         return 0.5 * share if rounds == 0 else min(1.0, 0.5 + 0.5 * (rounds - 1 + share) / ROUNDS)

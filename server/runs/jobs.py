@@ -84,7 +84,7 @@ class Jobs(Requested[Run]):
         return {row.id: self.shown(row) for row in await self._requests.some(self.kind, run_ids)}
 
     async def traces(self, run_ids: list[str]) -> tuple[list[Run], list[Path]]:
-        """Return runs, and where their traces are if they have any."""
+        """Return runs, and the path of the trace of each; a run without a trace has no file there."""
         runs = [await self.get(run_id) for run_id in run_ids]
         return runs, [(self._requests.folders[self.kind] / run.id / STEM).with_suffix(".parquet") for run in runs]
 

@@ -2879,22 +2879,22 @@ export interface components {
             floor: number;
             /**
              * Residuals
-             * @description Signals of the residuals, below the name of the diagnoser
+             * @description Signals of the residuals, without the name of the diagnoser
              */
             residuals: string[];
             /**
              * Weighed
-             * @description What the prior is, in words
+             * @description Meaning of the prior, in words
              */
             weighed: string;
             /**
              * Evidence
-             * @description What log_likelihood is, in LaTeX; empty for that of the normal density
+             * @description Formula of log_likelihood in LaTeX; empty for the normal density
              */
             evidence: string;
             /**
              * Gain Units
-             * @description Of the rows of each gain
+             * @description Units of the rows of each gain
              */
             gain_units: string[];
             /** Models */
@@ -4692,7 +4692,7 @@ export interface components {
             tick: number;
             /**
              * Samples
-             * @description Until it said the truth again, or the truth changed
+             * @description Samples until the verdict was true again, or the truth changed
              */
             samples: number;
         };
@@ -5036,17 +5036,17 @@ export interface components {
         Heal: {
             /**
              * At Sample
-             * @description sample at which it takes effect
+             * @description the sample at which the command takes effect
              */
             at_sample?: number | null;
             /**
              * At Ms
-             * @description device time at which it takes effect
+             * @description the device time at which the command takes effect
              */
             at_ms?: number | null;
             /**
              * When
-             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
+             * @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on
              */
             when?: string | null;
             /** Heal */
@@ -5177,7 +5177,7 @@ export interface components {
         Hypothesis: {
             /**
              * Name
-             * @description short name, without spaces or dots
+             * @description a short name, without spaces or dots
              */
             name: string;
             /**
@@ -5276,17 +5276,17 @@ export interface components {
         Inject: {
             /**
              * At Sample
-             * @description sample at which it takes effect
+             * @description the sample at which the command takes effect
              */
             at_sample?: number | null;
             /**
              * At Ms
-             * @description device time at which it takes effect
+             * @description the device time at which the command takes effect
              */
             at_ms?: number | null;
             /**
              * When
-             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
+             * @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on
              */
             when?: string | null;
             /** Fault */
@@ -5304,7 +5304,7 @@ export interface components {
             profile?: components["schemas"]["Profile"];
             /**
              * Parameters
-             * @description what else the fault lets one choose
+             * @description the other parameters of the fault, by name
              * @default {}
              */
             parameters?: {
@@ -5605,22 +5605,22 @@ export interface components {
         MakeSafe: {
             /**
              * At Sample
-             * @description sample at which it takes effect
+             * @description the sample at which the command takes effect
              */
             at_sample?: number | null;
             /**
              * At Ms
-             * @description device time at which it takes effect
+             * @description the device time at which the command takes effect
              */
             at_ms?: number | null;
             /**
              * When
-             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
+             * @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on
              */
             when?: string | null;
             /**
              * Make Safe
-             * @description why, in words
+             * @description the reason, in words
              */
             make_safe: string;
         };
@@ -5885,12 +5885,12 @@ export interface components {
             name: string;
             /**
              * Residual Um
-             * @description For each displacement measured
+             * @description One residual for each measured displacement
              */
             residual_um: number[];
             /**
              * Covariance Um2
-             * @description Of the residuals, row by row
+             * @description Covariance of the residuals, row by row
              */
             covariance_um2: number[][] | null;
             /** Log Likelihood */
@@ -5903,7 +5903,7 @@ export interface components {
             recorded: number;
             /**
              * Missed Sigma
-             * @description Root of the square that its diagnoser weighs, over its covariance
+             * @description Residuals in standard deviations: the root of the square by which the diagnoser judges
              */
             missed_sigma: number;
             /**
@@ -7003,17 +7003,17 @@ export interface components {
         ResetTrip: {
             /**
              * At Sample
-             * @description sample at which it takes effect
+             * @description the sample at which the command takes effect
              */
             at_sample?: number | null;
             /**
              * At Ms
-             * @description device time at which it takes effect
+             * @description the device time at which the command takes effect
              */
             at_ms?: number | null;
             /**
              * When
-             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
+             * @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on
              */
             when?: string | null;
             /**
@@ -7355,7 +7355,7 @@ export interface components {
             false_switches: number;
             /**
              * Last False Switches
-             * @description The newest of them
+             * @description The newest false switches
              * @default []
              */
             last_false_switches?: components["schemas"]["FalseSwitch"][];
@@ -7457,17 +7457,17 @@ export interface components {
         Set: {
             /**
              * At Sample
-             * @description sample at which it takes effect
+             * @description the sample at which the command takes effect
              */
             at_sample?: number | null;
             /**
              * At Ms
-             * @description device time at which it takes effect
+             * @description the device time at which the command takes effect
              */
             at_ms?: number | null;
             /**
              * When
-             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
+             * @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on
              */
             when?: string | null;
             /** Set */
@@ -8111,17 +8111,17 @@ export interface components {
         Switch: {
             /**
              * At Sample
-             * @description sample at which it takes effect
+             * @description the sample at which the command takes effect
              */
             at_sample?: number | null;
             /**
              * At Ms
-             * @description device time at which it takes effect
+             * @description the device time at which the command takes effect
              */
             at_ms?: number | null;
             /**
              * When
-             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
+             * @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on
              */
             when?: string | null;
             /** Switch */
@@ -8411,17 +8411,17 @@ export interface components {
         Turn: {
             /**
              * Tick
-             * @description The first sample with the verdict there is; none in what is kept
+             * @description First sample with the present verdict; null if that sample is no longer kept
              */
             tick: number | null;
             /**
              * Before
-             * @description The verdict before it; empty without a change
+             * @description Verdict before that sample; empty without a change
              */
             before: string;
             /**
              * Since
-             * @description The first sample kept
+             * @description First sample that is kept
              */
             since: number;
         };
