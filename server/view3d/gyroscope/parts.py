@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from server.view3d.gyroscope.solids import arc, beam, join, prism, rigid
-from server.view3d.layout import Box, FloatArray, Mesh, View, merge
-from server.view3d.marks import Place
-from server.view3d.suspension import Flexure
+from server.view3d.flexure import Flexure, beam, join, rigid
+from server.view3d.solids import Box, FloatArray, Mesh, Place, View, arc, circle, merge, prism
 
 GROUND_UM, LOW_UM, TOP_UM = 4.0, 14.0, 30.0
 """Heights of the ground, and of the lower and upper surface of moving parts."""
@@ -23,15 +21,15 @@ TIP_UM, STATOR_UM, BASE_UM, PITCH_UM, FINGER_UM = 260.0, 222.0, 313.0, 16.0, 4.0
 """Tips of moving and of fixed fingers, the base of the fixed ones, pitch and width."""
 DISC_UM, RIM_UM = 345.0, 359.0
 """Radius of the frame and of its rim."""
-APART_UM = 410.0
-"""Half the distance of the two masses of a pair."""
 BEAM_UM, TRUSS_UM = 4.0, 8.0
 COUPLING_UM = 60.0
+APART_UM = 410.0
+"""Half the distance of the two masses of a pair."""
 AXES = ("x", "y")
 
 
-class Parts:
-    """The parts of one gyroscope or of two on one frame.
+class Ground:
+    """The frame that carries one gyroscope or two.
 
     Parameters
     ----------
@@ -40,17 +38,20 @@ class Parts:
     """
 
     def __init__(self, axes: tuple[str, ...]) -> None:
-        self.pairs = [(axes[k], axes[k + 1]) for k in range(0, len(axes), 2)]
-        half = APART_UM * (len(self.pairs) - 1)
-        self.centres = [(x, 0.0) for x in ((-half, half) if half else (0.0,))]
+        self.centres = (0.0,) if len(axes) == 2 else (-APART_UM, APART_UM)
+
+    def mesh(self) -> Mesh:
+        """Return its surface."""
+        outline = circle(RIM_UM, 96)
+        outline[:, 0] += np.where(outline[:, 0] >= 0.0, 1.0, -1.0) * self.centres[-1]
+        return prism(outline, 0.0, GROUND_UM)
 
     def views(self) -> dict[str, View]:
         """Return the presets of the camera: x to the right, or up for a pair in a tall picture."""
         tall = -90 if len(self.centres) == 1 else 180
-        x, reach = self.centres[-1][0], RIM_UM + 16.0
+        first, x, reach = self.centres[0], self.centres[-1], RIM_UM + 16.0
         high = (0.0, TOP_UM)
         whole = ((-x - reach, x + reach), (-reach - 50.0, reach), high)
-        first = self.centres[0][0]
         combs = ((first + BAR_UM, first + BASE_UM + 15.0), (-FOLD_UM, FOLD_UM), high)
         beams = ((first + MASS_UM - 30.0, first + RETURN_UM + 15.0), (40.0, RETURN_UM - 20.0), high)
         return {
@@ -61,13 +62,6 @@ class Parts:
             "beams": (beams, (-90, 62), (-90, 62)),
         }
 
-    def ground(self) -> Mesh:
-        """Return the frame that carries all devices."""
-        angles = np.linspace(0.0, 2.0 * np.pi, 96, endpoint=False)
-        outline = RIM_UM * np.column_stack([np.cos(angles), np.sin(angles)])
-        outline[:, 0] += np.where(outline[:, 0] >= 0.0, 1.0, -1.0) * self.centres[-1][0]
-        return prism(outline, 0.0, GROUND_UM)
-
 
 def rim() -> Mesh:
     """Return the ring around a device."""
@@ -76,8 +70,7 @@ def rim() -> Mesh:
 
 def gas() -> Mesh:
     """Return the gas around a device."""
-    angles = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
-    return prism((DISC_UM - 4.0) * np.column_stack([np.cos(angles), np.sin(angles)]), GROUND_UM + 2.0, TOP_UM + 16.0)
+    return prism(circle(DISC_UM - 4.0, 48), GROUND_UM + 2.0, TOP_UM + 16.0)
 
 
 def mass() -> Flexure:
