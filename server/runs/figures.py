@@ -5,7 +5,7 @@ in sight first, by the worker processes of headless runs at their low priority, 
 starts waits for one figure at most. Results in the table of runs are not computed again, and new ones are added to it.
 A scenario that fails, or a full disk, gives one line in the log and stops nothing.
 
-``python -m server.runs.figures`` makes those of the whole library, for an image or a wheel.
+``python -m server.runs.figures`` makes the figures of the whole library, for an image or a wheel.
 """
 
 from __future__ import annotations

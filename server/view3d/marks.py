@@ -13,9 +13,10 @@ from server.view3d.solids import Box, Mesh, Place, arrow, merge
 
 
 class Marks:
-    """All marks of the faults of a moment, and those of the faults that all devices have.
+    """All marks of the faults of a moment.
 
-    A method of the name of a fault marks it; it may return the place of the label.
+    A method with the name of a fault marks it, here the faults that all devices have. It may return the place of the
+    label.
 
     Parameters
     ----------
@@ -55,7 +56,7 @@ class Marks:
             self.write(words(fault), where or places.get(fault.block.shows, places[""]))
 
     def write(self, text: str, where: Place) -> None:
-        """Write words at a place, under the words that are there."""
+        """Write words at a place, under the words that it has."""
         self.labels.setdefault(where, []).append(text)
 
     def tint(self, share: float, *parts: str) -> None:

@@ -90,7 +90,7 @@ class Show:
             await self._close(looked)
 
     async def _close(self, looked: Looked | None) -> None:
-        """Stop moving a scene and close it, if it is there."""
+        """Stop moving a scene and close it, if there is one."""
         if looked in self._scenes:
             scene, task = self._scenes.pop(looked)
             task.cancel()
