@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from server.view3d.device import Device
-from server.view3d.part import Part
+from server.view3d.part import Part, Picture
 from server.view3d.pose import Pose
 from server.view3d.private import PrivateServer
 
@@ -36,7 +36,7 @@ class Scene:
         self.nodes: dict[str, Any] = words | {name: self._put(name, part) for name, part in device.parts().items()}
         self.added: dict[str, Any] = {}
         """The nodes of faults and light."""
-        self._parts: dict[str, Part] = {}
+        self._picture = Picture({})
         self._shown: Pose | None = None
 
     @property
@@ -54,17 +54,19 @@ class Scene:
             return
         self._shown = pose
         with self._server.atomic():
-            picture = self._device.picture(pose)
-            gone = [name for name, part in self._parts.items() if picture.added.get(name) is not part]
+            before, self._picture = self._picture, self._device.picture(pose)
+            picture = self._picture
+            gone = [name for name, part in before.added.items() if picture.added.get(name) is not part]
             for name in gone:
                 self.added.pop(name).remove()
             for name, part in picture.added.items():
                 if name not in self.added:
                     self.added[name] = self._put(name, part)
-            self._parts = picture.added
             for name, properties in picture.nodes.items():
+                known = before.nodes.get(name, {})
                 for key, value in properties.items():
-                    setattr(self.nodes[name], key, value)  # viser sends it if it is another one
+                    if value is not known.get(key):
+                        setattr(self.nodes[name], key, value)  # viser sends it if it is not equal either
         self._server.flush()
 
     def _put(self, name: str, part: Part) -> Any:

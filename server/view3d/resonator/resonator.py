@@ -201,7 +201,7 @@ class Resonator(Device[ResonatorPose]):
         picture.set("/reference", position=place(pose.reference_um))
         picture.set("/estimate", position=place(pose.estimate_um or 0.0), visible=pose.estimate_um is not None)
         for name, beams in self._flexures.items():
-            picture.set(f"/beams/{name}", faces=beams.faces.astype("uint32"), vertices=units(beams.bent(x, y, turn)))
+            picture.set(f"/beams/{name}", faces=beams.faces, vertices=units(beams.bent(x, y, turn)))
         for (side, name, bit), lateral, closed in zip(SIDES, pose.combs_um, pose.warnings, strict=True):
             short = bool(pose.short & bit)
             places = self.layout.fingers(side)
