@@ -6,6 +6,8 @@ combs. The sizes are chosen to be seen; the equations know none of them.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from server.view3d.flexure import Flexure, beam, join, rigid
@@ -75,20 +77,16 @@ def gas() -> Mesh:
 
 def mass() -> Flexure:
     """Return the proof mass: a plate with the holes that let the etch through."""
-    steps, hole = 3, 14.0
-    pitch = 2 * MASS_UM / steps
+    holes, hole = 3, 14.0
+    pitch = 2 * MASS_UM / holes
     middle, t = (LOW_UM + TOP_UM) / 2, TOP_UM - LOW_UM
-    boxes = []
-    for row in range(steps + 1):
-        y = -MASS_UM + row * pitch
-        low, high = max(-MASS_UM, y - (pitch - hole) / 2), min(MASS_UM, y + (pitch - hole) / 2)
-        boxes.append(Box((0.0, (low + high) / 2, middle), (2 * MASS_UM, high - low, t)))
-    for row in range(steps):
-        y = -MASS_UM + (row + 0.5) * pitch
-        for column in range(steps + 1):
-            x = -MASS_UM + column * pitch
-            low, high = max(-MASS_UM, x - (pitch - hole) / 2), min(MASS_UM, x + (pitch - hole) / 2)
-            boxes.append(Box(((low + high) / 2, y, middle), (high - low, hole, t)))
+    solid = (pitch - hole) / 2
+    edges = [-MASS_UM + number * pitch for number in range(holes + 1)]
+    spans = [(max(-MASS_UM, edge - solid), min(MASS_UM, edge + solid)) for edge in edges]
+    boxes = [Box((0.0, (low + high) / 2, middle), (2 * MASS_UM, high - low, t)) for low, high in spans]
+    for edge in edges[:-1]:
+        y = edge + pitch / 2
+        boxes += [Box(((low + high) / 2, y, middle), (high - low, hole, t)) for low, high in spans]
     return rigid(merge(boxes), np.eye(2))
 
 
@@ -99,18 +97,14 @@ def anchors() -> Mesh:
 
 
 def bars() -> Flexure:
-    """Return all bars with their fingers."""
-    return join([rigid(_bars(axis), along(axis)) for axis in AXES])
-
-
-def _bars(axis: str) -> Mesh:
-    """Return the bars that move along an axis."""
-    boxes, length = [], TIP_UM - BAR_UM - BAR_WIDTH_UM / 2
-    for arm in _arms(axis):
-        boxes.append(_box(arm, BAR_UM, 0.0, BAR_WIDTH_UM, 2 * BAR_LENGTH_UM, LOW_UM, TOP_UM))
-        sizes = (length, FINGER_UM, LOW_UM, TOP_UM)
-        boxes += [_box(arm, TIP_UM - length / 2, number * PITCH_UM, *sizes) for number in range(-3, 4)]
-    return merge(boxes)
+    """Return all bars with their fingers; each follows the mass along its axis alone."""
+    found, length = [], TIP_UM - BAR_UM - BAR_WIDTH_UM / 2
+    for axis in AXES:
+        for arm in _arms(axis):
+            bar = _box(arm, BAR_UM, 0.0, BAR_WIDTH_UM, 2 * BAR_LENGTH_UM, LOW_UM, TOP_UM)
+            fingers = _comb(arm, TIP_UM - length / 2, length, range(-3, 4))
+            found.append(rigid(merge([bar, *fingers]), along(axis)))
+    return join(found)
 
 
 def stators(axis: str) -> Mesh:
@@ -118,9 +112,13 @@ def stators(axis: str) -> Mesh:
     boxes, length = [], BASE_UM - STATOR_UM
     for arm in _arms(axis):
         boxes.append(_box(arm, BASE_UM, 0.0, 18.0, 8 * PITCH_UM, GROUND_UM, TOP_UM))
-        sizes = (length, FINGER_UM, LOW_UM, TOP_UM)
-        boxes += [_box(arm, STATOR_UM + length / 2, (number + 0.5) * PITCH_UM, *sizes) for number in range(-4, 4)]
+        boxes += _comb(arm, STATOR_UM + length / 2, length, np.arange(-3.5, 4.0))
     return merge(boxes)
+
+
+def _comb(arm: int, u: float, length: float, numbers: Iterable[float]) -> list[Box]:
+    """Return fingers with their middle at ``u`` along an arm, and so many pitches to its left."""
+    return [_box(arm, u, number * PITCH_UM, length, FINGER_UM, LOW_UM, TOP_UM) for number in numbers]
 
 
 def finger(axis: str, number: float, is_moving: bool) -> Box:

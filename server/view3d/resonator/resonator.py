@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -99,6 +98,8 @@ class Resonator(Device[ResonatorPose]):
             name: [signal.index for signal in session.signals if signal.name.startswith(f"{name}.")] for name in LASERS
         }
         self._factor = self._turn_factor = 1.0
+        self._shining: tuple[Laser, ...] = ()
+        self._beams: dict[str, Part] = {}
         self._damage: tuple[Damage | None, float] = (None, 0.0)
         self._flexures = {name: flexure(self.layout, side) for side, name in BEAMS}
 
@@ -214,7 +215,9 @@ class Resonator(Device[ResonatorPose]):
                 batched_colors=in_batch(blend(MOVING, ATTENTION, 1.0 if short else closed)),
             )
             picture.set(f"/stators/{name}", batched_colors=in_batch(ATTENTION if short else FIXED))
-        picture.added = picture.added | _light(pose.lasers, self.layout.top_um)
+        if pose.lasers != self._shining:
+            self._shining, self._beams = pose.lasers, _beams(pose.lasers, self.layout.top_um)
+        picture.added = picture.added | self._beams
 
 
 def combs_of(shift_um: float, turn: float, tip_um: float, plant: BlockParams) -> tuple[float, float]:
@@ -235,8 +238,7 @@ def combs_of(shift_um: float, turn: float, tip_um: float, plant: BlockParams) ->
     return middle + angle * tip_um, middle - angle * tip_um
 
 
-@lru_cache(8)
-def _light(lasers: tuple[Laser, ...], top_um: float) -> dict[str, Part]:
+def _beams(lasers: tuple[Laser, ...], top_um: float) -> dict[str, Part]:
     """Return the beams of light, which do not move."""
     parts = {}
     for number, laser in enumerate(lasers):
