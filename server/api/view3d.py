@@ -33,10 +33,10 @@ CLOSE_VERSION, CLOSE_NO_BENCH, CLOSE_FULL, CLOSE_LOST = 4001, 4404, 1013, 1012
 async def get_page(bench_id: str, service: ServiceDep) -> HTMLResponse:
     """Return the page of the 3D view."""
     from server.view3d.page import POLICY, page
-    from server.view3d.viewers import layout_of
+    from server.view3d.viewers import device_of
 
-    layout = layout_of(service.benches.get(bench_id))
-    return HTMLResponse(page(layout), headers={POLICY_HEADER: POLICY})
+    views = device_of(service.benches.get(bench_id)).views()
+    return HTMLResponse(page(views), headers={POLICY_HEADER: POLICY})
 
 
 @router.websocket("/benches/{bench_id}/3d")
@@ -68,11 +68,10 @@ async def join(socket: WebSocket, bench_id: str, service: SocketServiceDep) -> N
     try:
         reason = await _relay(socket, path, hearing, looked.first)
         if looked.first.is_set() and not reason and not hearing.done():
-            reason = await _relay(socket, await show.own(looked), hearing)
+            reason = await _relay(socket, await show.open(looked), hearing)
     finally:
         hearing.cancel()
-        await show.close_own(looked)
-        await show.leave()
+        await show.leave(looked)
     with contextlib.suppress(RuntimeError, WebSocketDisconnect):
         await socket.close(CLOSE_LOST, reason)
 

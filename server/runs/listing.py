@@ -183,17 +183,14 @@ class Requests:
         """Give a run or a campaign a name; an empty one takes it away."""
         name = clean_label(label)
 
-        def named(session: Session) -> RequestRow | None:
+        def named(session: Session) -> RequestRow:
             row = session.get(RequestRow, row_id)
-            if row is not None and row.kind == kind:
-                row.label = name
-                return row
-            return None
+            if row is None or row.kind != kind:
+                raise not_found(kind, row_id)
+            row.label = name
+            return row
 
-        row = await self._database.run(named)
-        if row is None:
-            raise not_found(kind, row_id)
-        return row
+        return await self._database.run(named)
 
     async def remove(self, kind: Kind, ids: Sequence[str] | None) -> int:
         """Remove some that have ended, or all of this process if none is named; return how many.
@@ -234,7 +231,7 @@ class Requests:
 def fresh(**values: Any) -> RequestRow:
     """Return a request that waits from now on."""
     return RequestRow(
-        **values,
+        **{"id": values["key"][:32], "label": "", "seeds": None, **values},
         state="queued",
         version=code_version(),
         done=0,

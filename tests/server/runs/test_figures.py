@@ -15,8 +15,7 @@ import pytest
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
-from server.runs.build_figures import build
-from server.runs.figures import Figures
+from server.runs.figures import Figures, build
 
 FEW = ("first-look", "ch1-beam-width", "ch3-ffrls-b30")
 

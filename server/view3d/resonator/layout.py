@@ -1,25 +1,12 @@
-"""The parts of a comb resonator and their places: boxes and meshes in um, from its drawing.
-
-One scene unit is 100 um: viser drops changes below about 1e-5 of a value, so metres would not move.
-"""
+"""The measures of a comb resonator, its parts and their places in um, from its drawing."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
 from core.device.geometry import Geometry
+from server.view3d.solids import Box, FloatArray, Mesh, Place, View, merge
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
-View = tuple[tuple[tuple[float, float], ...], tuple[float, float], tuple[float, float]]
-"""The view of a camera: a box in um, and azimuth and elevation for a tall and for a wide picture."""
-
-UM_PER_UNIT = 100.0
 HEIGHTS, WIDTHS = 4.0, 2.5
 """Factor on heights, and on widths of beams and trusses: a film of 2 um is invisible across 800 um."""
 GROUND_UM = 2.0
@@ -28,45 +15,6 @@ BASE_UM = 30.0
 NOTCH_UM = 32.0
 """Half width of the waist, where the inner beams pass on their way to the anchors."""
 WAIST_UM = 12.5
-
-
-@dataclass(frozen=True)
-class Box:
-    """An upright box: centre and size in um."""
-
-    centre: tuple[float, float, float]
-    size: tuple[float, float, float]
-
-
-@dataclass(frozen=True)
-class Mesh:
-    """A triangle mesh in scene units."""
-
-    vertices: FloatArray
-    faces: IntArray
-
-
-_CORNERS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
-_FACES = np.array(
-    [
-        [0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
-        [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3],
-    ]
-)  # fmt: skip
-
-
-def unit_box() -> Mesh:
-    """Return a box of one scene unit, to be scaled."""
-    return Mesh(_CORNERS.copy(), _FACES.copy())
-
-
-def merge(boxes: Iterable[Box]) -> Mesh:
-    """Join boxes into one mesh."""
-    vertices, faces = [], []
-    for number, box in enumerate(boxes):
-        vertices.append((_CORNERS * box.size + box.centre) / UM_PER_UNIT)
-        faces.append(_FACES + 8 * number)
-    return Mesh(np.vstack(vertices), np.vstack(faces))
 
 
 class Layout:
@@ -141,7 +89,7 @@ class Layout:
         return merge(boxes)
 
     def outline(self) -> FloatArray:
-        """Return the edges of plate and arms, ``(n, 2, 3)`` in scene units, just above them."""
+        """Return the edges of plate and arms, ``(n, 2, 3)``, just above them."""
         g, top = self.geometry, self.top_um + 1.0
         edges = []
         for side in (-1, 1):
@@ -152,7 +100,7 @@ class Layout:
                 corners = [(x[0], -y), (x[1], -y), (x[1], y), (x[0], y)]
                 points = [(side * a, b, top) for a, b in corners]
                 edges += [(points[k], points[(k + 1) % 4]) for k in range(4)]
-        return np.array(edges) / UM_PER_UNIT
+        return np.array(edges)
 
     def views(self) -> dict[str, View]:
         """Return the presets of the camera.
@@ -172,6 +120,24 @@ class Layout:
             "beams": (beams, (-80, 56), (190, 56)),
         }
 
+    def places(self) -> dict[str, Place]:
+        """Return the places of marks and labels; a label without a part is at the edge."""
+        top, half = self.top_um, self.geometry.arm_length_um / 2
+        shock = -0.88 * self.half_width_um
+        return {
+            "plate": (-0.6 * self.plate_um, 0.0, top + 20),
+            "beams": (self.outer_um, self.beam_from_um + 0.5 * self.geometry.beam_length_um, top),
+            "trusses": (0.0, self.beam_to_um, top),
+            "film": (-self.arm_um, -0.6 * half, top),
+            "fingers": (self.tip_um, -0.6 * half, top),
+            "drive": (self.base_um, 0.0, top),
+            "sensor": (0.0, 0.0, top + 60),
+            "frame": (-self.half_length_um, -0.8 * self.half_width_um, top),
+            "shock": (0.0, shock, top),
+            "shocked": (0.0, 0.8 * shock, top + 6.0),  # further in, because the words are wider than the arrow
+            "": (-self.half_length_um, 0.8 * self.half_width_um, top),
+        }
+
     @property
     def comb_um(self) -> float:
         """Extent of the combs along y, between the outermost fingers."""
@@ -189,7 +155,7 @@ class Layout:
         return self._comb(side * (self.stator_um + self.geometry.finger_length_um / 2), y)
 
     @property
-    def finger_size(self) -> tuple[float, float, float]:
+    def finger_size(self) -> Place:
         """Length, width and height of a finger, um."""
         return self.geometry.finger_length_um, self.finger_um, self.thick_um
 

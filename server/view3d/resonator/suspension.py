@@ -1,45 +1,20 @@
 r"""Beams and trusses in their true shape: cubics between the ends, and ends that follow the shuttle.
 
 Between two nodes nothing loads a beam, so its shape is the cubic with their displacements and rotations. The nodes
-follow the shuttle as the static frame of beams does, damaged or not: :math:`r=r_0+F\,(x,y,\theta)^T` for each vertex.
+follow the shuttle as the static frame of beams does, damaged or not.
 """
 
 from __future__ import annotations
-
-from dataclasses import dataclass
 
 import numpy as np
 
 from core.device import frame
 from core.device.frame import Damage
-from server.view3d.layout import UM_PER_UNIT, FloatArray, IntArray, Layout
+from server.view3d.flexure import Flexure, join, swept
+from server.view3d.resonator.layout import Layout
+from server.view3d.solids import FloatArray
 
 BEAM_RINGS, TRUSS_RINGS = 11, 4
-
-
-@dataclass(frozen=True)
-class Flexure:
-    """The suspension of one side.
-
-    Parameters
-    ----------
-    rest : ndarray, shape (vertices, 3)
-        Places of the vertices without load, um.
-    follow : ndarray, shape (vertices, 2, 3)
-        Their displacement along x and y per displacement (x, y, theta) of the shuttle.
-    faces : ndarray, shape (triangles, 3)
-        The surface.
-    """
-
-    rest: FloatArray
-    follow: FloatArray
-    faces: IntArray
-
-    def bent(self, x: float, y: float, turn: float) -> FloatArray:
-        """Return the vertices in scene units, for a displacement of the shuttle in um and rad."""
-        moved = self.rest.copy()
-        moved[:, :2] += self.follow @ np.array((x, y, turn))
-        return moved / UM_PER_UNIT
 
 
 def flexure(layout: Layout, side: int, damage: Damage | None = None, share: float = 1.0) -> Flexure:
@@ -59,20 +34,15 @@ def flexure(layout: Layout, side: int, damage: Damage | None = None, share: floa
     whole = _lines(layout, side, frame.shape(layout.geometry))
     hurt = whole if damage is None else _lines(layout, side, frame.shape(layout.geometry, damage))
     lost = damage.lost_ends if damage is not None and side > 0 and share >= 1.0 else ()
-    rest, follow, faces, first = [], [], [], 0
+    parts = []
     for name, (points, healthy) in whole.items():
-        if name[0] == "truss" and name[1] in lost:
+        is_truss = name[0] == "truss"
+        if is_truss and name[1] in lost:
             continue
         moving = healthy + share * (hurt[name][1] - healthy) if name in hurt else healthy
-        width = layout.truss_um if name[0] == "truss" else layout.beam_um
-        across = np.array([0.0, width / 2, 0.0]) if name[0] == "truss" else np.array([width / 2, 0.0, 0.0])
-        up = np.array([0.0, 0.0, layout.thick_um / 2])
-        ring = np.stack([-across - up, across - up, across + up, up - across])
-        rest.append((points[:, None, :] + ring[None, :, :]).reshape(-1, 3))
-        follow.append(np.repeat(moving, 4, axis=0))
-        faces.append(tube(len(points)) + first)
-        first += 4 * len(points)
-    return Flexure(np.vstack(rest), np.vstack(follow), np.vstack(faces))
+        across = np.array([0.0, layout.truss_um / 2, 0.0] if is_truss else [layout.beam_um / 2, 0.0, 0.0])
+        parts.append(swept(points, moving, across, layout.thick_um))
+    return join(parts)
 
 
 def _lines(layout: Layout, side: int, shape: frame.Shape) -> dict[tuple[str, int], tuple[FloatArray, FloatArray]]:
@@ -117,14 +87,3 @@ def _followed(shape: frame.Shape, chain: list[tuple[int, int]], point: FloatArra
     near, far = t - 2.0 * t * t + t * t * t, t * t * t - t * t
     bent = (1.0 - rise) * (across @ first[:2]) + rise * (across @ last[:2]) + length * (near * first[2] + far * last[2])
     return np.asarray(np.outer(along, stretched) + np.outer(across, bent))
-
-
-def tube(rings: int) -> IntArray:
-    """Return the faces of a tube of square rings, closed at both ends."""
-    faces = [[0, 1, 2], [0, 2, 3]]
-    for a in range(0, 4 * (rings - 1), 4):
-        for i in range(4):
-            j = (i + 1) % 4
-            faces += [[a + i, a + j, a + 4 + j], [a + i, a + 4 + j, a + 4 + i]]
-    last = 4 * (rings - 1)
-    return np.array([*faces, [last, last + 2, last + 1], [last, last + 3, last + 2]])
