@@ -28,6 +28,7 @@ from server.security.limits import Buckets
 from server.security.origin import OriginPolicy
 from server.security.person import TEACHER, Person
 from server.security.visitor import ELSEWHERE, STYLE, visitor_page
+from server.settings import Settings
 
 CLOSE_ORIGIN, CLOSE_AUTH, CLOSE_ROLE, CLOSE_FULL = 4003, 4401, 4403, 1013
 REQUESTS_PER_S, REQUESTS_AT_ONCE = 40.0, 400
@@ -66,17 +67,12 @@ class Gate:
         the first request on.
     is_blind : callable
         Whether a fault is hidden from a person, on the bench in the path or on the bench of a student.
-    open_paths : frozenset of str
-        Further paths that need no session.
+    settings : Settings
+        Paths that need no session, persons who may bring units, limits of students.
     prefix : str
         The prefix a proxy takes off every path.
     frames : Frames, optional
         The doors of learning platforms, if there are any.
-    units : str
-        Persons whose scenarios may carry their own units: none (``off``), the teacher, or all known persons
-        (``everyone``).
-    student_events : int
-        Events that a scenario of a student may have.
     """
 
     def __init__(
@@ -88,17 +84,14 @@ class Gate:
         origin: OriginPolicy,
         come_back: Callable[[Person, str], Awaitable[None]],
         is_blind: Callable[[Person, str], bool],
-        open_paths: frozenset[str] = frozenset(),
+        settings: Settings,
         prefix: str = "",
         frames: Frames | None = None,
-        units: str = "teacher",
-        student_events: int = 1000,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         self._app, self._identity, self._people, self._driving = app, identity, people, driving
         self._origin, self._come_back, self._is_blind = origin, come_back, is_blind
-        self._open, self._prefix, self._frames, self._units = open_paths, prefix, frames, units
-        self._student_events = student_events
+        self._settings, self._prefix, self._frames = settings, prefix, frames
         self._requests = Buckets(REQUESTS_PER_S, REQUESTS_AT_ONCE, clock=clock)
         self._sockets: Counter[str] = Counter()
 
@@ -160,20 +153,21 @@ class Gate:
     def _terms(self, person: Person | None) -> Terms:
         """Return the terms on which scenarios of this person are read."""
         is_teacher = person is not None and person.is_teacher
-        return Terms(self._units_refused(person), None if is_teacher else self._student_events)
+        return Terms(self._units_refused(person), None if is_teacher else self._settings.student_events)
 
     def _units_refused(self, person: Person | None) -> str:
         """Return why this person may not bring units of their own; nothing where they may."""
-        if self._units == "off":
+        if self._settings.units == "off":
             return "this server takes no user units"
-        if self._units == "everyone" and person is not None:
+        if person is not None and (person.is_teacher or self._settings.units == "everyone"):
             return ""
-        return "" if person is not None and person.is_teacher else "only the teacher may bring units of their own"
+        return "only the teacher may bring units of their own"
 
     def _is_open(self, scope: Scope) -> bool:
         """Whether a path needs no session; in a frame browsers send none with the files of the page."""
         is_file = scope["path"].startswith(("/assets/", "/comb.svg")) and scope.get("method") in ("GET", "HEAD")
-        return scope["path"] in self._open or (self._frames is not None and is_file)
+        is_metrics = self._settings.metrics_open and scope["path"] == "/metrics"
+        return is_metrics or (self._frames is not None and is_file)
 
     def _has_bearer(self, connection: HTTPConnection) -> bool:
         """Whether a secret that is known came as a bearer."""
