@@ -164,15 +164,9 @@ def create_app(settings: Settings) -> FastAPI:
     app.add_middleware(
         Gate,
         identity=identity,
-        people=service.people,
-        driving=service.driving,
-        come_back=service.come_back,
-        is_blind=service.views.is_blind,
         origin=OriginPolicy(settings.host, settings.allowed_hosts, public, settings.classroom),
-        settings=settings,
-        prefix=public.prefix,
+        service=service,
         frames=frames,
-        clock=service.clock,
     )
     app.add_middleware(errors.CatchAll)
     app.add_middleware(SecurityHeaders, prefix=public.prefix, frames=frames)

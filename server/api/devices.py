@@ -16,7 +16,7 @@ from core.table import Words
 from scenarios import designer
 from scenarios.designer import Bode, Evaluation, ProcessSpread
 from server.api.bodies import Answer, Body
-from server.api.deps import ComputingDep
+from server.api.deps import ServiceDep
 from server.api.router import Router
 
 router = Router(prefix="/devices", tags=["devices"])
@@ -87,18 +87,18 @@ def plants_for(device: Device) -> list[str]:
 
 
 @router.post("/evaluate")
-async def evaluate(body: Design, computing: ComputingDep) -> Evaluation:
+async def evaluate(body: Design, service: ServiceDep) -> Evaluation:
     """Work out the figures of a device in its environment."""
-    return await computing.call(partial(designer.evaluation, **dict(body)))
+    return await service.computing.call(partial(designer.evaluation, **dict(body)))
 
 
 @router.post("/bode")
-async def bode(body: BodeOf, computing: ComputingDep) -> Bode:
+async def bode(body: BodeOf, service: ServiceDep) -> Bode:
     """Return the frequency response of a device with its tolerance band."""
-    return await computing.call(partial(designer.bode, **dict(body)))
+    return await service.computing.call(partial(designer.bode, **dict(body)))
 
 
 @router.post("/spread")
-async def spread(body: SpreadOf, computing: ComputingDep) -> ProcessSpread:
+async def spread(body: SpreadOf, service: ServiceDep) -> ProcessSpread:
     """Draw devices from the process; the same seed gives the same devices."""
-    return await computing.call(partial(designer.process_spread, **dict(body)))
+    return await service.computing.call(partial(designer.process_spread, **dict(body)))

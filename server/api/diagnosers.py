@@ -18,7 +18,7 @@ from core.diagnose.hypothesis import hypotheses_of as factors_of
 from core.errors import InputError, unknown
 from core.reference.waveform import Waveform
 from server.api.bodies import Body
-from server.api.deps import ComputingDep, SessionDep
+from server.api.deps import ServiceDep, SessionDep
 from server.api.router import Router
 from server.bench.bench import LiveBench
 from server.bench.tape import Tape
@@ -99,7 +99,7 @@ def map_bench_aliases(
 
 
 @router.post("/aliases")
-async def get_aliases(session: SessionDep, name: Name, body: AliasSource, computing: ComputingDep) -> AliasReport:
+async def get_aliases(session: SessionDep, name: Name, body: AliasSource, service: ServiceDep) -> AliasReport:
     """Report the hypotheses of a list that look alike under the drive."""
     spec, section = spec_and_section(session, name)
     hypotheses = body.hypotheses or hypotheses_of(section)
@@ -108,7 +108,7 @@ async def get_aliases(session: SessionDep, name: Name, body: AliasSource, comput
     if not tones:
         raise InputError("the reference has no tone of its own", "tones", "give the tones to look at")
     noise_um = context.sensor_noise_um
-    return await computing.call(alias_report, hypotheses, context.device, tones, body.within_um, noise_um)
+    return await service.computing.call(alias_report, hypotheses, context.device, tones, body.within_um, noise_um)
 
 
 def kept_tick(session: LiveBench, tick: int | None) -> int:

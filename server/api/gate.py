@@ -5,9 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import html
-import time
 from collections import Counter
-from collections.abc import Awaitable, Callable
 from urllib.parse import urlencode
 
 from starlette.requests import HTTPConnection, Request
@@ -18,8 +16,6 @@ from starlette.websockets import WebSocket
 from core.own.admission import Terms, admit
 from server.bench.blind import HINT, REFUSAL
 from server.classroom.access import SOCKET, Need, need_of, serves_blind
-from server.classroom.driving import Driving
-from server.classroom.people import People
 from server.computing.asker import asks
 from server.errors import SHARD, ApiError, ErrorBody, reply
 from server.security.frames import TICKET, Frames
@@ -28,7 +24,7 @@ from server.security.limits import Buckets
 from server.security.origin import OriginPolicy
 from server.security.person import TEACHER, Person
 from server.security.visitor import ELSEWHERE, STYLE, visitor_page
-from server.settings import Settings
+from server.service import Service
 
 CLOSE_ORIGIN, CLOSE_AUTH, CLOSE_ROLE, CLOSE_FULL = 4003, 4401, 4403, 1013
 REQUESTS_PER_S, REQUESTS_AT_ONCE = 40.0, 400
@@ -56,21 +52,11 @@ class Gate:
         The application to guard.
     identity : Identity
         Knows the teacher.
-    people : People
-        Holds all other persons, and their rights.
-    driving : Driving
-        Knows who drives each bench.
     origin : OriginPolicy
         Checks the host and the origin.
-    come_back : callable
-        Revives the bench in the path, or the bench of a student, after a restart: a hidden fault stays hidden from
-        the first request on.
-    is_blind : callable
-        Whether a fault is hidden from a person, on the bench in the path or on the bench of a student.
-    settings : Settings
-        Paths that need no session, persons who may bring units, limits of students.
-    prefix : str
-        The prefix a proxy takes off every path.
+    service : Service
+        Holds all other persons and their rights, the drivers and hidden faults of benches, and the settings. A request
+        revives its bench after a restart, so that a hidden fault stays hidden from the first request on.
     frames : Frames, optional
         The doors of learning platforms, if there are any.
     """
@@ -79,20 +65,13 @@ class Gate:
         self,
         app: ASGIApp,
         identity: Identity,
-        people: People,
-        driving: Driving,
         origin: OriginPolicy,
-        come_back: Callable[[Person, str], Awaitable[None]],
-        is_blind: Callable[[Person, str], bool],
-        settings: Settings,
-        prefix: str = "",
+        service: Service,
         frames: Frames | None = None,
-        clock: Callable[[], float] = time.perf_counter,
     ) -> None:
-        self._app, self._identity, self._people, self._driving = app, identity, people, driving
-        self._origin, self._come_back, self._is_blind = origin, come_back, is_blind
-        self._settings, self._prefix, self._frames = settings, prefix, frames
-        self._requests = Buckets(REQUESTS_PER_S, REQUESTS_AT_ONCE, clock=clock)
+        self._app, self._identity, self._origin, self._service, self._frames = app, identity, origin, service, frames
+        self._people, self._settings, self._prefix = service.people, service.settings, service.public.prefix
+        self._requests = Buckets(REQUESTS_PER_S, REQUESTS_AT_ONCE, clock=service.clock)
         self._sockets: Counter[str] = Counter()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -123,13 +102,14 @@ class Gate:
         need, bench_id = need_of(method, scope["path"])
         if self._is_open(scope) or self._people.may(person, need, bench_id):
             if person is not None and need is not Need.NOTHING:
-                await self._come_back(person, bench_id)
-            if person is not None and self._is_blind(person, bench_id) and not serves_blind(method, scope["path"]):
+                await self._service.come_back(person, bench_id)
+            is_blind = person is not None and self._service.views.is_blind(person, bench_id)
+            if is_blind and not serves_blind(method, scope["path"]):
                 await self._refuse(scope, receive, send, 403, CLOSE_ROLE, "blind", REFUSAL, HINT)
                 return
             try:
                 if need is Need.DRIVE and person is not None:
-                    self._driving.check(bench_id, person)
+                    self._service.driving.check(bench_id, person)
             except ApiError as error:
                 await reply(error.status_code, error.body)(scope, receive, send)
             else:

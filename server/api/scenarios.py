@@ -14,7 +14,7 @@ from scenarios.expectation import Verdict
 from scenarios.library import get, ids, library
 from scenarios.schema import Scenario
 from server.api.bodies import Answer, Body, Source
-from server.api.deps import ComputingDep
+from server.api.deps import ServiceDep
 from server.api.router import Router
 from server.bench.build import prepare
 from server.classroom.blind_class import check as check_hidden
@@ -94,9 +94,9 @@ def get_scenario(scenario_id: str) -> ScenarioText:
 
 
 @router.post("/check", response_model=ScenarioText)
-async def check_scenario(body: ScenarioSource, computing: ComputingDep) -> Response:
+async def check_scenario(body: ScenarioSource, service: ServiceDep) -> Response:
     """Check a scenario without running it; the answer 422 lists its errors."""
-    return Response(await computing.call(_checked, body.scenario), media_type="application/json")
+    return Response(await service.computing.call(_checked, body.scenario), media_type="application/json")
 
 
 def _checked(source: str | dict[str, Any]) -> str:

@@ -18,7 +18,7 @@ from core.theory.nyquist import PositiveRealReport, positive_real_report
 from core.theory.persistency import excitation, gram_of_tones
 from scenarios.design import designed
 from server.api.bodies import Answer, Body
-from server.api.deps import ComputingDep
+from server.api.deps import ServiceDep
 from server.api.router import Router
 
 router = Router(prefix="/theory", tags=["theory"])
@@ -104,21 +104,21 @@ class HypothesesSource(Body):
 
 
 @router.post("/positive-real")
-async def judge_positive_real(body: TransferFunctionSource, computing: ComputingDep) -> PositiveRealReport:
+async def judge_positive_real(body: TransferFunctionSource, service: ServiceDep) -> PositiveRealReport:
     """Judge a transfer function, and return its Nyquist curve over the frequencies that matter."""
-    return await computing.call(positive_real_report, body.numerator, body.denominator)
+    return await service.computing.call(positive_real_report, body.numerator, body.denominator)
 
 
 @router.post("/positive-definite")
-async def judge_positive_definite(body: MatrixSource, computing: ComputingDep) -> DefinitenessReport:
+async def judge_positive_definite(body: MatrixSource, service: ServiceDep) -> DefinitenessReport:
     """Judge a matrix."""
-    return await computing.call(definiteness, body.matrix)
+    return await service.computing.call(definiteness, body.matrix)
 
 
 @router.post("/persistency")
-async def judge_persistency(body: ExcitationSource, computing: ComputingDep) -> ExcitationReport:
+async def judge_persistency(body: ExcitationSource, service: ServiceDep) -> ExcitationReport:
     """Judge an input in its steady state."""
-    return await computing.call(_persistency, body)
+    return await service.computing.call(_persistency, body)
 
 
 def _persistency(body: ExcitationSource) -> ExcitationReport:
@@ -132,9 +132,9 @@ def _persistency(body: ExcitationSource) -> ExcitationReport:
 
 
 @router.post("/aliases")
-async def map_aliases(body: HypothesesSource, computing: ComputingDep) -> AliasMap:
+async def map_aliases(body: HypothesesSource, service: ServiceDep) -> AliasMap:
     """Map the responses of hypotheses to tones, and name those with the same response."""
-    return await computing.call(_aliases, body)
+    return await service.computing.call(_aliases, body)
 
 
 def _aliases(body: HypothesesSource) -> AliasMap:
@@ -148,13 +148,13 @@ def _aliases(body: HypothesesSource) -> AliasMap:
 
 
 @router.post("/instability-map")
-async def map_instability(body: MapSource, computing: ComputingDep) -> InstabilityMap:
+async def map_instability(body: MapSource, service: ServiceDep) -> InstabilityMap:
     """Map the region where a rule of appendix B is unstable under a sine."""
     if body.lowest_frequency >= body.highest_frequency:
         raise InputError("must be below highest_frequency", "lowest_frequency")
     if body.frequencies * body.gains > MOST_CELLS:
         raise InputError(f"frequencies times gains must be {MOST_CELLS} or less", "frequencies")
-    return await computing.call(_map, body)
+    return await service.computing.call(_map, body)
 
 
 def _map(body: MapSource) -> InstabilityMap:

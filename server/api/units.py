@@ -19,7 +19,7 @@ from core.own.unit import Unit, unit
 from scenarios.own import copies
 from scenarios.starters import starters
 from server.api.bodies import Body
-from server.api.deps import ComputingDep, RateLimited, ServiceDep
+from server.api.deps import RateLimited, ServiceDep
 from server.api.router import Router
 from server.bench.build import prepare
 from server.errors import not_found
@@ -108,10 +108,10 @@ def get_unit(name: NamePath, service: ServiceDep) -> UnitText:
 
 
 @router.post("", dependencies=[RateLimited])
-async def check_unit(body: UnitDraft, computing: ComputingDep) -> UnitCheck:
+async def check_unit(body: UnitDraft, service: ServiceDep) -> UnitCheck:
     """Check the text of a unit; nothing is compiled and nothing is kept."""
     check_admitted({"units": {body.name: body.source}})
-    return await computing.call(_checked, body.name, body.source)
+    return await service.computing.call(_checked, body.name, body.source)
 
 
 def _checked(name: str, source: str) -> UnitCheck:

@@ -9,7 +9,7 @@ import logging
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from fastapi.responses import HTMLResponse
 
-from server.api.deps import ServiceDep, SocketServiceDep
+from server.api.deps import ServiceDep
 from server.security.headers import POLICY as POLICY_HEADER
 from server.view3d.relay import SUBPROTOCOL, hear, relay
 from server.view3d.viewers import Looked
@@ -32,7 +32,7 @@ async def get_page(bench_id: str, service: ServiceDep) -> HTMLResponse:
 
 
 @router.websocket("/benches/{bench_id}/3d")
-async def join(socket: WebSocket, bench_id: str, service: SocketServiceDep) -> None:
+async def join(socket: WebSocket, bench_id: str, service: ServiceDep) -> None:
     """Connect a page to the scene of its bench."""
     session = service.benches.find(bench_id)
     show = service.viewers.show_of(session) if session is not None and service.viewers is not None else None
