@@ -2,24 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
-
 from pydantic import BaseModel
 
 from core.board.board import Board
 from core.plant.body import worst
-from core.plant.equilibrium import Force, folds, planar_force, slaved_force, stators_of
+from core.plant.equilibrium import FoldPoint, Force, folds, planar_force, slaved_force, stators_of
 from core.plant.escape import boundary
 from core.plant.shuttle import LEFT, RIGHT, comb_voltage
 from core.plant.suspension import Suspension
-
-
-class FoldPoint(BaseModel):
-    """The last rest position under a slowly rising drive: travel, voltage, place of the worst corner sideways."""
-
-    x_um: float
-    volts: float
-    lateral_um: float
 
 
 class SafeBoundary(BaseModel):
@@ -71,6 +61,6 @@ def unstable_region(board: Board, drive_v: float = 0.0) -> UnstableRegionMap:
         tick=board.tick,
         plant=kind,
         drive_v=drive_v,
-        folds=[FoldPoint(**asdict(fold)) for fold in ends],
+        folds=ends,
         boundary=edge and SafeBoundary(x_um=edge.x_um.tolist(), speed_um_ms=edge.speed_um_ms.tolist()),
     )
