@@ -124,7 +124,7 @@ async def reveal_class(class_id: str, service: ServiceDep, person: PersonDep) ->
     for student in service.people.students(class_id):
         session = service.student_benches.find(student)
         if session is not None and _question(session) is not None:
-            refusals.append(await refusal(student, lambda _, its=session: service.blinds.reveal(its, person)))  # type: ignore[misc]
+            refusals.append(await refusal(student, service.blinds.reveal(session, person)))
     outcomes = Outcomes.of(refusals)
     service.audit.add("teacher", "blind", f"showed the hidden faults to {outcomes.done} students", class_id)
     return outcomes

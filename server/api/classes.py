@@ -151,7 +151,7 @@ async def command_all(class_id: str, body: ForAll, service: ServiceDep) -> Outco
         session = await service.student_benches.get(person)
         await service.benches.command(session, body.command, "teacher")
 
-    return Outcomes.of(await asyncio.gather(*(refusal(person, command) for person in students)))
+    return Outcomes.of(await asyncio.gather(*(refusal(person, command(person)) for person in students)))
 
 
 @router.post("/{class_id}/scenario", dependencies=[RateLimited])

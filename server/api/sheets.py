@@ -190,7 +190,7 @@ async def begin_for_all(class_id: Id, body: SheetForAll, service: ServiceDep) ->
     chosen = await students_of(service, class_id, body.members)
     if body.members is None:
         await service.classes.keep_sheet(class_id, body.sheet)
-    refusals = [await refusal(person, lambda one: service.sheets.begin(one, body.sheet)) for person in chosen]
+    refusals = [await refusal(person, service.sheets.begin(person, body.sheet)) for person in chosen]
     service.audit.add("teacher", "sheet", f"began the sheet {body.sheet} on all benches", class_id)
     return Outcomes.of(refusals)
 

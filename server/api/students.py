@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Sequence
 
 from pydantic import BaseModel, Field
 
@@ -24,10 +24,10 @@ class Outcomes(BaseModel):
         return cls(done=len(refusals) - len(failed), failed=failed)
 
 
-async def refusal(person: Person, action: Callable[[Person], Awaitable[object]]) -> str | None:
+async def refusal(person: Person, action: Awaitable[object]) -> str | None:
     """Carry out an action for a student; return the name and the reason if it is refused."""
     try:
-        await action(person)
+        await action
     except REFUSED as error:
         return f"{person.name}: {why(error)}"
     return None
