@@ -11,7 +11,6 @@ from fastapi import FastAPI
 from scenarios import wall
 from server import errors
 from server.api import (
-    aliases,
     audit,
     benches,
     benchmarks,
@@ -33,7 +32,6 @@ from server.api import (
     lesson,
     links,
     me,
-    metrics,
     narration,
     parameter_sets,
     places,
@@ -69,7 +67,6 @@ from server.version import VERSION
 ROUTERS = (
     catalog,
     devices,
-    aliases,
     scenarios,
     units,
     benches,
@@ -148,7 +145,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.service, app.state.identity = service, identity
     errors.install(app, public.prefix)
     document.install(app)
-    for module in (*ROUTERS, health, metrics, joining, places):
+    for module in (*ROUTERS, health, joining, places):
         app.router.routes += module.router.routes
     if importlib.util.find_spec("server.view3d") is not None:
         from server.api import view3d
@@ -167,17 +164,9 @@ def create_app(settings: Settings) -> FastAPI:
     app.add_middleware(
         Gate,
         identity=identity,
-        people=service.people,
-        driving=service.driving,
-        come_back=service.come_back,
-        is_blind=service.views.is_blind,
         origin=OriginPolicy(settings.host, settings.allowed_hosts, public, settings.classroom),
-        open_paths=frozenset({"/metrics"}) if settings.metrics_open else frozenset(),
-        prefix=public.prefix,
+        service=service,
         frames=frames,
-        units=settings.units,
-        student_events=settings.student_events,
-        clock=service.clock,
     )
     app.add_middleware(errors.CatchAll)
     app.add_middleware(SecurityHeaders, prefix=public.prefix, frames=frames)

@@ -2,33 +2,10 @@
 
 from __future__ import annotations
 
+from importlib.resources import files
 from typing import Any
 
-UNIT = '''from core.block import Block, BlockParams, parameter
-from core.control.controller import ControllerPorts
-from core.record import Record
-
-
-class Gain(Block):
-    """Proportional control."""
-
-    title = "Gain"
-
-    class Params(BlockParams):
-        gain_v_um: float = parameter(-2.0, "gain", "V/um", ge=-1e3, le=1e3)
-
-    class Packed(Record):
-        """The number that the step reads."""
-
-        gain_v_um: float
-
-    class Ports(ControllerPorts):
-        """The ports of every controller."""
-
-    @staticmethod
-    def step(p, s, x):
-        x.voltage = p.gain_v_um * (x.model - x.measured)
-'''
+UNIT = (files("scenarios.starters") / "blank.py").read_text("utf-8")
 SHEET = """+++
 schema = 1
 title = "Displacement"

@@ -13,7 +13,6 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
 from starlette.websockets import WebSocket
 
-from server.api.compression import takes_gzip
 from server.api.gate import page, wants_page
 
 DIST = Path(__file__).resolve().parents[2] / "web" / "dist"
@@ -92,3 +91,12 @@ class Page:
         is_hashed = path.startswith("/assets/")
         response.headers["Cache-Control"] = "public, max-age=31536000, immutable" if is_hashed else "no-cache"
         return response
+
+
+def takes_gzip(headers: Headers) -> bool:
+    """Return whether a caller names gzip among the encodings it takes, and not with the weight 0 (RFC 9110, 12.5.3)."""
+    for offer in headers.get("accept-encoding", "").lower().split(","):
+        name, _, weight = offer.replace(" ", "").partition(";q=")
+        if name == "gzip":
+            return weight.strip("0.") != "" if weight else True
+    return False

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ValidationError
 from core.errors import InputError
 from core.format import format_short
 from server.api.bodies import strict_json
-from server.api.deps import SocketServiceDep, rate_limited
+from server.api.deps import ServiceDep, rate_limited
 from server.api.router import Router
 from server.bench.bench import LiveBench, Seen
 from server.bench.events import Event
@@ -62,7 +62,7 @@ FLOOD_RATE, FLOOD_BURST = 500.0, 2000
 
 
 @router.websocket("/benches/{bench_id}/stream")
-async def stream(socket: WebSocket, bench_id: str, service: SocketServiceDep) -> None:
+async def stream(socket: WebSocket, bench_id: str, service: ServiceDep) -> None:
     """Let a page watch and command a bench."""
     offered = socket.scope["subprotocols"]
     session = service.benches.find(bench_id)

@@ -51,9 +51,11 @@ async def get_trace(
     start_tick: Tick = None,
     end_tick: Tick = None,
     columns: Annotated[int, Query(ge=1, le=MAX_COLUMNS)] = 800,
-    kind: Annotated[Format | None, Query(alias="format", description="A file with every sample")] = None,
+    kind: Annotated[
+        Format | None, Query(alias="format", description="File with every sample; left out: columns")
+    ] = None,
 ) -> Response | Trace:
-    """Return a span of the past; the board does not stop for it."""
+    """Return a span of the past; the bench keeps running."""
     known = [signal.name for signal in session.signals]
     names = list(asked(signals, set(known))) or known
     indices = session.indices(names)

@@ -24,8 +24,8 @@ MOST = 20
 class NewWatcher(Body):
     """How long a link lasts."""
 
-    hours: float = Field(4.0, gt=0, le=24 * 14)
-    link: str | None = Field(None, description="Id of a link to an experiment by which people watch without the token")
+    hours: float = Field(4.0, gt=0, le=24 * 14, description="Hours until the link ends")
+    link: str | None = Field(None, description="Id of a shared link by which people may watch without the token")
 
 
 class Watcher(BaseModel):
@@ -33,7 +33,7 @@ class Watcher(BaseModel):
 
     id: str
     until: datetime
-    path: str | None = Field(None, description="Path of the address; only its hash is kept")
+    path: str | None = Field(None, description="Path of the address, shown once; the server keeps only a hash")
 
 
 class WatcherList(BaseModel):
