@@ -123,7 +123,7 @@ def create_app(settings: Settings) -> FastAPI:
     service = Service(settings)
     public = service.public
     token = settings.token.get_secret_value() if settings.token else token_of(settings.data)
-    identity = Identity(token, public, loopback_only=settings.classroom, shard=settings.shard)
+    identity = Identity(token, public, loopback_only=settings.classroom)
 
     frames: Frames | None = None
 
@@ -146,7 +146,7 @@ def create_app(settings: Settings) -> FastAPI:
         servers=[{"url": str(public)}] if public.origin else None,
     )
     app.state.service, app.state.identity = service, identity
-    errors.install(app, public.prefix)
+    errors.install(app)
     document.install(app)
     for module in (*ROUTERS, health, metrics, joining, places):
         app.router.routes += module.router.routes

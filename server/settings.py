@@ -40,11 +40,6 @@ class Settings(BaseSettings):
     database_url: str = Field(
         "", repr=False, description="Database by address, such as postgresql://...; SQLite in data if unset."
     )
-    shard: str = Field(
-        "",
-        pattern="^[2-9a-hjkmnp-z]?$",
-        description="Letter of this process where several serve one public_origin; its ids and codes begin with it.",
-    )
     token: SecretStr | None = Field(None, description="Access token; made and kept in the data folder if unset.")
     allowed_hosts: list[str] = Field([], description="Further host names the page may be opened under.")
     public_origin: str = Field(

@@ -21,7 +21,7 @@ from server.classroom.access import SOCKET, Need, need_of, serves_blind
 from server.classroom.driving import Driving
 from server.classroom.people import People
 from server.computing.asker import asks
-from server.errors import SHARD, ApiError, ErrorBody, reply
+from server.errors import ApiError, ErrorBody, reply
 from server.security.frames import TICKET, Frames
 from server.security.identity import Identity, bearer_of
 from server.security.limits import Buckets
@@ -117,9 +117,8 @@ class Gate:
             await self._refuse(scope, receive, send, 403, CLOSE_ORIGIN, "forbidden_origin", refusal)
             return
         if scope["type"] == "http" and scope["method"] == "GET":
-            has_token = self._identity.has_token_in_address(connection)
-            if has_token or self._identity.is_meant(connection):
-                await self._welcome(Request(scope), has_token)(scope, receive, send)
+            if self._identity.has_token_in_address(connection):
+                await self._welcome(Request(scope))(scope, receive, send)
                 return
             link = connection.query_params.get("link")
             if link and scope["path"] == "/" and (person is None or person.role == "watcher"):
@@ -218,17 +217,15 @@ class Gate:
             self._sockets[person.id] -= 1
             self._sockets += Counter()  # forgets those at 0
 
-    def _welcome(self, request: Request, has_token: bool) -> Response:
-        """Exchange token and process in the address for cookies, and take them out of the address."""
+    def _welcome(self, request: Request) -> Response:
+        """Exchange the token in the address for a cookie, and take it out of the address."""
         given = request.query_params.multi_items()
-        rest = [(name, value) for name, value in given if name not in ("token", SHARD)]
+        rest = [(name, value) for name, value in given if name != "token"]
         # Leading slashes are folded: "//evil.example" would be an address of another host.
         path = request.url.path.lstrip("/\\")
         target = f"/{path}" + ("?" + urlencode(rest) if rest else "")
         response = lead_on(request, target, self._prefix)
-        if has_token:
-            self._identity.give_cookie(response)
-        self._identity.give_shard(response)
+        self._identity.give_cookie(response)
         response.headers["Cache-Control"] = "no-store"
         return response
 
