@@ -91,6 +91,7 @@ _DOORS = {
         POST {API}/theory/persistency  *
         POST {API}/theory/aliases  *
         POST {API}/theory/instability-map  *
+        POST {API}/qr  *
     """,
     Need.MEMBER: f"""
         POST {API}/scenarios/check
