@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import hmac
 from dataclasses import dataclass
-from typing import Annotated, cast
+from typing import Annotated, Any, cast
 from urllib.parse import parse_qsl, urlencode, urlsplit
 
 from fastapi import APIRouter, Depends, FastAPI, Request, Response
 from fastapi.responses import HTMLResponse, JSONResponse, RedirectResponse
 from pydantic import BaseModel, Field
-from pylti1p3.deep_link_resource import DeepLinkResource
-from pylti1p3.lineitem import LineItem
 
 from core.errors import InputError
 from scenarios import library
@@ -246,17 +244,16 @@ async def _ask_for_choice(launch: Launch, lti: Lti) -> HTMLResponse:
     return choice_page(action, lti.choices.put(launch), sheets, benches)
 
 
-def _resource(kind: str, name: str, address: str, service: Service) -> DeepLinkResource:
+def _resource(kind: str, name: str, address: str, service: Service) -> dict[str, Any]:
     """Describe the link to an exercise; the link of a lab sheet has a column of points."""
+    link = {"type": "ltiResourceLink", "url": address, "custom": {kind: name}}
     if kind == "sheet":
         sheet = service.sheets.get(name)
-        column = LineItem().set_label(sheet.head.title).set_score_maximum(sheet.points).set_resource_id(sheet.id)
-        resource = DeepLinkResource().set_title(sheet.head.title).set_lineitem(column)
-    elif kind == "scenario" and name in library.ids():
-        resource = DeepLinkResource().set_title(library.get(name).head.title)
-    else:
-        raise not_found("exercise", name)
-    return resource.set_url(address).set_custom_params({kind: name})
+        column = {"label": sheet.head.title, "scoreMaximum": sheet.points, "resourceId": sheet.id}
+        return {**link, "title": sheet.head.title, "lineItem": column}
+    if kind == "scenario" and name in library.ids():
+        return {**link, "title": library.get(name).head.title}
+    raise not_found("exercise", name)
 
 
 async def _parameters(request: Request, lti: Lti) -> dict[str, str]:

@@ -21,7 +21,7 @@ SELDOM = [
     "psutil",  # a classroom
     "psycopg",  # a database by address
     "pyarrow",  # traces, recordings and campaigns
-    "pylti1p3",  # launches from learning platforms
+    "jwt",  # launches from learning platforms
     "requests",
     "rich",  # the help of the command line
     "scipy",  # reports of campaigns, peers of the benchmark, one estimate of noise
