@@ -38,7 +38,7 @@ class Host:
         self.lives, self._stack = lives, stack
         self.ports = {prefix: live.http.base_url.port for prefix, live in lives.items()}
         self.groups = {
-            prefix: live.http.post("/api/v1/classes", json={"name": prefix, "scenario": {"scenario": RUNS[prefix]}})
+            prefix: live.http.post("/api/v1/classes", json={"name": prefix, "bench": {"scenario": RUNS[prefix]}})
             for prefix, live in lives.items()
         }
 
