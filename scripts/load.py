@@ -1,9 +1,9 @@
 """Put a server of our own under load on loopback, measure, and say whether it kept its promises.
 
-``pages`` watch some benches: each is a WebSocket client that acknowledges every frame and commands now and then; one more
-subscribes and never reads. In a ``class`` students join one after another as fast as the server admits them, each opens the
-stream of the own bench and commands it; a teacher's grid asks for all of them every second; further pages watch one more
-bench. All clients run in this process, whose share of a processor is printed with the server's share.
+``pages`` watch some benches: each is a WebSocket client that acknowledges every frame and commands now and then; one
+more subscribes and never reads. In a ``class`` students join one after another as fast as the server admits them, each
+opens the stream of the own bench and commands it; a teacher's grid asks for all of them every second; further pages
+watch one more bench. All clients run in this process, whose share of a processor is printed with the server's share.
 """
 
 from __future__ import annotations

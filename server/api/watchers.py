@@ -56,7 +56,9 @@ async def make_watcher(body: NewWatcher, session: SessionDep, service: ServiceDe
         given = identity.secret_of_link(link.id)
     person, secret = await service.people.add("watcher", "watcher", until, bench_id=session.id, secret=given)
     service.audit.add("teacher", "watcher", "made a link to watch", session.class_id, session.id)
-    return Watcher(id=person.id, until=until, path=f"/?{urlencode({'link': body.link})}" if given else f"/watch/{secret}")
+    return Watcher(
+        id=person.id, until=until, path=f"/?{urlencode({'link': body.link})}" if given else f"/watch/{secret}"
+    )
 
 
 @router.get("")

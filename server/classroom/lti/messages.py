@@ -1,4 +1,4 @@
-"""The messages of a launch by LTI 1.3: its beginning, the check of its end, and the answer to the choice of an exercise.
+"""The messages of LTI 1.3: the beginning of a launch, the check of its end, the answer to the choice of an exercise.
 
 States and nonces are usually kept in cookies and sessions. In a frame of another site there are no cookies, so that
 here both are kept by the server, behind the state, which is a secret that works once and for a short time. The server
@@ -150,7 +150,7 @@ class Messages:
 
 
 def _unchecked(message: str) -> tuple[str, Mapping[str, Any]]:
-    """Return the id of the key that signed a message, and its claims; this server sets the algorithm, not the message."""
+    """Return the id of the key that signed a message, and its claims; the algorithm is set by this server."""
     if message.count(".") != 2:
         raise _refused("its message has to have 3 parts")
     try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import ExitStack
+from itertools import count
 from typing import Any
 
 import httpx
@@ -35,7 +36,7 @@ class Host:
     """The host with both servers, which have the same token."""
 
     def __init__(self, lives: dict[str, Any], stack: ExitStack) -> None:
-        self.lives, self._stack = lives, stack
+        self.lives, self._stack, self._numbers = lives, stack, count(1)
         self.ports = {prefix: live.http.base_url.port for prefix, live in lives.items()}
         self.groups = {
             prefix: live.http.post("/api/v1/classes", json={"name": prefix, "bench": {"scenario": RUNS[prefix]}})
@@ -48,7 +49,7 @@ class Host:
 
     def join(self, browser: httpx.Client, prefix: str) -> str:
         """Join the class of a server; return the student's bench."""
-        typed = {"code": self.groups[prefix].json()["code"], "name": "Ada"}
+        typed = {"code": self.groups[prefix].json()["code"], "name": f"Student {next(self._numbers)}"}
         assert browser.get(f"{prefix}/join").status_code == 200
         answer = browser.post(f"{prefix}/join", data=typed)
         assert (answer.status_code, answer.headers["location"]) == (303, f"{prefix}/")
