@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Any
 from urllib.parse import urlsplit
 
 from requests import RequestException
@@ -161,7 +162,7 @@ class Scores:
     def _post(self, target: Target, score: Score) -> None:
         """Send a score; in a thread."""
         platform, now_s = target.launch.platform, int(time.time())
-        body = {
+        body: dict[str, Any] = {
             "scoreGiven": score.given,
             "scoreMaximum": score.most,
             "timestamp": score.at,

@@ -89,7 +89,7 @@ def test_a_browser_may_have_a_session_of_each(host: Host) -> None:
     benches = {prefix: host.join(browser, prefix) for prefix in ("/a", "/b")}
     for prefix, bench in benches.items():
         assert browser.get(f"{prefix}/api/v1/me").json()["bench"] == bench
-        assert browser.get(f"{prefix}/api/v1/benches/{bench}").json()["scenario"]["id"] == RUNS[prefix]
+        assert browser.get(f"{prefix}/api/v1/benches/{bench}").json()["scenario_id"] == RUNS[prefix]
     assert browser.get(f"/b/api/v1/benches/{benches['/a']}").status_code == 403
     neighbour = host.join(host.browser(), "/b")
     assert browser.get(f"/b/api/v1/benches/{neighbour}").status_code == 403
