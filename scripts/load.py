@@ -214,7 +214,7 @@ async def open_stream(server: Server, bench: str, secret: str) -> ClientConnecti
 
 
 class Load:
-    """The watchers of a server, and what is measured of them and of the server.
+    """The watchers of a server, and the measurements of both.
 
     Parameters
     ----------
@@ -301,7 +301,7 @@ async def watch_benches(server: Server, given: argparse.Namespace) -> dict[str, 
 
 
 def promises_to_pages(found: dict[str, Any], given: argparse.Namespace) -> dict[str, bool]:
-    """Return what is promised to pages, and whether it was kept."""
+    """Return the promises to pages, and whether each was kept."""
     return {
         "every watcher gets 20 frames/s": found["frames_per_s_slowest"] >= 20,
         "no watcher is dropped": not found["closed"],
@@ -353,7 +353,7 @@ async def hold_class(server: Server, given: argparse.Namespace) -> dict[str, Any
 
 
 def promises_to_a_class(found: dict[str, Any], _: argparse.Namespace) -> dict[str, bool]:
-    """Return what is promised to a class, and whether it was kept."""
+    """Return the promises to a class, and whether each was kept."""
     return {
         "from the code to a moving trace, p95 <= 3 s": found["join_to_trace_p95_s"] <= 3,
         "effect of a command, p95 <= 250 ms": found["command_reply_p95_ms"] + found["cut_to_receipt_p95_ms"] <= 250,
