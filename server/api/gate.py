@@ -27,7 +27,7 @@ from server.security.identity import Identity, bearer_of
 from server.security.limits import Buckets
 from server.security.origin import OriginPolicy
 from server.security.person import TEACHER, Person
-from server.security.visitor import ELSEWHERE, STYLE, visitor_page
+from server.security.visitor import ELSEWHERE, page, visitor_page
 
 CLOSE_ORIGIN, CLOSE_AUTH, CLOSE_ROLE, CLOSE_FULL = 4003, 4401, 4403, 1013
 REQUESTS_PER_S, REQUESTS_AT_ONCE = 40.0, 400
@@ -254,7 +254,7 @@ class Gate:
         response: Response
         if wants_page(connection) and not scope["path"].startswith("/api/"):
             query = connection.query_params.multi_items()
-            text = page(status, message, "")
+            text = plain_page(status, message, "")
             if status == 401:
                 text = visitor_page(query, may_use_token, f"{self._prefix}/join")
             response = HTMLResponse(text, status, {"Cache-Control": "no-store"})
@@ -279,14 +279,9 @@ def lead_on(request: Request, target: str, prefix: str) -> Response:
     return HTMLResponse(f'<meta http-equiv="refresh" content="0;url={html.escape(prefix + target)}">')
 
 
-def page(status: int, title: str, text: str) -> str:
+def plain_page(status: int, title: str, text: str) -> str:
     """Build a plain page for a person: a title and one line."""
-    return (
-        "<!doctype html><html lang='en'><meta charset='utf-8'>"
-        f"<meta name='viewport' content='width=device-width'><title>CombBench</title>{STYLE}"
-        f"<main><h1>{html.escape(title[:1].upper() + title[1:])}</h1>"
-        f"<p>{html.escape(text)}</p><p><small>{status}</small></p></main>"
-    )
+    return page(title[:1].upper() + title[1:], f"<p>{html.escape(text)}</p><p><small>{status}</small></p>")
 
 
 def _length(scope: Scope) -> int:

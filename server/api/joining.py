@@ -9,7 +9,7 @@ from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from server.api.deps import IdentityDep, ServiceDep
-from server.api.gate import lead_on, page, wants_page
+from server.api.gate import lead_on, plain_page, wants_page
 from server.classroom.joining import join_page
 from server.errors import ApiError, reply
 from server.security.identity import Identity
@@ -86,7 +86,7 @@ def _let_watch(request: Request, service: Service, identity: Identity, secret: s
     status, said, headers = refusal.status_code, refusal.body, {"Cache-Control": "no-store", **(refusal.headers or {})}
     if not wants_page(request):
         return reply(status, said, headers)
-    text = page(status, said.message, f"{said.hint.capitalize()}.")
+    text = plain_page(status, said.message, f"{said.hint.capitalize()}.")
     if refusal is NO_WATCHING and "link" in request.query_params:  # the token opens it all the same
         given, join = request.query_params.multi_items(), f"{service.public.prefix}/join"
         why = f"{said.message.capitalize()}. {said.hint.capitalize()}."

@@ -18,15 +18,15 @@ from core.cards import BlockCard
 from core.errors import InputError, one_line
 from core.format import format_short, format_si, unit_text
 from core.registry import catalog
-from scenarios.edit import parse_assignment, with_values
 from scenarios.library import get, ids
 from scenarios.report.text import gallery_text
 from scenarios.run import run as run_scenario
 from server.cli.benchmark import benchmark
+from server.cli.export import fmu
 from server.cli.games import game
 from server.cli.lessons import lectures, sheets
 from server.cli.run import run
-from server.cli.terminal import AssignOption, JsonOption, load, plainly, say, say_json
+from server.cli.terminal import JsonOption, plainly, say, say_json
 from server.cli.units import UnitOption, check
 from server.version import VERSION
 
@@ -51,6 +51,7 @@ class OneLine(TyperGroup):
 
 app = typer.Typer(cls=OneLine, no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
 app.command()(run)
+app.command()(fmu)
 app.command()(benchmark)
 app.command()(lectures)
 app.command()(sheets)
@@ -206,27 +207,6 @@ def _show(card: BlockCard) -> None:
             "auto" if entry.default is None else entry.default if not isinstance(entry.default, list | dict) else "..."
         )
         say(f"    {entry.name} = {default} {unit_text(entry.unit)}{allowed} ({live}): {entry.meaning}")
-
-
-@app.command()
-@plainly
-def fmu(
-    scenario: Annotated[str, typer.Argument(help="Library id or file.")],
-    assign: AssignOption = None,
-    out: Annotated[Path, typer.Option(metavar="FILE", help="Where the FMU goes.")] = Path("device.fmu"),
-) -> None:
-    """Write the device of a scenario as an FMU of FMI 3: its linear plant, voltage in, displacement out."""
-    chosen = with_values(load(scenario), dict(parse_assignment(text) for text in assign or []))
-    try:
-        from scenarios.outside.fmu import export
-    except ImportError:
-        hint = "pip install '.[fmi]' in a checkout"
-        raise InputError("needs the package pythonfmu3, which is not installed", "fmu", hint) from None
-    try:
-        export(chosen, out)
-    except OSError as error:
-        raise InputError(f"cannot write {out}: {error.strerror}", "--out") from None
-    say(f"{out}, a step of {chosen.spec.dt_ms / 1e3:g} s")
 
 
 @app.command()

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import os
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -19,9 +18,6 @@ from scenarios.schema import Scenario
 from scenarios.seeds import parse_seeds
 from server.cli.terminal import AssignOption, JsonOption, load, plainly, say, say_json
 from server.cli.units import UnitOption
-
-if TYPE_CHECKING:
-    from scenarios.campaign.halving import Threshold
 
 
 @plainly
@@ -109,6 +105,8 @@ def run(
 
 def _find(scenario: Scenario, threshold: str | None, over: str | None, as_json: bool) -> None:
     """Find where a claim holds, print it and end: 0 somewhere in the range, 1 nowhere."""
+    from server.cli.find import find, threshold_text  # few runs look for a threshold
+
     if threshold is None or over is None:
         given, missing = ("--over", "--threshold") if threshold is None else ("--threshold", "--over")
         raise InputError(f"goes with {missing}", given)
@@ -118,52 +116,3 @@ def _find(scenario: Scenario, threshold: str | None, over: str | None, as_json: 
     else:
         say(threshold_text(found))
     raise typer.Exit(0 if any(one.holds for one in found.tried) else 1)
-
-
-def parse_range(text: str) -> dict[str, str | float]:
-    """Read ``PATH=LOW:HIGH``, or ``PATH=LOW:HIGH:log``.
-
-    Raises
-    ------
-    InputError
-        When it is not written so.
-    """
-    path, _, ends = text.partition("=")
-    low, _, rest = ends.partition(":")
-    high, _, scale = rest.partition(":")
-    try:
-        return {"path": path.strip(), "low": float(low), "high": float(high), "scale": scale or "linear"}
-    except ValueError:
-        raise InputError(f"must be PATH=LOW:HIGH or PATH=LOW:HIGH:log, got {text!r}", "--over") from None
-
-
-def find(scenario: Scenario, metric: str, over: str) -> Threshold:
-    """Find where a claim holds over the range of a number.
-
-    Raises
-    ------
-    InputError
-        When the scenario has no such claim or number.
-    """
-    from scenarios.campaign.executor import Processes
-    from scenarios.campaign.halving import Threshold, Wanted
-    from scenarios.campaign.threshold import Memory, Search
-
-    wanted = Wanted.checked({"metric": metric, **parse_range(over)}, "--over")
-    processes = Processes(os.cpu_count() or 1)
-    try:
-        search = Search(scenario, wanted, Memory(), processes=processes)
-        search.run()
-    finally:
-        processes.shutdown()
-    return Threshold.model_validate(search.kept)
-
-
-def threshold_text(found: Threshold) -> str:
-    """Write the result as lines: the figure at each value, then the range where the claim holds."""
-    rows = [
-        f"{'ok  ' if one.holds else 'MISS'} {found.path} = {one.value:<12.6g} {found.metric} = "
-        + ("not measured" if one.measured is None else f"{one.measured:.6g}")
-        for one in found.tried
-    ]
-    return "\n".join([*rows, found.words])

@@ -1,0 +1,32 @@
+"""The command that exports a device for other simulators."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from core.errors import InputError
+from scenarios.edit import parse_assignment, with_values
+from server.cli.terminal import AssignOption, load, plainly, say
+
+
+@plainly
+def fmu(
+    scenario: Annotated[str, typer.Argument(help="Library id or file.")],
+    assign: AssignOption = None,
+    out: Annotated[Path, typer.Option(metavar="FILE", help="Where the FMU goes.")] = Path("device.fmu"),
+) -> None:
+    """Write the device of a scenario as an FMU of FMI 3: its linear plant, voltage in, displacement out."""
+    chosen = with_values(load(scenario), dict(parse_assignment(text) for text in assign or []))
+    try:
+        from scenarios.outside.fmu import export
+    except ImportError:
+        hint = "pip install '.[fmi]' in a checkout"
+        raise InputError("needs the package pythonfmu3, which is not installed", "fmu", hint) from None
+    try:
+        export(chosen, out)
+    except OSError as error:
+        raise InputError(f"cannot write {out}: {error.strerror}", "--out") from None
+    say(f"{out}, a step of {chosen.spec.dt_ms / 1e3:g} s")
