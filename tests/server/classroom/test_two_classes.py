@@ -1,8 +1,13 @@
-"""Two servers below two paths of one host, as docs/scaling.md sets them up: each knows its own students alone."""
+"""Two servers below two paths of one host, as docs/scaling.md sets them up: each knows its own students alone.
+
+A few lines stand in for the proxy; the long suite has nginx in their place.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import socket
+import ssl
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from itertools import count
 from typing import Any
@@ -11,8 +16,9 @@ import httpx
 import pytest
 
 from tests.server.conftest import TOKEN, serving
+from tests.server.nginx import NAME, nginx
+from tests.server.security.test_proxy import Here
 
-HOST = "https://lab.example"
 RUNS = {"/a": "first-look", "/b": "ch5-seven-step"}
 
 
@@ -35,17 +41,18 @@ class Proxy(httpx.BaseTransport):
 class Host:
     """The host with both servers, which have the same token."""
 
-    def __init__(self, lives: dict[str, Any], stack: ExitStack) -> None:
-        self.lives, self._stack, self._numbers = lives, stack, count(1)
-        self.ports = {prefix: live.http.base_url.port for prefix, live in lives.items()}
+    def __init__(
+        self, origin: str, lives: dict[str, Any], line: Callable[[], httpx.BaseTransport], stack: ExitStack
+    ) -> None:
+        self.origin, self.lives, self._line, self._stack, self._numbers = origin, lives, line, stack, count(1)
         self.groups = {
             prefix: live.http.post("/api/v1/classes", json={"name": prefix, "bench": {"scenario": RUNS[prefix]}})
             for prefix, live in lives.items()
         }
 
     def browser(self) -> httpx.Client:
-        headers = {"Origin": HOST}
-        return self._stack.enter_context(httpx.Client(transport=Proxy(self.ports), base_url=HOST, headers=headers))
+        client = httpx.Client(transport=self._line(), base_url=self.origin, headers={"Origin": self.origin}, timeout=60)
+        return self._stack.enter_context(client)
 
     def join(self, browser: httpx.Client, prefix: str) -> str:
         """Join the class of a server; return the student's bench."""
@@ -56,15 +63,24 @@ class Host:
         return str(browser.get(f"{prefix}/api/v1/me").json()["bench"])
 
 
-@pytest.fixture(scope="module")
-def host(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Host]:
+@pytest.fixture(scope="module", params=["lines", pytest.param("nginx", marks=pytest.mark.long)])
+def host(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Host]:
     with ExitStack() as stack:
-        folder = tmp_path_factory.mktemp("host")
+        folder, free = tmp_path_factory.mktemp("host"), socket.create_server(("127.0.0.1", 0))
+        port = free.getsockname()[1]  # kept until nginx takes it
+        origin = f"https://{NAME}" if request.param == "lines" else f"https://{NAME}:{port}"
         lives = {
-            prefix: stack.enter_context(serving(folder / prefix[1:], public_origin=f"{HOST}{prefix}"))
+            prefix: stack.enter_context(serving(folder / prefix[1:], public_origin=f"{origin}{prefix}"))
             for prefix in ("/a", "/b")
         }
-        yield Host(lives, stack)
+        ports = {prefix: live.http.base_url.port for prefix, live in lives.items()}
+        free.close()
+        if request.param == "lines":
+            yield Host(origin, lives, lambda: Proxy(ports), stack)
+            return
+        at = stack.enter_context(nginx(port, ports))
+        context = ssl.create_default_context(cafile=str(at / f"{NAME}.pem"))
+        yield Host(origin, lives, lambda: Here(port, verify=context, trust_env=False), stack)
 
 
 def test_a_student_of_one_server_is_a_stranger_at_the_other(host: Host) -> None:
