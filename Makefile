@@ -55,16 +55,16 @@ bench: $(PYTHON_STAMP)  ## Measure speed, each figure as a ratio to a peer in th
 	@.venv/bin/combbench bench $(ARGS)
 
 load: setup  ## Many watchers of one bench for 20 s: frame rate, latency, board timing
-	@.venv/bin/python scripts/load.py $(ARGS)
+	@.venv/bin/python scripts/load.py pages $(ARGS)
 
 page-speed: setup  ## How often eight scopes are drawn, what a frame costs, how soon a click acts, the heap over 30 min, campaigns
 	@cd web && ../scripts/npm exec -- playwright test -c measure.config.ts $(ARGS)
 
 class-load: setup  ## A class of 30 students and 60 watchers: joining, effects, memory
-	@.venv/bin/python scripts/class_load.py $(ARGS)
+	@.venv/bin/python scripts/load.py class $(ARGS)
 
 soak: setup  ## Eight benches and watchers for 30 minutes: memory and timing must stay flat
-	@.venv/bin/python scripts/load.py --benches 8 --watchers 8 --seconds 1800 --flat $(ARGS)
+	@.venv/bin/python scripts/load.py pages --benches 8 --watchers 8 --seconds 1800 --flat $(ARGS)
 
 wheel: $(PYTHON_STAMP)  ## Build a wheel with machine code for x86-64-v2, x86-64-v3 and aarch64 Linux, for this version of Python
 	@.venv/bin/python -m scenarios.built_kernels

@@ -35,6 +35,7 @@ from server.api import (
     narration,
     parameter_sets,
     places,
+    qr,
     readouts,
     recordings,
     runs,
@@ -91,6 +92,7 @@ ROUTERS = (
     classes,
     lesson,
     driving,
+    qr,
     blind,
     captures,
     games,
@@ -120,7 +122,7 @@ def create_app(settings: Settings) -> FastAPI:
     service = Service(settings)
     public = service.public
     token = settings.token.get_secret_value() if settings.token else token_of(settings.data)
-    identity = Identity(token, public, loopback_only=settings.classroom, shard=settings.shard)
+    identity = Identity(token, public, loopback_only=settings.classroom)
 
     frames: Frames | None = None
 
@@ -143,7 +145,7 @@ def create_app(settings: Settings) -> FastAPI:
         servers=[{"url": str(public)}] if public.origin else None,
     )
     app.state.service, app.state.identity = service, identity
-    errors.install(app, public.prefix)
+    errors.install(app)
     document.install(app)
     for module in (*ROUTERS, health, joining, places):
         app.router.routes += module.router.routes

@@ -42,11 +42,6 @@ class Settings(BaseSettings):
     database_url: str = Field(
         "", repr=False, description="Address of the database, such as `postgresql://...`; SQLite in `data` if unset."
     )
-    shard: str = Field(
-        "",
-        pattern="^[2-9a-hjkmnp-z]?$",
-        description="Letter of this process where several serve one public_origin; its ids and codes begin with it.",
-    )
     token: SecretStr | None = Field(
         None, description="Access token; if unset, the server makes one in the data folder."
     )

@@ -12,12 +12,11 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import AbstractContextManager, nullcontext
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from core.compile.machine import WIDTH
 from core.errors import InputError
 from scenarios.campaign.batch import outcomes
-from scenarios.campaign.cluster import Cluster, open_cluster
 from scenarios.campaign.executor import LOST, Processes
 from scenarios.campaign.outcome import Outcome
 from scenarios.campaign.remaining import Remaining, Run
@@ -26,6 +25,9 @@ from scenarios.campaign.sweep import Sweep
 from scenarios.key import code_version
 from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
+
+if TYPE_CHECKING:
+    from scenarios.campaign.cluster import Cluster
 
 BATCH_S = 1.0
 """Computing time of a batch, long enough that the cost of sending it does not matter."""
@@ -213,6 +215,8 @@ class Campaign:
 
     def _open(self) -> AbstractContextManager[Processes | Cluster]:
         if self._scheduler:
+            from scenarios.campaign.cluster import open_cluster  # few campaigns go to a cluster
+
             return open_cluster(self._scheduler)
         return Processes(self._workers) if self._processes is None else nullcontext(self._processes)
 

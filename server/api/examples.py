@@ -113,6 +113,7 @@ EXAMPLES: dict[str, tuple[Any, Any]] = {
         {"numerator": [1.0], "denominator": [1.0, 0.5, 1.0]},
     ),
     "judge_positive_definite": ({"matrix": [[2.0, 1.0], [1.0, 2.0]]}, {"matrix": [[1.0, 2.0], [2.0, 1.0]]}),
+    "draw_qr_code": ({"text": "https://lab.example/join?code=k7m4x9p2tq5h"}, {"text": "http://192.168.1.5:8000/join"}),
     "judge_persistency": (
         {"tones": [{"amplitude": 1.0, "frequency": 1.0}]},
         {"tones": [{"amplitude": 1.0, "frequency": 0.5}, {"amplitude": 1.0, "frequency": 2.0}], "filter_pole": 2.0},

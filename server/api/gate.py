@@ -17,13 +17,13 @@ from core.own.admission import Terms, admit
 from server.bench.blind import HINT, REFUSAL
 from server.classroom.access import SOCKET, Need, need_of, serves_blind
 from server.computing.asker import asks
-from server.errors import SHARD, ApiError, ErrorBody, reply
+from server.errors import ApiError, ErrorBody, reply
 from server.security.frames import TICKET, Frames
 from server.security.identity import Identity, bearer_of
 from server.security.limits import Buckets
 from server.security.origin import OriginPolicy
 from server.security.person import TEACHER, Person
-from server.security.visitor import ELSEWHERE, STYLE, visitor_page
+from server.security.visitor import ELSEWHERE, page, visitor_page
 from server.service import Service
 
 CLOSE_ORIGIN, CLOSE_AUTH, CLOSE_ROLE, CLOSE_FULL = 4003, 4401, 4403, 1013
@@ -89,9 +89,8 @@ class Gate:
             await self._refuse(scope, receive, send, 403, CLOSE_ORIGIN, "forbidden_origin", refusal)
             return
         if scope["type"] == "http" and scope["method"] == "GET":
-            has_token = self._identity.has_token_in_address(connection)
-            if has_token or self._identity.is_meant(connection):
-                await self._welcome(Request(scope), has_token)(scope, receive, send)
+            if self._identity.has_token_in_address(connection):
+                await self._welcome(Request(scope))(scope, receive, send)
                 return
             link = connection.query_params.get("link")
             if link and scope["path"] == "/" and (person is None or person.role == "watcher"):
@@ -192,17 +191,15 @@ class Gate:
             self._sockets[person.id] -= 1
             self._sockets += Counter()  # forgets those at 0
 
-    def _welcome(self, request: Request, has_token: bool) -> Response:
-        """Exchange token and process in the address for cookies, and take them out of the address."""
+    def _welcome(self, request: Request) -> Response:
+        """Exchange the token in the address for a cookie, and take it out of the address."""
         given = request.query_params.multi_items()
-        rest = [(name, value) for name, value in given if name not in ("token", SHARD)]
+        rest = [(name, value) for name, value in given if name != "token"]
         # Leading slashes are folded: "//evil.example" would be an address of another host.
         path = request.url.path.lstrip("/\\")
         target = f"/{path}" + ("?" + urlencode(rest) if rest else "")
         response = lead_on(request, target, self._prefix)
-        if has_token:
-            self._identity.give_cookie(response)
-        self._identity.give_shard(response)
+        self._identity.give_cookie(response)
         response.headers["Cache-Control"] = "no-store"
         return response
 
@@ -231,7 +228,7 @@ class Gate:
         response: Response
         if wants_page(connection) and not scope["path"].startswith("/api/"):
             query = connection.query_params.multi_items()
-            text = page(status, message, "")
+            text = plain_page(status, message, "")
             if status == 401:
                 text = visitor_page(query, may_use_token, f"{self._prefix}/join")
             response = HTMLResponse(text, status, {"Cache-Control": "no-store"})
@@ -256,14 +253,9 @@ def lead_on(request: Request, target: str, prefix: str) -> Response:
     return HTMLResponse(f'<meta http-equiv="refresh" content="0;url={html.escape(prefix + target)}">')
 
 
-def page(status: int, title: str, text: str) -> str:
+def plain_page(status: int, title: str, text: str) -> str:
     """Build a plain page for a person: a title and one line."""
-    return (
-        "<!doctype html><html lang='en'><meta charset='utf-8'>"
-        f"<meta name='viewport' content='width=device-width'><title>CombBench</title>{STYLE}"
-        f"<main><h1>{html.escape(title[:1].upper() + title[1:])}</h1>"
-        f"<p>{html.escape(text)}</p><p><small>{status}</small></p></main>"
-    )
+    return page(title[:1].upper() + title[1:], f"<p>{html.escape(text)}</p><p><small>{status}</small></p>")
 
 
 def _length(scope: Scope) -> int:

@@ -36,7 +36,7 @@ async def ready(service: ServiceDep, response: Response) -> Health:
         "started": service.is_ready,
         "engine": service.engine.is_alive and not service.watchdog.barks,
         "watchdog": service.watchdog.is_alive,
-        "database": all([await database.is_writable() for database in service.databases]),
+        "database": await service.database.is_writable(),
         "kernels": service.kernels.are_loaded,
     }
     ok = all(checks.values())

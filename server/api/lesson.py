@@ -9,8 +9,7 @@ from server.api.deps import PersonDep, RateLimited, ServiceDep
 from server.api.router import Router
 from server.api.students import Outcomes, student_of, students_of
 from server.bench.recording import Layout
-from server.classroom.lesson import GivenLayout
-from server.classroom.together import start_together
+from server.classroom.lesson import GivenLayout, start_together
 from server.errors import ApiError, not_found
 
 router = Router(tags=["classes"])

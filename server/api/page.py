@@ -13,7 +13,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
 from starlette.websockets import WebSocket
 
-from server.api.gate import page, wants_page
+from server.api.gate import plain_page, wants_page
 
 DIST = Path(__file__).resolve().parents[2] / "web" / "dist"
 OURS = ("/api/", "/health/", "/benches/", "/assets/", "/lti")
@@ -55,7 +55,7 @@ class Page:
         """
         index = self._folder / "index.html"
         if not index.is_file():
-            return HTMLResponse(page(503, "The page is not built", NOT_BUILT), 503)
+            return HTMLResponse(plain_page(503, "The page is not built", NOT_BUILT), 503)
         nonce = f'<meta name="nonce" content="{scope.get("nonce", "")}"></head>'
         text = index.read_text("utf-8").replace("</head>", nonce, 1)
         text = text.replace('<base href="/"', f'<base href="{self._prefix}/"', 1)

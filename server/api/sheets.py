@@ -83,7 +83,6 @@ class Grades(BaseModel):
 @router.get("/sheets")
 async def list_sheets(person: PersonDep, service: ServiceDep) -> SheetList:
     """List the sheets."""
-    await service.sheets.shelf.refresh()
     works = {work.sheet_id: work for work in service.sheets.works(person.id)}
     current = service.sheets.current(person)
     return SheetList(

@@ -257,7 +257,7 @@ class Benches:
             return await self._enter(session, start)
 
     async def _enter(self, session: LiveBench, start: bool) -> LiveBench:
-        session.id = session.id or f"{self._settings.shard}{secrets.token_hex(6)}"
+        session.id = session.id or secrets.token_hex(6)
         session.witness = self._witness
         await self._engine.call(self._open, session, start and session.board.trip is None)
         self._sessions[session.id] = session

@@ -16,7 +16,6 @@ from core.errors import InputError
 from core.nesting import read_toml
 from scenarios.campaign.campaign import Campaign, Stopped
 from scenarios.campaign.check import check
-from scenarios.campaign.cluster import check_address
 from scenarios.campaign.executor import LOST, Processes
 from scenarios.campaign.parts import ParquetParts, write_runs
 from scenarios.campaign.survey import Survey, listed
@@ -102,6 +101,8 @@ def carry_out(
         When no worker computes any more, or nothing can be written; the table has the runs that are done.
     """
     if scheduler:
+        from scenarios.campaign.cluster import check_address
+
         check_address(scheduler)
     place, named = folder / TABLE, folder / CAMPAIGN
     if any(path.exists() for path in (place, named, folder / REPORT)) and not resume:

@@ -87,7 +87,6 @@ class Jobs(Requested[Run]):
         row = await self._requests.get(self.kind, run_id)
         run, path = self.shown(row), (self._requests.folders[self.kind] / row.id / STEM).with_suffix(ending)
         if run.state != "done" or not path.is_file():
-            self._requests.check_here(row)
             raise not_found(f"{ending[1:]} file of run", run_id, "a run has its files once it is done")
         return run, path
 

@@ -137,7 +137,7 @@ class Queue:
         workers = max(1, settings.run_workers)
         self.kinds: dict[str, Requested[Any]] = {}
         self.results, self.processes = Results(database), Processes(workers, NICE)
-        self.requests = Requests(database, settings.data, settings.shard)
+        self.requests = Requests(database, settings.data)
         self._turns = {
             "run": asyncio.Semaphore(workers),
             "campaign": asyncio.Semaphore(1),
@@ -173,7 +173,6 @@ class Queue:
         """
         row, task = await self.requests.get(kind, row_id), self._tasks.get(row_id)
         if task is None:
-            self.requests.check_here(row)
             raise ApiError(409, "conflict", f"the {kind} is {row.state}; it cannot be cancelled any more")
         self._cancel(row_id, task)
         await asyncio.wait([task], timeout=CANCEL_S)

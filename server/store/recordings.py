@@ -94,12 +94,10 @@ class Recordings:
         Where the files are.
     reserve_bytes : int
         Free space that recordings must leave.
-    shard : str
-        With which their ids begin.
     """
 
-    def __init__(self, database: Database, folder: Path, reserve_bytes: int, shard: str = "") -> None:
-        self._database, self._folder, self._reserve_bytes, self._shard = database, folder, reserve_bytes, shard
+    def __init__(self, database: Database, folder: Path, reserve_bytes: int) -> None:
+        self._database, self._folder, self._reserve_bytes = database, folder, reserve_bytes
         self._unclosed: dict[str, dict[str, Any]] = {}
 
     def path(self, recording_id: str) -> Path:
@@ -110,7 +108,7 @@ class Recordings:
         """Make the row and the growing file of a new recording."""
         row = RecordingRow(
             **{**vars(about), "scenario": json.loads(json.dumps(about.scenario, default=str))},
-            id=f"{self._shard}{secrets.token_hex(15)}",
+            id=secrets.token_hex(15),
             state="armed" if about.condition else "recording",
             start_tick=0,
             signals=[

@@ -294,7 +294,8 @@ WITHOUT = {
     for method, path in DOORS
     if path.startswith((f"{API}/theory", f"{API}/devices", f"{API}/scenarios", f"{API}/units", f"{API}/thresholds"))
     or path.startswith((f"{BENCH}/commands", f"{BENCH}/snapshots", f"{BENCH}/driving", f"{BENCH}/fork"))
-    or path in (f"{BENCH}/variant", f"{BENCH}/identification", f"{BENCH}/diagnosers/{{name}}/aliases", "/join")
+    or path
+    in (f"{BENCH}/variant", f"{BENCH}/identification", f"{BENCH}/diagnosers/{{name}}/aliases", f"{API}/qr", "/join")
     or path == f"{API}/lectures/{{lecture_id}}/cues/{{number}}"
 }
 """Doors that ask no database, or the same as others: a search as a run, the page to join as the door of the class."""

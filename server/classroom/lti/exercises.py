@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from pylti1p3.deep_link_resource import DeepLinkResource
-from pylti1p3.lineitem import LineItem
-
 from scenarios import library
 from server.classroom.sheets import Sheets
 from server.errors import not_found
@@ -21,7 +18,7 @@ def choices(sheets: Sheets) -> tuple[list[Choice], list[Choice]]:
     return of_sheets, [(name, library.get(name).head.title) for name in library.ids()]
 
 
-def resource(kind: str, name: str, address: str, sheets: Sheets) -> DeepLinkResource:
+def resource(kind: str, name: str, address: str, sheets: Sheets) -> dict[str, Any]:
     """Describe the link to an exercise; the link of a lab sheet has a column of points.
 
     Raises
@@ -29,15 +26,14 @@ def resource(kind: str, name: str, address: str, sheets: Sheets) -> DeepLinkReso
     ApiError
         For an unknown exercise.
     """
+    link = {"type": "ltiResourceLink", "url": address, "custom": {kind: name}}
     if kind == "sheet":
         sheet = sheets.get(name)
-        column = LineItem().set_label(sheet.head.title).set_score_maximum(sheet.points).set_resource_id(sheet.id)
-        found = DeepLinkResource().set_title(sheet.head.title).set_lineitem(column)
-    elif kind == "scenario" and name in library.ids():
-        found = DeepLinkResource().set_title(library.get(name).head.title)
-    else:
-        raise not_found("exercise", name)
-    return found.set_url(address).set_custom_params({kind: name})
+        column = {"label": sheet.head.title, "scoreMaximum": sheet.points, "resourceId": sheet.id}
+        return {**link, "title": sheet.head.title, "lineItem": column}
+    if kind == "scenario" and name in library.ids():
+        return {**link, "title": library.get(name).head.title}
+    raise not_found("exercise", name)
 
 
 def configuration(base: str) -> dict[str, Any]:

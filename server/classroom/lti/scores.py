@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Any
+from urllib.parse import urlsplit
 
-from pylti1p3.assignments_grades import AssignmentsGradesService
-from pylti1p3.exception import LtiException, LtiServiceException
-from pylti1p3.grade import Grade
-from pylti1p3.service_connector import ServiceConnector
 from requests import RequestException
 
 from server.classroom.audit import Audit
 from server.classroom.lti.launch import SCORE, Launch
 from server.classroom.lti.tool import Tool, Web
 from server.classroom.sheet_work import SheetBrief, Work
-from server.security.person import Person
+from server.security.person import Person, new_secret
 from server.store.base import now
 
 log = logging.getLogger(__name__)
@@ -31,6 +30,11 @@ FIRST_WAIT_S, LONGEST_WAIT_S, MOST_TRIES = 5.0, 600.0, 12
 THREADS = 2
 """That wait for platforms, and for nothing else."""
 
+KIND = "application/vnd.ims.lis.v1.score+json"
+BY_SIGNATURE = {
+    "grant_type": "client_credentials",
+    "client_assertion_type": "urn:ietf:params:oauth:client-assertion-type:jwt-bearer",
+}
 Key = tuple[str, str]
 """A person and a sheet."""
 
@@ -127,7 +131,7 @@ class Scores:
                 score, target = self._wanted[key], self._targets[key]
                 try:
                     await asyncio.get_running_loop().run_in_executor(self._pool, self._post, target, score)
-                except (LtiException, LtiServiceException, RequestException, ValueError, KeyError) as error:
+                except (RequestException, ValueError, KeyError, TypeError) as error:
                     tries += 1
                     self._note_failure(target, key[1], error, tries)
                     await asyncio.sleep(wait_s)
@@ -144,9 +148,8 @@ class Scores:
 
     def _note_failure(self, target: Target, sheet: str, error: Exception, tries: int) -> None:
         """Tell the log every time, and the teacher at the first try and the last."""
-        status = (
-            f": the platform answered {error.response.status_code}" if isinstance(error, LtiServiceException) else ""
-        )
+        answer = error.response if isinstance(error, RequestException) else None
+        status = f": the platform answered {answer.status_code}" if answer is not None else ""
         log.warning("the score of a sheet could not be sent (try %d): %s%s", tries, type(error).__name__, status)
         if tries in (1, MOST_TRIES):
             said = (
@@ -158,21 +161,36 @@ class Scores:
 
     def _post(self, target: Target, score: Score) -> None:
         """Send a score; in a thread."""
-        grade = (
-            Grade()
-            .set_score_given(score.given)
-            .set_score_maximum(score.most)
-            .set_timestamp(score.at)
-            .set_activity_progress("Completed" if score.done else "InProgress")
-            .set_grading_progress("FullyGraded" if score.done else "Pending")
-            .set_user_id(target.launch.user)
-            .set_comment(score.comment)
-        )
+        platform, now_s = target.launch.platform, int(time.time())
+        body: dict[str, Any] = {
+            "scoreGiven": score.given,
+            "scoreMaximum": score.most,
+            "timestamp": score.at,
+            "activityProgress": "Completed" if score.done else "InProgress",
+            "gradingProgress": "FullyGraded" if score.done else "Pending",
+            "userId": target.launch.user,
+            "comment": score.comment,
+        }
+        asks = {
+            "iss": platform.client_id,
+            "sub": platform.client_id,
+            "aud": platform.auth_token_url,
+            "iat": now_s - 5,
+            "exp": now_s + 60,
+            "jti": new_secret(),
+        }
+        given = {"client_assertion": self._tool.sign(asks), "scope": SCORE}  # the right to send scores, and no other
         with Web() as web:
-            connector = ServiceConnector(self._tool.registration(target.launch.platform), web)
-            # the right to send scores, and no other
-            service = AssignmentsGradesService(connector, {"scope": [SCORE], "lineitem": target.launch.line_item})  # type: ignore[list-item]
-            service.put_grade(grade)
+            token = web.post(platform.auth_token_url, {**BY_SIGNATURE, **given})
+            token.raise_for_status()
+            headers = {"Authorization": f"Bearer {token.json()['access_token']}", "Content-Type": KIND}
+            web.post(_scores_of(target.launch.line_item), json=body, headers=headers).raise_for_status()
+
+
+def _scores_of(line_item: str) -> str:
+    """Return where the scores of a column go: below its path, with its query."""
+    parts = urlsplit(line_item)
+    return parts._replace(path=f"{parts.path.rstrip('/')}/scores").geturl()
 
 
 def _same(one: Score, other: Score) -> bool:

@@ -2102,6 +2102,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/qr": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Draw Qr Code
+         * @description Draw the QR code of an address.
+         */
+        post: operations["draw_qr_code"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/benches/{bench_id}/blind": {
         parameters: {
             query?: never;
@@ -6789,6 +6809,25 @@ export interface components {
             duty?: number;
         };
         /**
+         * QrCode
+         * @description The code of an address.
+         */
+        QrCode: {
+            /**
+             * Image
+             * @description PNG as a data URL: dark on white, with its margin, 8 pixels for each module
+             */
+            image: string;
+        };
+        /**
+         * QrText
+         * @description An address.
+         */
+        QrText: {
+            /** Text */
+            text: string;
+        };
+        /**
          * Question
          * @description A question to a class before the answer is shown: which lane of a diagnoser rises, or one of some answers.
          */
@@ -9504,6 +9543,8 @@ export type PortCard = components['schemas']['PortCard'];
 export type PositiveRealReport = components['schemas']['PositiveRealReport'];
 export type ProcessSpread = components['schemas']['ProcessSpread'];
 export type Profile = components['schemas']['Profile'];
+export type QrCode = components['schemas']['QrCode'];
+export type QrText = components['schemas']['QrText'];
 export type Question = components['schemas']['Question'];
 export type Rank = components['schemas']['Rank'];
 export type RateReadout = components['schemas']['RateReadout'];
@@ -13835,6 +13876,39 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Drives"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    draw_qr_code: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["QrText"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["QrCode"];
                 };
             };
             /** @description Refused or failed */

@@ -2,6 +2,7 @@ import { create } from "zustand";
 import { api } from "../api/api";
 import { ApiError, unless } from "../api/client";
 import { lectures } from "../api/lectures";
+import { storageName } from "../api/storage-name";
 import type { Cue, Lecture } from "../api/types";
 import { useBench } from "../stream/bench-store";
 import { jump } from "../ui/hover";
@@ -11,7 +12,7 @@ import { openBench } from "./open-bench";
 import { showError, showing } from "./send";
 import { setPage, useView } from "./view-store";
 
-const KEPT = "combbench.lecture";
+const KEPT = storageName("combbench.lecture");
 
 interface LectureStore {
   lecture: Lecture | undefined;
