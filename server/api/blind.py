@@ -11,9 +11,10 @@ from server.api.classes import Outcomes
 from server.api.deps import PersonDep, RateLimited, ServiceDep, SessionDep
 from server.api.router import Router
 from server.api.students import students_of
-from server.bench.blind import HiddenQuestion
+from server.bench.status import HiddenQuestion
 from server.classroom.blind_class import begin_for
 from server.classroom.blinds import Answer
+from server.classroom.hiding import blind_of
 from server.errors import REFUSED, ApiError, why
 
 router = Router(tags=["blind"])
@@ -67,9 +68,9 @@ class BlindClass(BaseModel):
 @router.get(BENCH)
 async def get_blind(session: SessionDep, service: ServiceDep, person: PersonDep) -> Blindness:
     """Return the question of a bench, and the answers so far."""
-    hiding = session.hiding
+    blind = blind_of(session)
     return Blindness(
-        question=hiding.blind.question if hiding.blind is not None and hiding.blind.question.game is None else None,
+        question=blind.question if blind is not None and blind.question.game is None else None,
         rule=RULE,
         answers=service.blinds.of_person(person.id),
     )
@@ -125,7 +126,8 @@ async def reveal_class(class_id: str, service: ServiceDep, person: PersonDep) ->
     done, failed = 0, []
     for student in service.people.students(class_id):
         session = service.student_benches.find(student)
-        if session is None or session.hiding.blind is None or session.hiding.blind.question.game is not None:
+        blind = blind_of(session) if session is not None else None
+        if session is None or blind is None or blind.question.game is not None:
             continue
         try:
             await service.blinds.reveal(session, person)

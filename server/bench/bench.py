@@ -25,7 +25,6 @@ from server.bench import commands
 from server.bench.captures import Captures
 from server.bench.description import bench_of, document_now, status_of
 from server.bench.events import Event, EventLog
-from server.bench.hiding import BlindView, Hiding
 from server.bench.journal import Branches, Journal
 from server.bench.measuring import Measuring
 from server.bench.narration import Narration
@@ -36,6 +35,7 @@ from server.bench.status import Bench, Opened, Origin, Travel
 from server.bench.tape import TickSource
 from server.bench.time import DeviceTime
 from server.bench.undo import Changes
+from server.bench.view import View
 from server.bench.watch import Watch
 from server.errors import not_found
 from server.metrics import Metrics
@@ -100,6 +100,8 @@ class LiveBench:
     """The class whose student has it."""
     witness: Callable[[LiveBench, Event], None] | None = None
     """Called with every event."""
+    view: View | None = None
+    """The part of it that people see for now, if rules hide the rest."""
     watch: Watch | None = None
     """Looks at the bench for a step of a lab sheet."""
     past_ticks = PAST_TICKS
@@ -126,7 +128,7 @@ class LiveBench:
         self.captures = Captures(self, CAPTURE_BYTES)
         self.time: DeviceTime = DeviceTime(self, time_scale, scenario.samples, metrics)
         self.changes, self.snapshots = Changes(self), Snapshots(self)
-        self.recordings, self.hiding, self.measuring = ActiveRecordings(self), Hiding(self), Measuring()
+        self.recordings, self.measuring = ActiveRecordings(self), Measuring()
         self.narration = Narration(board.spec, board.signals, board.signals.outputs)
         self._remember()
         self.events = EventLog(self._happened)
@@ -238,14 +240,16 @@ class LiveBench:
 
     def advance(self, ticks: int) -> int:
         """Run ticks, at most one slice; keep them, record them, note the events; return their number."""
-        watch = self.watch if self.hiding.blind is None else None  # a condition would reveal hidden values
+        view = self.view
+        watch = self.watch if view is None else None  # a condition would reveal hidden values
         rows = self._advance(ticks if watch is None else watch.room(self.board.tick, ticks))
         self.narration.look(rows)
         self._remember()
         if rows.count:
             self._metrics.ticks.inc(rows.count)
             self.recordings.take(rows)
-            self.hiding.look(rows)
+            if view is not None:
+                view.narration.look(rows)
             if watch is not None:
                 watch.look(self)
         if self.board.trip is not None and self.is_started and not self._has_due():
@@ -365,7 +369,9 @@ class LiveBench:
 
     def _happened(self, event: Event) -> None:
         """Count an event, report it, and write it into the active recordings."""
-        if not self.hiding.hear(event):
+        if (view := self.view) is not None:
+            view.hear(event)
+        else:
             self._metrics.events.labels(event.kind).inc()
         self.narration.hear(event)
         self.recordings.record(event)
@@ -390,5 +396,5 @@ class LiveBench:
         return self.recordings.close()
 
 
-Seen = LiveBench | BlindView
+Seen = LiveBench | View
 """A bench as a user sees it."""

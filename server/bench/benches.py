@@ -21,20 +21,17 @@ from core.kernel import renew
 from core.own.admission import kept_with
 from scenarios.schema import Scenario
 from server.bench.bench import LiveBench
-from server.bench.blind import Blind
 from server.bench.build import Builder, check, is_id, prepare
 from server.bench.checkpoints import Kept
 from server.bench.commands import Reset, Seek
 from server.bench.engine import Engine
 from server.bench.events import Event
 from server.bench.experiment import rebuilt, repeat
-from server.bench.hiding import STOPPED
 from server.bench.pacing import usual_scale
 from server.bench.recorder import Recorder
 from server.bench.status import Opened
 from server.bench.tape import REFUSAL, Tape
 from server.bench.travel import Travels, reset
-from server.bench.watch import KeptWatch
 from server.computing.computing import Computing
 from server.errors import ApiError, not_found
 from server.metrics import Metrics
@@ -154,13 +151,12 @@ class Benches:
         own_scale: bool = False,
         quiet_lead: bool = False,
         class_id: str = "",
-        hide: Callable[[Board], Blind] | None = None,
+        before: Callable[[LiveBench], None] = lambda _: None,
     ) -> LiveBench:
         """Make a bench from a library id, a TOML text or a document; with ``own_scale`` at the pace of its device.
 
         With ``quiet_lead`` it begins as fast as possible, to shortly before the first command of the scenario. The
-        bench of a student of a class has less room for its history. ``hide`` chooses a fault that is hidden from the
-        first tick.
+        bench of a student of a class has less room for its history. ``before`` gets the bench before it begins.
 
         Raises
         ------
@@ -175,9 +171,7 @@ class Benches:
             scale = usual_scale(board) if own_scale else time_scale
             session = self.builder.around(scenario, board, scale, class_id)
             session.time.fast_forward.leads = quiet_lead
-            if hide is not None:
-                session.hiding.begin(hide(board))
-                session.hiding.inject("teacher")
+            before(session)
             return session
 
         return await self.admit(asyncio.to_thread(made), not paused, is_counted=not class_id)
@@ -220,7 +214,7 @@ class Benches:
 
         return await self.admit(asyncio.to_thread(made), experiment.running)
 
-    async def revive(self, kept: Kept, before: Callable[[LiveBench, KeptWatch | None], None]) -> LiveBench:
+    async def revive(self, kept: Kept, before: Callable[[LiveBench, Kept], None]) -> LiveBench:
         """Make a bench that continues from a checkpoint, under the same id; ``before`` is called before it continues.
 
         Raises
@@ -237,7 +231,7 @@ class Benches:
 
         async def coming() -> LiveBench:
             session = await asyncio.to_thread(made)
-            before(session, kept.watch)
+            before(session, kept)
             return session
 
         class_id = kept.head.class_id
@@ -290,8 +284,9 @@ class Benches:
         """Carry out a command at the next tick edge; for a step, return a future that holds its event at its end."""
         kind = command.kind
         event: Event | Future[Event]
-        if (blind := session.hiding.blind) is not None:
-            blind.check(command)
+        rules = view.rules if (view := session.view) is not None else None
+        if rules is not None:
+            rules.check(command)
         try:
             if isinstance(command, Reset) and isinstance(session.board, Tape):
                 if command.values:
@@ -314,9 +309,7 @@ class Benches:
         except (InputError, ApiError) as error:
             self._metrics.commands.labels(kind, "refused").inc()
             if isinstance(error, InputError):
-                if blind is not None and error.code == "tripped":
-                    error = InputError(STOPPED, hint=error.hint, code=error.code)
-                raise as_written(error, type(command)) from None
+                raise as_written(error if rules is None else rules.refusal(error), type(command)) from None
             raise
         self._metrics.commands.labels(kind, "done").inc()
         return event

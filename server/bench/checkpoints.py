@@ -20,12 +20,12 @@ import numpy as np
 from pydantic import BaseModel
 
 from core.board.board import Board
+from core.board.document import Document
 from core.board.stored import Stored, revived, stored
 from core.errors import InputError
 from core.own.admission import kept
 from scenarios.schema import Scenario
 from server.bench.bench import LiveBench
-from server.bench.blind import Blind
 from server.bench.engine import Engine
 from server.bench.events import KEPT, Event
 from server.bench.watch import KeptWatch
@@ -53,8 +53,8 @@ class Head(BaseModel):
     tick: int
     last_event: int
     version: str
-    blind: Blind | None = None
-    hidden_since: int = 0
+    rules: Document | None = None
+    rules_since: int = 0
 
 
 class State(NamedTuple):
@@ -99,8 +99,6 @@ class Kept:
         session.id, session.created, session.name = self.head.id, self.head.created, self.head.name
         session.keep = session.keep or self.head.keep
         session.events.go_on(self.events)
-        if (blind := self.head.blind) is not None:
-            session.hiding.begin(blind, [event for event in self.events if event.seq >= self.head.hidden_since])
 
 
 class Checkpoints:
@@ -236,6 +234,7 @@ def _taken(session: LiveBench) -> Kept:
     """Return the present state of a bench, without its events (a job of the engine)."""
     session.must_be_open()
     watch = session.watch.kept(session) if session.watch is not None else None
+    view = session.view
     head = Head(
         id=session.id,
         class_id=session.class_id,
@@ -248,7 +247,7 @@ def _taken(session: LiveBench) -> Kept:
         tick=session.board.tick,
         last_event=session.events.last,
         version=THIS_VERSION,
-        blind=session.hiding.blind,
-        hidden_since=session.hiding.since,
+        rules=view.rules.model_dump() if view is not None else None,
+        rules_since=view.since if view is not None else 0,
     )
     return Kept(head, stored(session.board), [], watch)  # type: ignore[arg-type]

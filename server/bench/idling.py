@@ -53,7 +53,7 @@ class Idling:
         return [session for session in sessions if self.left_s(session) == 0.0]
 
     def _is_needed(self, session: LiveBench) -> bool:
-        """Say whether a bench has a watcher, is to be kept, hides a fault, or has something to come or to lose.
+        """Say whether a bench has a watcher, is to be kept, has a view for now, or has something to come or to lose.
 
         Waiting commands of a paused bench are kept with it; on a running bench their moment comes. Moments that were
         kept of a bench would be lost.
@@ -61,7 +61,7 @@ class Idling:
         recordings = session.recordings
         return (
             session.keep
-            or session.hiding.view is not None
+            or session.view is not None
             or self._watchers(session.id) > 0
             or bool(recordings.under_way or recordings.armed or session.snapshots.all())
             or (session.is_running and len(session.board.pending) > 0)

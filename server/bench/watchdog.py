@@ -297,8 +297,8 @@ class Safety:
         task.add_done_callback(self._tasks.discard)
 
     async def _keep(self, sessions: Sequence[LiveBench], why: str) -> None:
-        """Record the last seconds of some benches, except where a fault is hidden, because a file would reveal it."""
-        kept = [one for one in sessions if one.hiding.view is None and one.history.end_tick > one.history.first_tick]
+        """Record the last seconds of some benches, except where a view hides a part: a file would reveal it."""
+        kept = [one for one in sessions if one.view is None and one.history.end_tick > one.history.first_tick]
         for session in kept[:MOST_KEPT]:
             try:
                 wanted = Wanted(name=f"before the trip: {why}"[:100], past_ticks=_ticks(session), ticks=0)

@@ -6,14 +6,13 @@ import asyncio
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from core.board.board import Board
 from scenarios.sheets.begin import Beginning, begin
 from scenarios.sheets.sheet import Sheet
 from server.bench.bench import LiveBench
 from server.bench.benches import Benches
-from server.bench.blind import Blind
 from server.classroom.blind_class import quiet
 from server.classroom.classes import Classes
+from server.classroom.hiding import Blind, from_the_start
 from server.classroom.sheet_work import Work
 from server.classroom.student_benches import Swap
 from server.security.person import Person
@@ -49,7 +48,7 @@ class SheetBenches:
         values: dict[str, Any],
         before: Work | None,
         also: Callable[[LiveBench], Sequence[Change]],
-        hide: Callable[[Board], Blind] | None = None,
+        hide: Callable[[LiveBench], Blind] | None = None,
     ) -> None:
         """Replace the bench of a sheet by a new one, with a hidden fault if ``hide`` chooses one.
 
@@ -72,5 +71,5 @@ class SheetBenches:
             await self._classes.benches.replace(person, wanted, hide, also)
             return
         old = self._benches.find(before.bench_id) if before is not None else None
-        made = await self._benches.create(**wanted, hide=hide)
+        made = await self._benches.create(**wanted, before=from_the_start(hide))
         await self._swap(made, [old] if old is not None else [], *also(made))

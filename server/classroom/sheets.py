@@ -8,7 +8,6 @@ import secrets
 from collections.abc import Callable
 from dataclasses import replace
 
-from core.board.board import Board
 from core.errors import InputError
 from scenarios.sheets.begin import SEEDS
 from scenarios.sheets.look import known_limits
@@ -17,11 +16,12 @@ from scenarios.sheets.sheet import Blind as BlindStep
 from scenarios.sheets.sheet import Hold, Sheet
 from server.bench.bench import LiveBench
 from server.bench.benches import Benches
-from server.bench.blind import HINT, Blind, hide
 from server.bench.engine import Engine
 from server.bench.watch import KeptWatch
+from server.classroom.blind import hide
 from server.classroom.blinds import OF_DRAW, Blinds, hidden_on
 from server.classroom.classes import Classes
+from server.classroom.hiding import HINT, Blind
 from server.classroom.people import People
 from server.classroom.sheet_bench import SheetBenches
 from server.classroom.sheet_shelf import Shelf
@@ -144,7 +144,7 @@ class Sheets:
             return view_of(sheet, None, None, None)
         await self._follow(work)
         bench = self._benches.find(work.bench_id)
-        watch = bench.watch if bench is not None and bench.hiding.blind is None else None
+        watch = bench.watch if bench is not None and bench.view is None else None
         held = watch.now if isinstance(watch, SheetWatch) and watch.step is work.progress.open_step(sheet) else None
         return view_of(sheet, work.progress, bench.id if bench is not None else None, held)
 
@@ -191,8 +191,8 @@ class Sheets:
         ]
         beginning = await self._sheet_benches.beginning(person, sheet)
 
-        def hidden(board: Board) -> Blind:
-            return hide(board, board.spec.document, secrets.token_hex(8), False, which, when / OF_DRAW)
+        def hidden(made: LiveBench) -> Blind:
+            return hide(made.board, made.board.spec.document, secrets.token_hex(8), False, which, when / OF_DRAW)
 
         async with self._turn:
             work = self._must_have(person, sheet_id)
@@ -200,7 +200,7 @@ class Sheets:
             if not isinstance(step, BlindStep):
                 raise InputError("hides nothing", "step", code="conflict")
             bench = self._benches.find(work.bench_id)
-            if bench is not None and bench.hiding.blind is not None:
+            if bench is not None and bench.view is not None:
                 raise ApiError(409, "blind", "a fault is hidden here already", hint=HINT)
 
             def kept(made: LiveBench) -> list[Change]:
@@ -261,7 +261,7 @@ class Sheets:
         if bench is None:
             return
         watch = bench.watch if isinstance(bench.watch, SheetWatch) else None
-        if not isinstance(step, Hold) or bench.hiding.blind is not None:  # progress would reveal hidden values
+        if not isinstance(step, Hold) or bench.view is not None:  # progress would reveal hidden values
             bench.watch = None
         elif watch is None or watch.step is not step:
 
@@ -287,7 +287,7 @@ class Sheets:
         for work in self._works.all():
             sheet = self._known(work.sheet_id) if work.bench_id == bench.id else None
             step = work.progress.open_step(sheet) if sheet is not None else None
-            if isinstance(step, Hold) and bench.hiding.blind is None:
+            if isinstance(step, Hold) and bench.view is None:
                 bench.watch = watch = self._watch(work, step, bench)
                 if kept is not None:
                     watch.go_on(kept)

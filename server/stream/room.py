@@ -23,7 +23,7 @@ class Room:
 
     Parameters
     ----------
-    session : LiveBench or BlindView
+    session : LiveBench or View
         The bench as they see it.
     around : callable
         Returns the fields of a status that the bench itself does not know.
