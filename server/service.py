@@ -16,9 +16,8 @@ from server.bench.bench import LiveBench
 from server.bench.benches import Benches
 from server.bench.checkpoints import Checkpoints
 from server.bench.engine import Engine
-from server.bench.idling import Idling
+from server.bench.idling import Idling, Reopening
 from server.bench.recording import Records
-from server.bench.reopening import Reopening
 from server.bench.watchdog import Safety, Watchdog
 from server.classroom.audit import Audit
 from server.classroom.blinds import Blinds

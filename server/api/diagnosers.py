@@ -19,7 +19,7 @@ from core.reference.waveform import Waveform
 from server.api.deps import SessionDep
 from server.api.router import Router
 from server.bench.bench import LiveBench
-from server.bench.tape import Tape
+from server.bench.replay import Tape
 
 router = Router(prefix="/benches/{bench_id}/diagnosers/{name}", tags=["diagnosers"])
 

@@ -26,7 +26,7 @@ from server.api.bodies import Body
 from server.api.deps import RateLimited, SeenDep, ServiceDep, SessionDep
 from server.api.router import Router
 from server.bench.bench import LiveBench
-from server.bench.tape import REFUSAL
+from server.bench.replay import REFUSAL
 from server.classroom.hiding import blind_of
 from server.computing.computing import LONGEST_S
 from server.service import Service

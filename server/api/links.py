@@ -12,7 +12,7 @@ from server.api.bodies import Body
 from server.api.deps import IdentityDep, PersonDep, RateLimited, ServiceDep
 from server.api.router import Router
 from server.bench.build import prepare
-from server.bench.experiment import beginning_of, experiment_of
+from server.bench.description import beginning_of, experiment_of
 from server.bench.pacing import usual_scale
 from server.bench.recording import Layout
 from server.bench.status import Bench

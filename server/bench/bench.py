@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from dataclasses import replace
 from datetime import UTC, datetime
-from typing import Any, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 from core.board.board import Board
 from core.board.commands import MakeSafe
@@ -25,20 +25,20 @@ from server.bench import commands
 from server.bench.captures import Captures
 from server.bench.description import bench_of, document_now, status_of
 from server.bench.events import Event, EventLog
-from server.bench.journal import Branches, Journal
+from server.bench.journal import Branches, Journal, Snapshots
 from server.bench.measuring import Measuring
 from server.bench.narration import Narration
 from server.bench.recorder import Recorder
 from server.bench.recording import ActiveRecordings
-from server.bench.snapshots import Snapshots
 from server.bench.status import Bench, Opened, Origin, Travel
-from server.bench.tape import TickSource
 from server.bench.time import DeviceTime
 from server.bench.undo import Changes
-from server.bench.view import View
-from server.bench.watch import Watch
+from server.bench.view import View, Watch
 from server.errors import not_found
 from server.metrics import Metrics
+
+if TYPE_CHECKING:
+    from server.bench.replay import TickSource
 
 PAST_TICKS = 20_000
 """Samples before its end that a journal of the bench has."""

@@ -21,17 +21,16 @@ from core.kernel import renew
 from core.own.admission import kept_with
 from scenarios.schema import Scenario
 from server.bench.bench import LiveBench
-from server.bench.build import Builder, check, is_id, prepare
+from server.bench.build import Builder, check, is_id, prepare, rebuilt
 from server.bench.checkpoints import Kept
 from server.bench.commands import Reset, Seek
 from server.bench.engine import Engine
 from server.bench.events import Event
-from server.bench.experiment import rebuilt, repeat
 from server.bench.pacing import usual_scale
 from server.bench.recorder import Recorder
+from server.bench.replay import REFUSAL, Tape
 from server.bench.status import Opened
-from server.bench.tape import REFUSAL, Tape
-from server.bench.travel import Travels, reset
+from server.bench.travel import Travels, repeat, reset
 from server.computing.computing import Computing
 from server.errors import ApiError, not_found
 from server.metrics import Metrics

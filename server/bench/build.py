@@ -10,6 +10,7 @@ from typing import Any, TypeGuard
 from core.board.board import Board
 from core.board.document import Document
 from core.board.history import History
+from core.errors import InputError
 from core.nesting import read_toml
 from core.own.admission import check_admitted, kept_with
 from scenarios.edit import with_values
@@ -19,10 +20,11 @@ from scenarios.run import build
 from scenarios.schema import Scenario
 from server.bench.bench import CAPTURE_BYTES, STUDENT_CAPTURE_BYTES, STUDENT_TRACK_BYTES, TRACK_BYTES, LiveBench
 from server.bench.commands import MAX_SCALE, MIN_SCALE
-from server.bench.replay import Replay, narrated, played
-from server.bench.tape import TickSource
+from server.bench.replay import Replay, TickSource, narrated, played
+from server.errors import ApiError
 from server.metrics import Metrics
 from server.settings import Settings
+from server.store.experiment import Experiment
 from server.store.recordings import RecordingDetail
 from server.store.units import FOLDER, Units
 
@@ -99,6 +101,33 @@ def prepare(
             return scenario, build(scenario, seed, compiled=compiled)
     scenario = with_values(read_scenario(source), values)
     return scenario, build(scenario, seed, compiled=compiled)
+
+
+def rebuilt(experiment: Experiment, most_ticks: int, values: dict[str, Any] | None = None) -> tuple[Scenario, Board]:
+    """Return the scenario of an experiment, and its board at tick 0 with all that was done waiting.
+
+    ``values`` are written over the scenario.
+
+    Raises
+    ------
+    InputError
+        If the values do not fit the scenario or the commands.
+    ApiError
+        If it is longer than may be repeated, or this version cannot read it.
+    """
+    if experiment.tick > most_ticks:
+        text = f"it has run for {experiment.tick} ticks; at most {most_ticks} are repeated (max_run_ticks)"
+        raise ApiError(409, "too_long", text, hint="open its scenario instead, from tick 0")
+    values = values or {}
+    try:
+        with kept_with(values):
+            scenario = with_values(Scenario.load(experiment.scenario), values)
+            return scenario, build(Scenario.load({**scenario.document, "events": experiment.events}))
+    except InputError as error:
+        if values:
+            raise
+        text = f"this version cannot repeat it: {error}"
+        raise ApiError(409, "conflict", text, hint=f"it was made with {experiment.version}") from None
 
 
 def check(source: str | dict[str, Any], values: dict[str, Any], units: Document) -> None:

@@ -28,7 +28,7 @@ from scenarios.schema import Scenario
 from server.bench.bench import LiveBench
 from server.bench.engine import Engine
 from server.bench.events import KEPT, Event
-from server.bench.watch import KeptWatch
+from server.bench.view import KeptWatch
 from server.clock import Clock
 from server.errors import ApiError
 from server.store.experiment import THIS_VERSION

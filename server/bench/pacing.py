@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from typing import TYPE_CHECKING
 
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE
-from server.bench.tape import TickSource
+
+if TYPE_CHECKING:
+    from server.bench.replay import TickSource
 
 AXES_SCALE = 0.1
 """Device seconds per wall second of a plant with axes."""

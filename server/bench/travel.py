@@ -17,16 +17,16 @@ from scenarios.lecture import State
 from scenarios.run import build
 from scenarios.schema import Scenario
 from server.bench.bench import LiveBench
-from server.bench.build import Builder
-from server.bench.description import design_of
+from server.bench.build import Builder, rebuilt
+from server.bench.description import design_of, experiment_of
 from server.bench.engine import Engine
 from server.bench.events import Event
-from server.bench.experiment import experiment_of, forward, rebuilt, repeat
 from server.bench.journal import Journal
 from server.bench.narration import Narration, Told
 from server.bench.pacing import usual_scale
 from server.bench.status import Origin, Travel
 from server.bench.time import STATUS_S
+from server.store.experiment import Experiment
 
 if TYPE_CHECKING:
     from server.bench.benches import Benches
@@ -297,6 +297,22 @@ class Travels:
             return await self._benches.take_in(fresh, start), digest
         await self._engine.call(_be_at_cue, bench, fresh, start, actor, text)
         return bench, digest
+
+
+def forward(bench: LiveBench, tick: int) -> bool:
+    """Bring a new bench to a tick, and carry out the commands that wait for it; return whether it came there."""
+    board = bench.board
+    while board.tick < tick and bench.advance(tick - board.tick):
+        pass
+    if isinstance(board, Board) and board.tick == tick:
+        board.apply_due()
+        bench.done_otherwise()
+    return board.tick == tick
+
+
+def repeat(bench: LiveBench, experiment: Experiment) -> bool:
+    """Bring a new bench to the tick of an experiment; return whether its bits equal the original bits."""
+    return forward(bench, experiment.tick) and bench.board.digest() == experiment.digest
 
 
 def reset(bench: LiveBench, scenario: Scenario, board: Board, actor: str, before_tick: int | None = None) -> Event:

@@ -1,9 +1,16 @@
-"""A view: the part of a bench that people may see for a while, by the rules of an exercise or a game."""
+"""A view and a watch of a bench: the part that people may see for a while, and a look at ticks of its own.
+
+An exercise, a game or a lab sheet gives them to a bench, which knows none of these.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
 
 from core.board.document import Document
 from core.board.history import History
@@ -146,3 +153,35 @@ class View:
     def told(self, event: Event) -> Event:
         """Return an event of the bench as this log has it."""
         return next(one for one in reversed(self.events.after(0)[1]) if one.at == event.at)
+
+
+@dataclass(frozen=True)
+class KeptWatch:
+    """The progress of a watch, as plain data: from it another watch continues at the same tick.
+
+    Parameters
+    ----------
+    document : dict
+        Numbers, texts, lists and tables, as JSON has them.
+    samples : ndarray
+        Signals of the last ticks, ticks by signals.
+    """
+
+    document: Document
+    samples: NDArray[np.float32] = field(repr=False)
+
+
+class Watch(Protocol):
+    """Looks at a bench at ticks of its own; on the engine's thread."""
+
+    def room(self, tick: int, ticks: int) -> int:
+        """Return how far the bench may run at a time."""
+
+    def jumped(self, tick: int) -> None:
+        """Go on from this tick: the bench was reset, or restored."""
+
+    def look(self, bench: LiveBench) -> None:
+        """Look at the bench after it has run."""
+
+    def kept(self, bench: LiveBench) -> KeptWatch:
+        """Return how far it has come, at the tick of the bench."""

@@ -10,8 +10,8 @@ from core.board.spec import Section, Spec
 from core.diagnose.hypothesis import ModelList, NamedModel
 from core.errors import InputError
 from server.bench.pacing import usual_scale
+from server.bench.replay import TickSource
 from server.bench.status import HiddenQuestion, Played
-from server.bench.tape import TickSource
 from server.classroom.hiding import Blind
 
 EARLIEST_S, LATEST_S = 1.0, 4.0

@@ -17,7 +17,7 @@ from scenarios.sheets.sheet import Hold, Sheet
 from server.bench.bench import LiveBench
 from server.bench.benches import Benches
 from server.bench.engine import Engine
-from server.bench.watch import KeptWatch
+from server.bench.view import KeptWatch
 from server.classroom.blind import hide
 from server.classroom.blinds import OF_DRAW, Blinds, hidden_on
 from server.classroom.classes import Classes

@@ -13,7 +13,7 @@ from core.own.admission import kept
 from server.bench.bench import LiveBench
 from server.bench.benches import Benches
 from server.bench.checkpoints import Checkpoints, Kept
-from server.bench.watch import KeptWatch
+from server.bench.view import KeptWatch
 from server.classroom.hiding import Blind, from_the_start, hide_again
 from server.classroom.people import People
 from server.errors import not_found

@@ -19,12 +19,11 @@ from scenarios.library import get
 from scenarios.run import build, run
 from scenarios.schema import Scenario
 from server.bench.bench import LiveBench
-from server.bench.build import Builder
+from server.bench.build import Builder, rebuilt
 from server.bench.commands import parse
-from server.bench.description import document_of
-from server.bench.experiment import experiment_of, forward, rebuilt, repeat
+from server.bench.description import document_of, experiment_of
 from server.bench.status import Origin
-from server.bench.travel import Past, forked, reset, show
+from server.bench.travel import Past, forked, forward, repeat, reset, show
 from server.metrics import Metrics
 from server.settings import Settings
 from server.store.experiment import Experiment
