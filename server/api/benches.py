@@ -180,7 +180,7 @@ async def delete_bench(session: SessionDep, service: ServiceDep) -> None:
 @router.post("/{bench_id}/reopen", dependencies=[RateLimited])
 async def reopen_bench(bench_id: str, service: ServiceDep, person: PersonDep) -> Bench:
     """Return a bench; a closed idle bench is opened again under its id, with the same bits, paused or running."""
-    session = await service.reopening.bring_back(bench_id)
+    session = await service.idling.bring_back(bench_id)
     service.idling.saw(bench_id)
     return service.views.of(session, person)
 

@@ -103,6 +103,6 @@ async def open_link(link_id: str, service: ServiceDep, person: PersonDep, respon
 
     `opened` says whether its bits equal the original bits.
     """
-    session = await service.reopening.open_link(await service.links.get(link_id))
+    session = await service.idling.open_link(await service.links.get(link_id))
     response.headers["Location"] = f"/api/v1/benches/{session.id}"
     return await service.views.opened(session, person)

@@ -18,9 +18,9 @@ from scenarios.library import get
 from scenarios.own import beside
 from scenarios.run import build
 from scenarios.schema import Scenario
-from server.bench.bench import CAPTURE_BYTES, STUDENT_CAPTURE_BYTES, STUDENT_TRACK_BYTES, TRACK_BYTES, LiveBench
+from server.bench.bench import OF_STUDENT, USUAL, LiveBench, Memory
 from server.bench.commands import MAX_SCALE, MIN_SCALE
-from server.bench.replay import Replay, TickSource, narrated, played
+from server.bench.replay import TickSource, play, played
 from server.errors import ApiError
 from server.metrics import Metrics
 from server.settings import Settings
@@ -49,13 +49,12 @@ class Builder:
 
     def around(self, scenario: Scenario, board: Board, time_scale: float | None, class_id: str = "") -> LiveBench:
         """Put a bench around a board; one for a student of a class has less room for its history."""
+        settings, memory = self._settings, OF_STUDENT if class_id else USUAL
+        kept = self._kept(board, settings.student_history_mb if class_id else settings.history_mb, memory)
+        session = LiveBench(scenario, board, time_scale, kept, self._metrics, self._clock, memory)
         if class_id:
-            kept = self._kept(board, self._settings.student_history_mb, STUDENT_TRACK_BYTES + 2 * STUDENT_CAPTURE_BYTES)
-        else:
-            kept = self._kept(board, self._settings.history_mb, TRACK_BYTES + 2 * CAPTURE_BYTES)
-        session = LiveBench(scenario, board, time_scale, kept, self._metrics, self._clock)
-        if class_id:
-            session.limit(class_id, self._settings.student_ticks_per_s)
+            session.class_id, session.keep = class_id, True
+            session.time.limit(settings.student_ticks_per_s * board.dt_ms * 1e-3)
         return session
 
     def replay(self, recording: RecordingDetail, path: Path, speed: float) -> LiveBench:
@@ -68,17 +67,16 @@ class Builder:
         """
         scenario, tape, recorded = played(recording, path)
         pace = min(max(recorded * speed, MIN_SCALE), MAX_SCALE)
-        kept = self._kept(tape, self._settings.history_mb, 2 * CAPTURE_BYTES)
-        said = narrated(tape, path, recording.events or [])
-        session = Replay(recording, scenario, tape, pace, kept, self._metrics, self._clock, said)
+        kept = self._kept(tape, self._settings.history_mb, USUAL._replace(track_bytes=0))
+        session = LiveBench(scenario, tape, pace, kept, self._metrics, self._clock)
+        play(session, tape, recording, path, self._metrics)
         session.recorded_scale = recorded
         return session
 
-    def _kept(self, board: TickSource, megabytes: int, beside_bytes: int) -> int:
+    def _kept(self, board: TickSource, megabytes: int, memory: Memory) -> int:
         """Return for how many ticks the signals of a board are kept, in addition to the other memory of its past."""
-        affordable = History.ticks_within(
-            megabytes - beside_bytes * 1e-6, board.signals.outputs, len(board.signals.taps)
-        )
+        left = megabytes - (memory.track_bytes + 2 * memory.capture_bytes) * 1e-6
+        affordable = History.ticks_within(left, board.signals.outputs, len(board.signals.taps))
         return min(self._settings.history_ticks, affordable)
 
 

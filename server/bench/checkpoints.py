@@ -67,9 +67,14 @@ class State(NamedTuple):
     keep: bool
 
     @classmethod
-    def of(cls, head: Head) -> State:
+    def of(cls, bench: LiveBench) -> State:
+        """Return the state of a bench."""
+        return cls(bench.board.tick, bench.events.last, bench.is_started, bench.name, bench.keep)
+
+    @classmethod
+    def written(cls, head: Head) -> State:
         """Return the state in a checkpoint."""
-        return cls(head.tick, head.last_event, head.running, head.name, head.keep)
+        return cls(*(getattr(head, field) for field in cls._fields))
 
 
 @dataclass
@@ -129,9 +134,7 @@ class Checkpoints:
         async with self._turn:
             for session in self._benches():
                 before = self._written.get(session.id)
-                if before == State(
-                    session.board.tick, session.events.last, session.is_started, session.name, session.keep
-                ):
+                if before == State.of(session):
                     continue
                 try:
                     kept = await self._engine.call(_taken, session)
@@ -139,7 +142,7 @@ class Checkpoints:
                     events = session.events.after(before.last_event if before is not None else 0)[1]
                     events = [event for event in events if event.seq <= head.last_event]
                     await asyncio.to_thread(self._save, kept, events)
-                    self._written[session.id] = State.of(head)
+                    self._written[session.id] = State.written(head)
                 except ApiError:
                     continue  # it has been closed meanwhile
                 except Exception:
@@ -225,7 +228,7 @@ class Checkpoints:
                 known[event.seq] = event
         events = [known[seq] for seq in sorted(known)]
         path.write_text("".join(f"{event.model_dump_json()}\n" for event in events), "utf-8")
-        self._written[bench_id] = State.of(head)
+        self._written[bench_id] = State.written(head)
         watch = KeptWatch(seen, samples) if seen is not None and samples is not None else None
         return Kept(head, Stored(board, arrays), events[-KEPT:], watch)
 
@@ -238,14 +241,10 @@ def _taken(session: LiveBench) -> Kept:
     head = Head(
         id=session.id,
         class_id=session.class_id,
-        name=session.name,
-        keep=session.keep,
+        **State.of(session)._asdict(),
         scenario=session.scenario.document,
         created=session.created,
         time_scale=session.time.pacer.scale,
-        running=session.is_started,
-        tick=session.board.tick,
-        last_event=session.events.last,
         version=THIS_VERSION,
         rules=view.rules.model_dump() if view is not None else None,
         rules_since=view.since if view is not None else 0,

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import time
 from collections.abc import Awaitable, Callable
-from typing import Protocol
 
 from server.bench.bench import LiveBench
 from server.bench.benches import Benches
@@ -25,23 +23,41 @@ EVERY_S = 5.0
 
 
 class Idling:
-    """Notes when each bench was last watched or requested.
+    """Closes benches that are unused for a while, and opens experiments again.
 
     Parameters
     ----------
+    benches : Benches
+        The live benches.
+    engine : Engine
+        Whose thread may read a bench.
+    links : Links
+        Where experiments are kept.
     watchers : callable
         Counts the pages that watch a bench.
     idle_minutes : float
         How long an unused bench stays; 0 is without limit.
-    clock : callable
-        Monotonic seconds.
+    close_bench : callable
+        Closes a bench and its streams; given ``comes_back``, the sharing of it goes on.
+    turn : Semaphore
+        Lets one experiment after another be repeated.
     """
 
     def __init__(
-        self, watchers: Callable[[str], int], idle_minutes: float, clock: Callable[[], float] = time.perf_counter
+        self,
+        benches: Benches,
+        engine: Engine,
+        links: Links,
+        watchers: Callable[[str], int],
+        idle_minutes: float,
+        close_bench: Callable[..., Awaitable[None]],
+        turn: asyncio.Semaphore,
     ) -> None:
-        self._watchers, self._patience_s, self.clock = watchers, 60.0 * idle_minutes, clock
+        self._benches, self._engine, self._links = benches, engine, links
+        self._watchers, self._patience_s, self.clock = watchers, 60.0 * idle_minutes, engine.clock
+        self._close_bench, self._turn = close_bench, turn
         self._seen: dict[str, float] = {}
+        self._coming_back = asyncio.Lock()
 
     def saw(self, bench_id: str) -> None:
         """Note that a bench is in use now."""
@@ -57,69 +73,6 @@ class Idling:
             return None
         seen = self._seen.setdefault(session.id, self.clock())
         return max(0.0, seen + self._patience_s - self.clock())
-
-    def due(self, sessions: list[LiveBench]) -> list[LiveBench]:
-        """Return the benches that may be closed now; note that the needed benches are needed."""
-        for session in sessions:
-            if self._is_needed(session):
-                self.saw(session.id)
-        return [session for session in sessions if self.left_s(session) == 0.0]
-
-    def _is_needed(self, session: LiveBench) -> bool:
-        """Say whether a bench has a watcher, is to be kept, has a view for now, or has something to come or to lose.
-
-        Waiting commands of a paused bench are kept with it; on a running bench their moment comes. Moments that were
-        kept of a bench would be lost.
-        """
-        recordings = session.recordings
-        return (
-            session.keep
-            or session.view is not None
-            or self._watchers(session.id) > 0
-            or bool(recordings.under_way or recordings.armed or session.snapshots.all())
-            or (session.is_running and len(session.board.pending) > 0)
-            or bool(session.time.steps)
-        )
-
-
-class CloseBench(Protocol):
-    """Closes a bench and its streams."""
-
-    def __call__(self, session: LiveBench, *, comes_back: bool = False) -> Awaitable[None]:
-        """Close a bench; sharing of it ends too unless it comes back."""
-
-
-class Reopening:
-    """Lets benches go, and opens experiments again.
-
-    Parameters
-    ----------
-    benches : Benches
-        The live benches.
-    engine : Engine
-        Whose thread may read a bench.
-    links : Links
-        Where experiments are kept.
-    idling : Idling
-        Finds the unused benches.
-    close_bench : callable
-        Closes a bench and its streams.
-    turn : Semaphore
-        Lets one experiment after another be repeated.
-    """
-
-    def __init__(
-        self,
-        benches: Benches,
-        engine: Engine,
-        links: Links,
-        idling: Idling,
-        close_bench: CloseBench,
-        turn: asyncio.Semaphore,
-    ) -> None:
-        self._benches, self._engine, self._links = benches, engine, links
-        self._idling, self._close_bench, self._turn = idling, close_bench, turn
-        self._coming_back = asyncio.Lock()
 
     async def open_link(self, link: LinkDetail, bench_id: str | None = None) -> LiveBench:
         """Make a bench that repeats the experiment of a link.
@@ -165,7 +118,7 @@ class Reopening:
 
     async def let_go(self) -> None:
         """Store the experiments of unused benches, and close them."""
-        for session in self._idling.due(self._benches.all()):
+        for session in [one for one in self._benches.all() if self._may_go(one)]:
             try:
                 await self._let_go(session)
             except Exception:
@@ -182,7 +135,29 @@ class Reopening:
                 is_kept = True
             except ApiError as error:
                 log.warning("bench %s is closed for good: %s", session.id, error.body.message)
-        if not self._idling.due([session]):
+        if not self._may_go(session):
             return await self._links.delete(session.id)
         await self._close_bench(session, comes_back=is_kept)
         log.info("bench %s was closed after a while without users", session.id)
+
+    def _may_go(self, session: LiveBench) -> bool:
+        """Say whether a bench has been unused for long enough; a bench that is needed is in use now."""
+        if self._is_needed(session):
+            self.saw(session.id)
+        return self.left_s(session) == 0.0
+
+    def _is_needed(self, session: LiveBench) -> bool:
+        """Say whether a bench has a watcher, is to be kept, has a view for now, or has something to come or to lose.
+
+        Waiting commands of a paused bench are kept with it; on a running bench their moment comes. Moments that were
+        kept of a bench would be lost.
+        """
+        recordings = session.recordings
+        return (
+            session.keep
+            or session.view is not None
+            or self._watchers(session.id) > 0
+            or bool(recordings.under_way or recordings.armed or session.snapshots.all())
+            or (session.is_running and len(session.board.pending) > 0)
+            or bool(session.time.steps)
+        )

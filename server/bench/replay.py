@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, NoReturn
@@ -26,7 +26,7 @@ from scenarios.narrator.sentence import Sentence
 from scenarios.run import build
 from scenarios.schema import Scenario
 from server.bench.bench import LiveBench
-from server.bench.commands import DEFAULT_SCALE, Loop, RunsTime, Seek, Start
+from server.bench.commands import DEFAULT_SCALE, Loop, Reset, RunsTime, Seek, Start
 from server.bench.events import Event
 from server.bench.narration import Narration
 from server.bench.time import DeviceTime
@@ -171,20 +171,10 @@ TickSource = Board | Tape
 
 
 def narrated(tape: Tape, path: Path, events: list[dict[str, Any]]) -> list[Sentence]:
-    """Return the sentences of the narrator about a recording, made from its samples and its events.
-
-    Parameters
-    ----------
-    tape : Tape
-        The recording.
-    path : Path
-        Its file.
-    events : list of dict
-        Its events.
-    """
+    """Return the sentences of the narrator about a recording, made from its samples and its events."""
     narrator = Narrator(tape.spec, tape.recorded, tape.signals.outputs)
     for number, event in enumerate(events, 1):
-        narrator.hear(LogEntry(seq=number, **{name: event.get(name) for name in RECORDED}))
+        narrator.hear(LogEntry(seq=number, **event))
     own, found = Tape(tape.recorded_board, path, narrator.signals), []
     while (rows := own.advance(own.chunk)).count:
         found += narrator.look(rows)
@@ -231,8 +221,12 @@ class Playing(DeviceTime):
         self._loop_start: int | None = None
 
     def carry_out(self, command: RunsTime, actor: str) -> Event | Future[Event]:
-        """Carry out a command to time; only a replay can seek and loop."""
+        """Carry out a command to time; only a replay can seek and loop, and a reset goes to its first tick."""
         tape = self._tape
+        if isinstance(command, Reset):
+            if command.values:
+                raise InputError(REFUSAL, "values", "run its scenario to change something", "conflict")
+            command = Seek(tick=tape.first if command.before_tick is None else command.before_tick)
         if isinstance(command, Seek):
             tape.seek(command.tick)
             self._jump()
@@ -294,44 +288,12 @@ class Transcript(Narration):
         """Leave it as it is."""
 
 
-class Replay(LiveBench):
-    """A recording in the place of a board.
-
-    Parameters
-    ----------
-    recording : RecordingDetail
-        The recording to play; its events become the events of the bench.
-    scenario : Scenario
-        The scenario of the recording.
-    tape : Tape
-        The recording, to be read tick by tick.
-    time_scale : float
-        Device seconds per wall second.
-    history_ticks : int
-        Ticks every signal is kept for.
-    metrics : Metrics
-        Where ticks and overruns are counted.
-    clock : callable
-        The engine's clock.
-    sentences : list of Sentence
-        The sentences of the narrator about it, from its beginning to its end.
-    """
-
-    def __init__(
-        self,
-        recording: RecordingDetail,
-        scenario: Scenario,
-        tape: Tape,
-        time_scale: float | None,
-        history_ticks: int,
-        metrics: Metrics,
-        clock: Callable[[], float],
-        sentences: list[Sentence],
-    ) -> None:
-        super().__init__(scenario, tape, time_scale, history_ticks, metrics, clock)
-        self.time = Playing(self, tape, time_scale, metrics)
-        self.replay_of = recording.id
-        for event in recording.events or []:
-            self.events.keep(**{name: event.get(name) for name in RECORDED})
-        self.narration = Transcript(scenario.spec, [], 0)
-        self.narration.say(sentences)
+def play(bench: LiveBench, tape: Tape, recording: RecordingDetail, path: Path, metrics: Metrics) -> None:
+    """Let a bench around a tape play its recording, with the recorded events and the sentences about them."""
+    events = [{name: event.get(name) for name in RECORDED} for event in recording.events or []]
+    bench.replay_of = recording.id
+    bench.time = Playing(bench, tape, bench.time.pacer.scale, metrics)
+    bench.narration = Transcript(tape.spec, [], 0)
+    bench.narration.say(narrated(tape, path, events))
+    for event in events:
+        bench.events.keep(**event)
