@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class Rules(Protocol):
-    """What people may see of a bench, and do to it."""
+    """The visible part of a bench, and the commands that are free."""
 
     def model_dump(self) -> Document:
         """Return the rules as plain data, for the checkpoint of the bench."""

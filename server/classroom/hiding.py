@@ -152,7 +152,7 @@ class Blind(BaseModel):
             raise refusal("only time, the reference and the controller may be changed")
 
     def refusal(self, error: InputError) -> InputError:
-        """Return the error of a command; that of a trip has no reason."""
+        """Return the error of a command; after a trip it has no reason."""
         return InputError(STOPPED, hint=error.hint, code=error.code) if error.code == "tripped" else error
 
     def nominal(self) -> Device:
