@@ -154,6 +154,8 @@ class Traveller:
         for tick in sorted({track.first_tick + part * (now - track.first_tick) // 4 for part in range(5)}):
             past = Past.take(self.bench, tick, 0).passage.board()
             assert past.digest() == self.digest_at(tick), f"the past at tick {tick} is another"
+        units = self.bench.scenario.document["units"]
+        assert units == self.bench.board.base["units"], "a reset begins with another version of its unit"
         return run(Scenario.load(document_of(self.bench))).digest == self.bench.board.digest()
 
 
