@@ -10,7 +10,8 @@ import asyncio
 import json
 import logging
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -35,7 +36,8 @@ from server.store.experiment import THIS_VERSION
 
 log = logging.getLogger(__name__)
 
-EVERY_S = 0.7
+EVERY_S, AT_ONCE = 0.7, 16
+"""Time between two writings, and benches that are taken between two slices of the engine."""
 BOARD, EVENTS, PART, HUNG, DOCUMENT, WATCH = ".npz", ".events", ".part", ".hung", "document", "watch"
 
 
@@ -79,7 +81,7 @@ class State(NamedTuple):
 
 @dataclass
 class Kept:
-    """A bench as its files have it."""
+    """A bench as its files have it, or with the events that are to be added to them."""
 
     head: Head
     stored: Stored
@@ -130,23 +132,12 @@ class Checkpoints:
             await self.write()
 
     async def write(self) -> None:
-        """Write the benches that have changed since the last time."""
+        """Write the benches that have changed since the last time, several at once: a change of threads is dear."""
         async with self._turn:
-            for session in self._benches():
-                before = self._written.get(session.id)
-                if before == State.of(session):
-                    continue
-                try:
-                    kept = await self._engine.call(_taken, session)
-                    head = kept.head
-                    events = session.events.after(before.last_event if before is not None else 0)[1]
-                    events = [event for event in events if event.seq <= head.last_event]
-                    await asyncio.to_thread(self._save, kept, events)
-                    self._written[session.id] = State.written(head)
-                except ApiError:
-                    continue  # it has been closed meanwhile
-                except Exception:
-                    log.exception("bench %s could not be kept; it is tried again", session.id)
+            changed = [one for one in self._benches() if self._written.get(one.id) != State.of(one)]
+            for at in range(0, len(changed), AT_ONCE):
+                taken = await self._engine.call(self._take, changed[at : at + AT_ONCE])
+                await asyncio.to_thread(self._save_all, taken)
 
     async def load(self, bench_id: str) -> Kept | None:
         """Return a bench that was kept; nothing if there is none that can be read."""
@@ -187,16 +178,32 @@ class Checkpoints:
     def _path(self, bench_id: str, suffix: str) -> Path:
         return self._folder / f"{bench_id}{suffix}"
 
-    def _save(self, kept: Kept, events: list[Event]) -> None:
+    def _take(self, benches: Sequence[LiveBench]) -> list[Kept]:
+        """Return the present state of some benches, with the events that are not written yet (a job of the engine)."""
+        found = []
+        for bench in benches:
+            with _tried(bench.id):
+                written = self._written.get(bench.id)
+                found.append(_taken(bench, written.last_event if written is not None else 0))
+        return found
+
+    def _save_all(self, some: Sequence[Kept]) -> None:
+        """Write the state of some benches."""
+        for one in some:
+            with _tried(one.head.id):
+                self._save(one)
+                self._written[one.head.id] = State.written(one.head)
+
+    def _save(self, kept: Kept) -> None:
         """Write the events first: those beyond the board are left out when they are read.
 
         An engine that gives the state of a bench does not hang in it any more.
         """
         head = kept.head
         self._folder.mkdir(parents=True, exist_ok=True)
-        if events:
+        if kept.events:
             with self._path(head.id, EVENTS).open("a", encoding="utf-8") as file:
-                file.write("".join(f"{event.model_dump_json()}\n" for event in events))
+                file.write("".join(f"{event.model_dump_json()}\n" for event in kept.events))
         watch = kept.watch.document if kept.watch is not None else None
         document = {**head.model_dump(), "board": kept.stored.document, WATCH: watch}
         text = json.dumps(document, default=str).encode()
@@ -233,8 +240,19 @@ class Checkpoints:
         return Kept(head, Stored(board, arrays), events[-KEPT:], watch)
 
 
-def _taken(session: LiveBench) -> Kept:
-    """Return the present state of a bench, without its events (a job of the engine)."""
+@contextmanager
+def _tried(bench_id: str) -> Iterator[None]:
+    """Try to keep a bench: the others are kept although it fails."""
+    try:
+        yield
+    except ApiError:
+        pass  # it has been closed meanwhile
+    except Exception:
+        log.exception("bench %s could not be kept; it is tried again", bench_id)
+
+
+def _taken(session: LiveBench, after: int) -> Kept:
+    """Return the present state of a bench, with its events after one (a job of the engine)."""
     session.must_be_open()
     watch = session.watch.kept(session) if session.watch is not None else None
     view = session.view
@@ -249,4 +267,4 @@ def _taken(session: LiveBench) -> Kept:
         rules=view.rules.model_dump() if view is not None else None,
         rules_since=view.since if view is not None else 0,
     )
-    return Kept(head, stored(session.board), [], watch)  # type: ignore[arg-type]
+    return Kept(head, stored(session.board), session.events.after(after)[1], watch)  # type: ignore[arg-type]
