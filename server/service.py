@@ -18,7 +18,6 @@ from server.bench.checkpoints import Checkpoints
 from server.bench.engine import Engine
 from server.bench.idling import Idling
 from server.bench.recording import Records
-from server.bench.reopening import Reopening
 from server.bench.watchdog import Safety, Watchdog
 from server.classroom.audit import Audit
 from server.classroom.blinds import Blinds
@@ -112,7 +111,6 @@ class Service:
         )
         self.records = Records(self.engine, self.recordings, settings.max_recording_ticks)
         self.links = Links(self.database, settings.max_links)
-        self.idling = Idling(self._present, settings.idle_minutes, self.clock)
         self.queue = Queue(self.database, settings, self.metrics)
         self.jobs, self.thresholds = Jobs(self.queue, settings), Thresholds(self.queue, settings)
         self.sweeps = Sweeps(self.queue, settings, self.database)
@@ -152,11 +150,17 @@ class Service:
             self.blinds,
         )
         self.viewers = _viewers()
-        self.views = Views(self.benches, self.people, self.hub, self.idling, self.viewers is not None, self.close_bench)
         self.file_turn, self.experiment_turn = asyncio.Semaphore(1), asyncio.Semaphore(1)
-        self.reopening = Reopening(
-            self.benches, self.engine, self.links, self.idling, self.close_bench, self.experiment_turn
+        self.idling = Idling(
+            self.benches,
+            self.engine,
+            self.links,
+            self._present,
+            settings.idle_minutes,
+            self.close_bench,
+            self.experiment_turn,
         )
+        self.views = Views(self.benches, self.people, self.hub, self.idling, self.viewers is not None, self.close_bench)
         self.kernels = Kernels()
         self.is_ready = False
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -179,7 +183,7 @@ class Service:
         await self.queue.recover()
         tasks = [asyncio.create_task(self.hub.run()), asyncio.create_task(probe(self.lag))]
         tasks.append(asyncio.create_task(self.keeping.run(self.clock)))
-        lasting = (self.audit, self.checkpoints, self.classes, self.driving, self.reopening, self.sheets)
+        lasting = (self.audit, self.checkpoints, self.classes, self.driving, self.idling, self.sheets)
         tasks += [asyncio.create_task(part.run(self.clock)) for part in lasting]
         tasks.append(asyncio.create_task(self.queue.warm(self._calm)))
         tasks.append(asyncio.create_task(self.computing.warm(self._calm)))

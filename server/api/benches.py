@@ -13,12 +13,12 @@ from server.api.bodies import Body as StrictBody
 from server.api.bodies import Source, Values
 from server.api.deps import CallerDep, PersonDep, RateLimited, SeenDep, ServiceDep, SessionDep
 from server.api.router import Router
-from server.bench.blind import HINT
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Command
 from server.bench.description import document_of
 from server.bench.events import Event
-from server.bench.hiding import BlindView
 from server.bench.status import Bench
+from server.bench.view import View
+from server.classroom.hiding import HINT, blind_of
 from server.errors import ApiError
 
 MAX_NAME = 80
@@ -138,7 +138,7 @@ async def create_bench(body: NewBench, service: ServiceDep, person: PersonDep, r
         raise ApiError(403, "forbidden", "a link to watch opens one bench")
     await service.benches.check(body.scenario, body.set)
     if person.role == "student":
-        blind = (await service.student_benches.get(person)).hiding.blind  # it may be on its way back
+        blind = blind_of(await service.student_benches.get(person))  # it may be on its way back
         if blind is not None and blind.question.game is None:  # a game may be left
             raise ApiError(409, "blind", "a fault is hidden on your bench", hint=HINT)
         service.driving.check(service.people.bench_of(person), person)  # the bench before is closed with it
@@ -181,7 +181,7 @@ async def delete_bench(session: SessionDep, service: ServiceDep) -> None:
 @router.post("/{bench_id}/reopen", dependencies=[RateLimited])
 async def reopen_bench(bench_id: str, service: ServiceDep, person: PersonDep) -> Bench:
     """Return a bench; a closed idle bench is opened again under its id, with the same bits, paused or running."""
-    session = await service.reopening.bring_back(bench_id)
+    session = await service.idling.bring_back(bench_id)
     service.idling.saw(bench_id)
     return service.views.of(session, person)
 
@@ -196,7 +196,7 @@ async def command(
     reset_trip, is still read.
     """
     entry = await service.benches.command(session, command, caller)
-    if isinstance(seen := service.views.seen(session, person), BlindView):
+    if isinstance(seen := service.views.seen(session, person), View):
         entry = seen.told(entry)
     return CommandResult(tick=entry.tick, time_ms=entry.tick * session.dt_ms, entry=entry)
 

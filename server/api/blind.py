@@ -11,9 +11,10 @@ from server.api.deps import PersonDep, RateLimited, ServiceDep, SessionDep
 from server.api.router import Router
 from server.api.students import Outcomes, refusal, students_of
 from server.bench.bench import LiveBench
-from server.bench.blind import HiddenQuestion
+from server.bench.status import HiddenQuestion
 from server.classroom.blind_class import begin_for
 from server.classroom.blinds import Answer
+from server.classroom.hiding import blind_of
 from server.errors import ApiError
 
 router = Router(tags=["blind"])
@@ -132,5 +133,5 @@ async def reveal_class(class_id: str, service: ServiceDep, person: PersonDep) ->
 
 def _question(session: LiveBench) -> HiddenQuestion | None:
     """Return the question of a bench where a fault is hidden; a game has a question of its own."""
-    blind = session.hiding.blind
+    blind = blind_of(session)
     return blind.question if blind is not None and blind.question.game is None else None

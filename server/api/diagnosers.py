@@ -21,7 +21,7 @@ from server.api.bodies import Body
 from server.api.deps import ServiceDep, SessionDep
 from server.api.router import Router
 from server.bench.bench import LiveBench
-from server.bench.tape import Tape
+from server.bench.replay import Tape
 
 router = Router(prefix="/benches/{bench_id}/diagnosers/{name}", tags=["diagnosers"])
 

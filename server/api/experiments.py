@@ -22,8 +22,8 @@ from server.api.bodies import Body
 from server.api.deps import RateLimited, SeenDep, ServiceDep, SessionDep
 from server.api.router import Router
 from server.bench.bench import LiveBench
-from server.bench.hiding import BlindView
-from server.bench.tape import REFUSAL
+from server.bench.replay import REFUSAL
+from server.classroom.hiding import blind_of
 from server.computing.computing import LONGEST_S
 from server.service import Service
 
@@ -55,7 +55,8 @@ class MeasuredPlants(BaseModel):
 @router.post("/identification", dependencies=[RateLimited])
 async def identification(body: SweptSine, session: SessionDep, seen: SeenDep, service: ServiceDep) -> Identification:
     """Identify the device by a swept sine, with the faults and the air it has now; a hidden fault is measured too."""
-    believed = seen.nominal() if isinstance(seen, BlindView) else None
+    blind = blind_of(session) if seen is session.view else None
+    believed = blind.nominal() if blind is not None else None
     work = partial(identified, believed=believed, most_ticks=MOST_TICKS, **body.model_dump())
     return await _on_copy(session, service, work)
 

@@ -14,8 +14,8 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
 from core.own.admission import Terms, admit
-from server.bench.blind import HINT, REFUSAL
 from server.classroom.access import SOCKET, Need, need_of, serves_blind
+from server.classroom.hiding import HINT, REFUSAL
 from server.computing.asker import asks
 from server.errors import ApiError, ErrorBody, reply
 from server.security.frames import TICKET, Frames

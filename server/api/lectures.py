@@ -99,7 +99,7 @@ async def put_cue(
         raise ApiError(404, "not_found", f"there is no cue {number}: {lecture_id} has {len(found.head.cues)}", "number")
     cue, state = found.head.cues[number - 1], found.states[number - 1]
     session = service.benches.get(body.bench) if body.bench is not None else None
-    if session is not None and (session.class_id or session.replay_of or session.hiding.blind is not None):
+    if session is not None and (session.class_id or session.replay_of or session.view is not None):
         text = "a student's bench, a recording or a bench with a hidden fault is no stage of a lecture"
         raise ApiError(409, "conflict", text, "bench")
     pace = None if cue.pace_ms_per_s is None else cue.pace_ms_per_s / 1e3

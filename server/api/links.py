@@ -12,7 +12,7 @@ from server.api.bodies import Body
 from server.api.deps import IdentityDep, PersonDep, RateLimited, ServiceDep
 from server.api.router import Router
 from server.bench.build import prepare
-from server.bench.experiment import beginning_of, experiment_of
+from server.bench.description import beginning_of, experiment_of
 from server.bench.pacing import usual_scale
 from server.bench.recording import Layout
 from server.bench.status import Bench
@@ -103,6 +103,6 @@ async def open_link(link_id: str, service: ServiceDep, person: PersonDep, respon
 
     `opened` says whether its bits equal the original bits.
     """
-    session = await service.reopening.open_link(await service.links.get(link_id))
+    session = await service.idling.open_link(await service.links.get(link_id))
     response.headers["Location"] = f"/api/v1/benches/{session.id}"
     return await service.views.opened(session, person)

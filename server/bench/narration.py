@@ -84,24 +84,22 @@ class Narration:
 
     def look(self, rows: Rows) -> None:
         """Write the sentences after some more rows."""
-        if said := self._narrator.look(rows):
-            self.say(said)
+        self.say(self._narrator.look(rows))
 
     def follow(self, log: Log, rows: Rows | None = None) -> None:
         """Write the sentences after some more rows of a board that is computed again, which has a log of its own."""
-        if said := self._narrator.follow(log, rows):
-            self.say(said)
+        self.say(self._narrator.follow(log, rows))
 
     def tell(self) -> None:
         """Write sentences at once that wait for no row, for example that the board was stopped."""
-        if said := self._narrator.tell():
-            self.say(said)
+        self.say(self._narrator.tell())
 
     def say(self, sentences: Sequence[Sentence]) -> None:
         """Add sentences."""
-        with self._lock:
-            self._sentences.extend(sentences)
-            self.mark = Mark(self.mark.jumps, self.mark.last + len(sentences))
+        if sentences:
+            with self._lock:
+                self._sentences.extend(sentences)
+                self.mark = Mark(self.mark.jumps, self.mark.last + len(sentences))
 
     def remember(self, tick: int, kept: Collection[int]) -> None:
         """Remember the sentences at a tick; of the ticks before, only the kept ticks."""

@@ -234,7 +234,7 @@ class Records:
 
         Parameters
         ----------
-        session : Session
+        session : LiveBench
             The bench.
         wanted : Wanted
             The recording to make.

@@ -9,21 +9,20 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
-from core.board.board import Board
 from core.errors import InputError
 from scenarios.sheets.begin import SEEDS, Beginning, begin
 from scenarios.sheets.look import known_limits
 from scenarios.sheets.progress import Progress
-from scenarios.sheets.sheet import BlindStep as BlindStep
-from scenarios.sheets.sheet import Hold, Sheet
+from scenarios.sheets.sheet import BlindStep, Hold, Sheet
 from server.bench.bench import LiveBench
 from server.bench.benches import Benches
-from server.bench.blind import HINT, Blind, hide
 from server.bench.engine import Engine
-from server.bench.watch import KeptWatch
+from server.bench.view import KeptWatch
+from server.classroom.blind import hide
 from server.classroom.blind_class import quiet
 from server.classroom.blinds import OF_DRAW, Blinds, hidden_on
 from server.classroom.classes import Classes
+from server.classroom.hiding import HINT, Blind, from_the_start
 from server.classroom.people import People
 from server.classroom.sheet_shelf import Shelf
 from server.classroom.sheet_view import SheetView, view_of
@@ -141,7 +140,7 @@ class Sheets:
             return view_of(sheet, None, None, None)
         await self._follow(work)
         bench = self._benches.find(work.bench_id)
-        watch = bench.watch if bench is not None and bench.hiding.blind is None else None
+        watch = bench.watch if bench is not None and bench.view is None else None
         held = watch.now if isinstance(watch, SheetWatch) and watch.step is work.progress.open_step(sheet) else None
         return view_of(sheet, work.progress, bench.id if bench is not None else None, held)
 
@@ -188,8 +187,8 @@ class Sheets:
         ]
         beginning = await self._beginning(person, sheet)
 
-        def hidden(board: Board) -> Blind:
-            return hide(board, board.spec.document, secrets.token_hex(8), False, which, when / OF_DRAW)
+        def hidden(made: LiveBench) -> Blind:
+            return hide(made.board, made.board.spec.document, secrets.token_hex(8), False, which, when / OF_DRAW)
 
         async with self._turn:
             work = self._must_have(person, sheet_id)
@@ -197,7 +196,7 @@ class Sheets:
             if not isinstance(step, BlindStep):
                 raise InputError("hides nothing", "step", code="conflict")
             bench = self._benches.find(work.bench_id)
-            if bench is not None and bench.hiding.blind is not None:
+            if bench is not None and bench.view is not None:
                 raise ApiError(409, "blind", "a fault is hidden here already", hint=HINT)
 
             def kept(made: LiveBench) -> list[Change]:
@@ -222,7 +221,7 @@ class Sheets:
         values: dict[str, Any],
         before: Work | None,
         also: Callable[[LiveBench], Sequence[Change]],
-        hide: Callable[[Board], Blind] | None = None,
+        hide: Callable[[LiveBench], Blind] | None = None,
     ) -> None:
         """Replace the bench of a sheet by a new one, with a hidden fault if ``hide`` chooses one."""
         bench = sheet.head.bench
@@ -239,7 +238,7 @@ class Sheets:
             await self._classes.benches.replace(person, wanted, hide, also)
             return
         old = self._benches.find(before.bench_id) if before is not None else None
-        made = await self._benches.create(**wanted, hide=hide)
+        made = await self._benches.create(**wanted, before=from_the_start(hide))
         await self._swap(made, [old] if old is not None else [], *also(made))
 
     async def _welcome(self, person: Person) -> None:
@@ -291,7 +290,7 @@ class Sheets:
         if bench is None:
             return
         watch = bench.watch if isinstance(bench.watch, SheetWatch) else None
-        if not isinstance(step, Hold) or bench.hiding.blind is not None:  # progress would reveal hidden values
+        if not isinstance(step, Hold) or bench.view is not None:  # progress would reveal hidden values
             bench.watch = None
         elif watch is None or watch.step is not step:
 
@@ -317,7 +316,7 @@ class Sheets:
         for work in self._works.all():
             sheet = self._known(work.sheet_id) if work.bench_id == bench.id else None
             step = work.progress.open_step(sheet) if sheet is not None else None
-            if isinstance(step, Hold) and bench.hiding.blind is None:
+            if isinstance(step, Hold) and bench.view is None:
                 bench.watch = watch = self._watch(work, step, bench)
                 if kept is not None:
                     watch.go_on(kept)

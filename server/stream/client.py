@@ -46,7 +46,7 @@ class Client:
     ----------
     line : Line
         The accepted connection.
-    session : LiveBench or BlindView
+    session : LiveBench or View
         The bench it watches, as it may be seen.
     sent : Sent
         Where frames are counted.

@@ -22,7 +22,7 @@ class SharedCuts:
 
     Parameters
     ----------
-    session : LiveBench or BlindView
+    session : LiveBench or View
         The bench as those pages see it; its history may be replaced by a reset.
     """
 

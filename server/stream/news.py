@@ -20,7 +20,7 @@ class News:
 
     Parameters
     ----------
-    session : LiveBench or BlindView
+    session : LiveBench or View
         The bench as those pages see it.
     around : callable
         Returns the fields of a status that the bench itself does not know.

@@ -139,10 +139,10 @@ def _(w: World) -> Asked:
 @case("POST", f"{BENCH}/reopen")
 def _(w: World) -> Asked:
     service, bench = w.live.service, w.bench()
-    w.live.on_loop(service.reopening._let_go(service.benches.get(bench)))
+    w.live.on_loop(service.idling._let_go(service.benches.get(bench)))
     if service.benches.find(bench) is not None:  # it is unused from now on
         service.idling._seen[bench], service.idling._patience_s = -1e9, 1.0
-        w.live.on_loop(service.reopening._let_go(service.benches.get(bench)))
+        w.live.on_loop(service.idling._let_go(service.benches.get(bench)))
         service.idling._patience_s = 60.0 * service.settings.idle_minutes
     return w.teacher, {"bench_id": bench}, None
 

@@ -1,53 +1,24 @@
-"""The hidden part of a bench until the answer, a fault or a game, and the visible signals meanwhile."""
+"""The choice of a hidden fault, or of the hidden values of a game, for a bench."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
-from pydantic import BaseModel, Field
-
-from core.board.commands import Command, Heal, Inject, ResetTrip, Set, Switch
 from core.board.document import Document
 from core.board.spec import Section, Spec
 from core.diagnose.hypothesis import ModelList, NamedModel
 from core.errors import InputError
-from server.bench import commands
 from server.bench.pacing import usual_scale
-from server.bench.tape import TickSource
-from server.errors import ApiError
-
-ACTOR = "board"
-"""Actor of the hidden fault in the log."""
+from server.bench.replay import TickSource
+from server.bench.status import HiddenQuestion, Played
+from server.classroom.hiding import Blind
 
 EARLIEST_S, LATEST_S = 1.0, 4.0
 """When the fault comes: seconds of wall time after the beginning, at the usual pace of the device."""
 
-COMMANDS = (
-    commands.Start,
-    commands.Pause,
-    commands.Step,
-    commands.StepPeriod,
-    commands.TimeScale,
-    Set,
-    Switch,
-    ResetTrip,
-)
-"""Commands that are allowed meanwhile: to time, to the reference and to the controller."""
-MAY_SET = ("reference", "controller", "controllers")
-"""First words of the parameters that may be set meanwhile."""
-
-SIGNALS = ("reference", "sensor", "drive", "model.displacement", "model.velocity")
-"""Signals that people see meanwhile: reference, measurement and drive; `model` follows the reference alone."""
-OF_A_DIAGNOSER = ("probability", "winner", "residual", "nis", "information", "unexcited", "least_nis", "unexplained")
-"""Ports of a diagnoser that may be seen if the exercise adds it; its score knows the truth."""
-
 SHEET = ("sample_rate_khz", "device", "plant", "reference", "controller", "sensor", "sensors", "controllers", "slots")
 """Visible tables of the bench: the tables of the nominal device, not of the drawn device."""
-
-REFUSAL = "a fault is hidden on this bench"
-HINT = "answer or give up first, under Lesson › Hidden fault"
-GAME_HINT = "hand in or end the game first, under Lesson › Games"
 
 FAULTS: dict[str, tuple[str, Callable[[float], float]]] = {
     "mass": ("added_mass", lambda factor: factor - 1.0),
@@ -59,75 +30,6 @@ FAULTS: dict[str, tuple[str, Callable[[float], float]]] = {
     "drive_gain": ("drive_loss", lambda gain: 1.0 - gain),
 }
 """The fault that makes a factor of a hypothesis true, and its severity."""
-
-
-class Played(BaseModel):
-    """The game that is played on a bench."""
-
-    game: str
-    seed: int
-
-
-class HiddenQuestion(BaseModel):
-    """The words people get about a hidden fault, or about the game that is played."""
-
-    id: str
-    game: Played | None = Field(None, description="Of a game, which has no answers; null for a hidden fault")
-    answers: list[str] = Field(description="One of these is true, each as likely as the others")
-    factors: list[dict[str, float]] = Field(description="How each differs from the nominal device")
-    shows: list[str] = Field(description="Diagnosers that may be looked at; none unless the exercise is about trust")
-    began_tick: int
-    by_tick: int = Field(description="The fault has come by then, if there is one")
-
-
-class Blind(BaseModel):
-    """A hidden fault: the question, and its possible answers."""
-
-    question: HiddenQuestion
-    truth: str
-    came_tick: int | None = Field(description="When the fault comes; null for a healthy device")
-    faults: list[Document]
-    sheet: Document
-    may_set: list[str] = Field([], description="In a game: further parameters that may be set")
-    may_inject: list[str] = Field([], description="In a game without hidden faults: the faults that may be tried")
-
-    def inject(self, board: TickSource) -> None:
-        """Let the fault wait for its moment."""
-        for fault in self.faults:
-            board.apply(Inject(**fault, at_sample=self.came_tick), ACTOR)
-
-    def may_see(self, signal: str) -> bool:
-        """Whether a signal is served meanwhile."""
-        block, _, port = signal.partition(".")
-        if block in self.question.shows:
-            return port.partition(".")[0] in OF_A_DIAGNOSER
-        return block in SIGNALS or signal in SIGNALS
-
-    def check(self, command: Command | commands.RunCommand) -> None:
-        """Refuse a command that would reveal or change the hidden fault.
-
-        Raises
-        ------
-        ApiError
-            The same line for all of them.
-        """
-        tries = bool(self.may_inject) and isinstance(command, Inject | Heal)
-        is_free = tries or isinstance(command, COMMANDS)
-        if isinstance(command, Set | Switch | ResetTrip | Inject | Heal):
-            is_free &= command.at_sample is None and command.at_ms is None and command.when is None
-        if isinstance(command, Set):
-            is_free &= all(path.partition(".")[0] in MAY_SET or path in self.may_set for path in command.set)
-        if isinstance(command, Inject):
-            is_free &= command.fault in self.may_inject
-        if not is_free and self.question.game is not None:
-            raise ApiError(403, "blind", "this is not free to change in the game", hint=GAME_HINT)
-        if not is_free:
-            raise refusal("only time, the reference and the controller may be changed")
-
-
-def refusal(what: str = "") -> ApiError:
-    """Refuse a request that would reveal the fault."""
-    return ApiError(403, "blind", f"{REFUSAL}; {what}" if what else REFUSAL, hint=HINT)
 
 
 def bank_of(spec: Spec) -> Section:
