@@ -66,23 +66,28 @@ export function BeforeAfter({ change, isHidden, figures, traces, plot }: BeforeA
   );
 }
 
-/** RMS before in the colour of the ghost, RMS after in the colour of the trace, as far as a row has room for them. */
+const MEANINGS = {
+  RMS: "RMS over whole periods of the drive",
+  noise: "RMS of what remains without the mean, the tone of the drive and its harmonics",
+};
+
+/** Figures before in the colour of the ghost, figures after in the colour of the trace, as far as a row has room. */
 function ComparedList({ compared }: { compared: Compared[] }) {
   const scheme = useScheme();
   const list = useFirstRow<HTMLUListElement>();
   const told = compared.filter(({ ratio }, i) => i === 0 || ratio);
   return (
     <ul ref={list} className={styles.figures}>
-      {told.map(({ trace, before, after, ratio, isSettled }) => (
-        <Fragment key={trace.name}>
+      {told.map(({ trace, measure, before, after, ratio, isSettled }) => (
+        <Fragment key={trace.name + measure}>
           <li>
-            <SignalName name={trace.name} /> <b>{isSettled || !ratio ? ratio : `${ratio}, still settling`}</b>
+            <SignalName name={trace.name} /> {measure === "noise" && measure} <b>{isSettled || !ratio ? ratio : `${ratio}, still settling`}</b>
           </li>
-          <li title="RMS over whole periods of the drive">
+          <li title={MEANINGS[measure]}>
             <TraceSwatch colour={faded(trace.colour, scheme)} dash={trace.dash} />
             <span className={styles.wide}>before</span> {before} →{" "}
             <TraceSwatch colour={trace.colour} dash={trace.dash} />
-            <span className={styles.wide}>now</span> {after} RMS
+            <span className={styles.wide}>now</span> {after} {measure}
           </li>
         </Fragment>
       ))}
