@@ -40,7 +40,7 @@ interface SentencesProps {
   onClick?(): void;
 }
 
-/** The first sentence of a text, and what has whole room beside it: the count before, the next ones. A button opens them. */
+/** The first sentence of a text, whole; the count before it and the next ones where two lines hold them. A button opens the others. */
 function Sentences({ text, before, onClick }: SentencesProps) {
   const box = useRef<HTMLDivElement>(null);
   const [fits, setFits] = useState(Number.POSITIVE_INFINITY);
