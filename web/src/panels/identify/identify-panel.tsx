@@ -1,5 +1,5 @@
 import { Box, Button, Group } from "@mantine/core";
-import { useState } from "react";
+import { useEffect, useRef, useState } from "react";
 import { api } from "../../api/api";
 import type { Identification } from "../../api/types";
 import { useBusy } from "../../bench/use-busy";
@@ -78,8 +78,13 @@ const ROWS: { label: string; value: Key; error: Key; unit: string }[] = [
 
 /** The device by the sweep, with standard errors, and its distance from the nominal device. */
 function IdentifiedTable({ result }: { result: Identification }) {
+  const table = useRef<HTMLTableElement>(null);
+  // the numbers come into sight in a panel of any height
+  useEffect(() => {
+    if (result) table.current?.scrollIntoView({ block: "nearest" });
+  }, [result]);
   return (
-    <table className={`numbers ${styles.table}`}>
+    <table ref={table} className={`numbers ${styles.table}`}>
       <TableHead names={[`At ${formatTick(result.tick)}`, "Measured ± standard error", "From nominal"]} />
       <tbody>
         {ROWS.map(({ label, value, error, unit }) => {
