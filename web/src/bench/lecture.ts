@@ -92,7 +92,8 @@ async function put(lecture: Lecture, at: number): Promise<void> {
     throw error;
   });
   jump.to("live");
-  useView.setState({ sample: undefined });
+  // on a phone the vote of the cue before leaves the place to the lanes
+  useView.setState(({ extra }) => ({ sample: undefined, extra: extra === "vote" ? "" : extra }));
   const shown = useBench.getState().bench;
   // a status carries neither the title nor the sample interval of another scenario
   const isOther = bench.title !== shown?.title || bench.dt_ms !== shown.dt_ms;
