@@ -3,6 +3,7 @@ import { beforeEach, expect, it, vi } from "vitest";
 import { useLecture } from "../../bench/lecture";
 import { useView } from "../../bench/view-store";
 import { showVote } from "../../bench/vote";
+import { useBench } from "../../stream/bench-store";
 import { server } from "../../testing/fake-server";
 import { connect } from "../../testing/fake-transport";
 import { recordedAnswer, recordedBench } from "../../testing/recorded";
@@ -58,6 +59,17 @@ it.each([
   await vi.waitFor(() => expect(cuesAsked()).toEqual([String(number)]));
 });
 
+it("opens the stream anew after a cue of another scenario: no status carries its title", async () => {
+  const board = begin();
+  const other = { ...bench, title: "Seven steps" };
+  server.on("POST", "/lectures/:id/cues/:number", { bench: other, tick: 20, digest: "" });
+  const { user } = mount(<Page />);
+  await user.keyboard("{PageDown}");
+  await vi.waitFor(() => expect(board.isOpen).toBe(false));
+  board.hello(other);
+  expect(useBench.getState().bench?.title).toBe("Seven steps");
+});
+
 it("R runs the bench, W asks why, A opens the vote and X reveals it", async () => {
   const board = begin();
   const { user } = mount(<Page />);
@@ -72,6 +84,32 @@ it("R runs the bench, W asks why, A opens the vote and X reveals it", async () =
   act(() => showVote(open));
   await user.keyboard("x");
   await vi.waitFor(() => expect(server.asked("POST", `/votes/${open.id}/reveal`)).toHaveLength(1));
+});
+
+it("asks the vote of a cue once in a lecture, and anew in the next one", async () => {
+  begin();
+  const { user } = mount(<Page />);
+  await user.keyboard("a");
+  await vi.waitFor(() => expect(server.asked("POST", "/votes")).toHaveLength(1));
+  server.on("GET", "/votes", {
+    votes: [{ ...revealed, class_id: null, question: { ...revealed.question, text: vote.text } }],
+  });
+  const asked = () => server.asked("GET", "/votes").length;
+  const before = asked();
+  await user.keyboard("a");
+  await vi.waitFor(() => expect(asked()).toBeGreaterThan(before));
+  expect(server.asked("POST", "/votes")).toHaveLength(1);
+  act(() => useLecture.setState({ began: 2 }));
+  await user.keyboard("a");
+  await vi.waitFor(() => expect(server.asked("POST", "/votes")).toHaveLength(2));
+});
+
+it("takes the vote off a phone with the next cue", async () => {
+  begin();
+  useView.setState({ extra: "vote" });
+  const { user } = mount(<Page />);
+  await user.keyboard("{PageDown}");
+  await vi.waitFor(() => expect(useView.getState().extra).toBe(""));
 });
 
 it("lists every key of the lecture in the sheet of keys, and the other use of such a key not at all", async () => {
