@@ -35,7 +35,7 @@ DEFAULT_SAMPLES = 10_000
 
 
 @dataclass
-class Result:
+class RunResult:
     """The result of a run; ``trace`` has the signals that were kept, the signals of a long run in a temporary file."""
 
     scenario: Scenario
@@ -162,7 +162,7 @@ def run(
     diagnosers: Mapping[str, Conclusion] = NOTHING,
     identifiers: Mapping[str, Conclusion] = NOTHING,
     narrate: bool = False,
-) -> Result:
+) -> RunResult:
     """Run a scenario from start to end, or until the board trips for good.
 
     The memory it takes does not depend on its length: the samples of a long run are in a temporary file.
@@ -239,7 +239,7 @@ def run(
         columns = dict(zip((one.name for one in kept), stored.columns(), strict=True))
     elapsed = time.perf_counter() - began
     metrics = all_figures(board, columns, scenario)
-    return Result(
+    return RunResult(
         scenario,
         board.spec.seed,
         board,
@@ -269,7 +269,7 @@ def figures(board: Board, trace: dict[str, FloatArray], scenario: Scenario, pref
     return measure(board, {name: trace[prefix + name][: board.tick] for name in names}, scenario.head.metrics)
 
 
-def _run_study(scenario: Scenario, board: Board, kept: list[Signal]) -> Result:
+def _run_study(scenario: Scenario, board: Board, kept: list[Signal]) -> RunResult:
     """Make a study of a bench, without a trace; the digest is the one of the figures."""
     assert scenario.study is not None
     study, params = scenario.study
@@ -281,4 +281,4 @@ def _run_study(scenario: Scenario, board: Board, kept: list[Signal]) -> Result:
     digest = hashlib.sha256(alike(figures.view(np.uint64)).tobytes()).hexdigest()
     told = [*scenario.warnings, *cautions(board.spec)]
     nothing = {one.name: np.empty(0) for one in kept}
-    return Result(scenario, board.spec.seed, fresh, digest, elapsed, metrics, told, nothing)
+    return RunResult(scenario, board.spec.seed, fresh, digest, elapsed, metrics, told, nothing)

@@ -17,7 +17,7 @@ from server.bench.benches import Benches
 from server.bench.checkpoints import Checkpoints
 from server.bench.engine import Engine
 from server.bench.idling import Idling
-from server.bench.recording import Records
+from server.bench.recording import RecordingControl
 from server.bench.watchdog import Safety, Watchdog
 from server.classroom.audit import Audit
 from server.classroom.blinds import Blinds
@@ -37,7 +37,7 @@ from server.clock import Clock, ManualClock
 from server.computing.computing import Computing
 from server.lag import Lateness, probe
 from server.metrics import Metrics
-from server.runs.figures import Figures
+from server.runs.figures import ScenarioFigures
 from server.runs.jobs import Jobs
 from server.runs.kernels import Kernels
 from server.runs.queue import Queue
@@ -109,12 +109,12 @@ class Service:
             game_table,
             settings.max_students,
         )
-        self.records = Records(self.engine, self.recordings, settings.max_recording_ticks)
+        self.records = RecordingControl(self.engine, self.recordings, settings.max_recording_ticks)
         self.links = Links(self.database, settings.max_links)
         self.queue = Queue(self.database, settings, self.metrics)
         self.jobs, self.thresholds = Jobs(self.queue, settings), Thresholds(self.queue, settings)
         self.sweeps = Sweeps(self.queue, settings, self.database)
-        self.figures = Figures(self.queue, settings)
+        self.figures = ScenarioFigures(self.queue, settings)
         self.games = Games(
             game_table,
             self.classes,

@@ -18,7 +18,7 @@ from core.compile.machine import WIDTH
 from core.errors import InputError
 from scenarios.campaign.batch import outcomes
 from scenarios.campaign.executor import LOST, Processes
-from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.outcome import RunOutcome
 from scenarios.campaign.remaining import Remaining, Run
 from scenarios.campaign.signs import Cancelled, tell
 from scenarios.campaign.sweep import Sweep
@@ -61,7 +61,7 @@ class ResultTable(Protocol):
 class TraceKeeper(Protocol):
     """Keeps the trace of the first run of a campaign; it is called in a worker process, so it can be pickled."""
 
-    def __call__(self, document: dict[str, Any], seed: int, others: Others) -> tuple[Outcome, Any]:
+    def __call__(self, document: dict[str, Any], seed: int, others: Others) -> tuple[RunOutcome, Any]:
         """Carry the run out; return its outcome, and the additional result."""
 
 
@@ -90,11 +90,11 @@ def compute(runs: list[Run], version: str) -> tuple[Found, float]:
             except InputError as error:
                 read[id(point)] = error
     good: list[tuple[str, tuple[Scenario, int]]] = []
-    found: list[tuple[str, Outcome]] = []
+    found: list[tuple[str, RunOutcome]] = []
     for key, point, seed in runs:
         scenario = read[id(point)]
         if isinstance(scenario, InputError):
-            found.append((key, Outcome(seed=seed, error=str(scenario))))
+            found.append((key, RunOutcome(seed=seed, error=str(scenario))))
         else:
             good.append((key, (scenario, seed)))
     made = outcomes([run for _, run in good], tell)

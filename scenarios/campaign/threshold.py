@@ -13,7 +13,7 @@ from scenarios.campaign.campaign import ResultTable as Results
 from scenarios.campaign.check import check
 from scenarios.campaign.executor import Processes
 from scenarios.campaign.halving import ROUNDS, Halving, ThresholdGoal
-from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.outcome import RunOutcome
 from scenarios.campaign.sweep import Sweep
 from scenarios.claims import holds
 from scenarios.edit import with_values
@@ -143,7 +143,7 @@ class Search(Campaign):
         texts: dict[str, Any] = dict(self._table.outcomes(keys))
         found = []
         for value, key in zip(self._values, keys, strict=True):
-            one = Outcome.model_validate_json(texts[key])
+            one = RunOutcome.model_validate_json(texts[key])
             if one.error:
                 raise InputError(f"{self._wanted.path} = {format_short(value, '', 4)}: {one.error}", "path")
             found.append((value, one.metrics.get(self._wanted.metric)))

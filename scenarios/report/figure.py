@@ -28,7 +28,7 @@ from scenarios.narrator.words import diagnosis_words
 from scenarios.report.axis import Axis
 from scenarios.report.palette import LineStyle, hypothesis, signal
 from scenarios.report.svg import AreaRow, Bar, Chart, EventMark, Series, thin
-from scenarios.run import Result
+from scenarios.run import RunResult
 
 COLUMNS = 160
 """Columns of a trace on a card."""
@@ -44,7 +44,7 @@ DONE = ("inject", "heal", "set", "switch", "reset_trip", "tripped", "make_safe")
 TIME = "time"
 
 
-def figure(result: Result) -> Chart:
+def figure(result: RunResult) -> Chart:
     """Return the figure of a run."""
     if result.scenario.study is not None:
         return _study(result) or _expected(result)
@@ -59,29 +59,29 @@ def figure(result: Result) -> Chart:
     return _followed(result) if asked else _motion(result)
 
 
-def marks(result: Result) -> list[EventMark]:
+def marks(result: RunResult) -> list[EventMark]:
     """Return the events of the bench, each at its moment."""
     dt_ms = result.board.dt_ms
     return [EventMark(one.tick * dt_ms, one.text) for one in result.board.log if one.kind in DONE and one.tick]
 
 
-def _title(result: Result) -> str:
+def _title(result: RunResult) -> str:
     return result.scenario.head.title or result.scenario.id
 
 
-def _names(result: Result) -> set[str]:
+def _names(result: RunResult) -> set[str]:
     return {one.name for one in result.kept}
 
 
 def _thin(
-    result: Result, of: Callable[..., FloatArray], *names: str, at: slice = slice(None)
+    result: RunResult, of: Callable[..., FloatArray], *names: str, at: slice = slice(None)
 ) -> tuple[list[float], list[float]]:
     """Return the times, ms, and the values of a line made from signals."""
     samples, values = thin(of, *(result.signal(name)[at] for name in names), most=COLUMNS)
     return (((at.start or 0) + samples) * result.board.dt_ms).tolist(), values
 
 
-def _trace(result: Result, name: str, said: str = "", at: slice = slice(None), number: int = 0) -> Series:
+def _trace(result: RunResult, name: str, said: str = "", at: slice = slice(None), number: int = 0) -> Series:
     """Return a signal as a line."""
     x, y = _thin(result, np.asarray, name, at=at)
     return Series(said or name, x, y, look=signal(name.rpartition(":")[2], number) if ":" not in name else None)
@@ -99,7 +99,7 @@ def _periods(values: FloatArray) -> int:
     return sum(int(np.count_nonzero(np.diff(np.signbit(block)))) for (block,) in blocks(values, more=1)) // 2
 
 
-def _study(result: Result) -> Chart | None:
+def _study(result: RunResult) -> Chart | None:
     """Show the curves of a study."""
     assert result.scenario.study is not None
     study, params = result.scenario.study
@@ -110,7 +110,7 @@ def _study(result: Result) -> Chart | None:
     return Chart(_title(result), Axis(*picture.x, is_log=picture.is_log_x), Axis(*picture.y), lines)
 
 
-def _expected(result: Result) -> Chart:
+def _expected(result: RunResult) -> Chart:
     """Show each measured figure with its expectation."""
     bars = list[Bar]()
     for entry in result.scenario.head.expect:
@@ -122,7 +122,7 @@ def _expected(result: Result) -> Chart:
     return Chart(_title(result), bars=bars)
 
 
-def _allan(result: Result) -> Chart | None:
+def _allan(result: RunResult) -> Chart | None:
     """Show the Allan deviation over the averaging time."""
     board = result.board
     lines = []
@@ -141,7 +141,7 @@ def _allan(result: Result) -> Chart | None:
     return Chart(_title(result), x, y, lines)
 
 
-def _locus(result: Result) -> Chart | None:
+def _locus(result: RunResult) -> Chart | None:
     """Show the way of the mass over the plane, for a device and its partner."""
     pairs = [("plant.x", "plant.y", "device"), ("plant.partner_x", "plant.partner_y", "partner")]
     at = _last_periods(result.signal("plant.x"), 12)
@@ -154,7 +154,7 @@ def _locus(result: Result) -> Chart | None:
     return Chart(_title(result), Axis("x", "um"), Axis("y", "um"), lines)
 
 
-def _in_step(result: Result) -> Chart | None:
+def _in_step(result: RunResult) -> Chart | None:
     """Show the sense axes of two devices over some periods."""
     if "plant.partner_y" not in _names(result):
         return None
@@ -165,7 +165,7 @@ def _in_step(result: Result) -> Chart | None:
     return Chart(_title(result), Axis(TIME, "ms"), Axis("displacement", "um"), lines)
 
 
-def _rate(result: Result) -> Chart:
+def _rate(result: RunResult) -> Chart:
     """Show the true rate and the reading, on the bench and on its twins."""
     shown = [("rate.rate", "true")]
     shown += [
@@ -181,7 +181,7 @@ def _rate(result: Result) -> Chart:
     return Chart(_title(result), Axis(TIME, "ms"), Axis("rate", "deg/s"), lines, marks(result))
 
 
-def _read(result: Result) -> Series:
+def _read(result: RunResult) -> Series:
     """Return the reading of the rate, from each controller while it drove, as far as its signal was kept."""
     name, until = result.board.spec.active, math.inf
     spans: list[tuple[str, int, float]] = []
@@ -200,7 +200,7 @@ def _read(result: Result) -> Series:
     return Series("read", x, y, look=signal("rate", 0))
 
 
-def _lanes(result: Result) -> Chart | None:
+def _lanes(result: RunResult) -> Chart | None:
     """Show the truth, and below it the verdicts of the first diagnosers, over time."""
     scores = {name: one for name, one in result.board.scores().items() if f"{name}.winner" in _names(result)}
     if not scores:
@@ -218,7 +218,7 @@ def _lanes(result: Result) -> Chart | None:
     return Chart(_title(result), Axis(TIME, "ms", span), marks=marks(result), lanes=lanes, keys=keys)
 
 
-def _areas(result: Result, name: str, *, is_truth: bool) -> list[tuple[float, float, LineStyle, bool]]:
+def _areas(result: RunResult, name: str, *, is_truth: bool) -> list[tuple[float, float, LineStyle, bool]]:
     """Return the hypothesis named at each moment; moments without one stay empty."""
     values = result.signal(name)
     picked = np.linspace(0, len(values) - 1, 2 * COLUMNS).astype(np.int64)
@@ -231,7 +231,7 @@ def _areas(result: Result, name: str, *, is_truth: bool) -> list[tuple[float, fl
     ]
 
 
-def _identified(result: Result) -> Chart | None:
+def _identified(result: RunResult) -> Chart | None:
     """Show how far the identifiers are from the truth."""
     shown = [name for name in result.board.spec.identifiers if f"{name}.error_pct" in _names(result)]
     lines = []
@@ -241,7 +241,7 @@ def _identified(result: Result) -> Chart | None:
     return Chart(_title(result), Axis(TIME, "ms"), Axis("error", "%"), lines, marks(result)) if lines else None
 
 
-def _motion(result: Result) -> Chart:
+def _motion(result: RunResult) -> Chart:
     """Show some periods of the motion: of the model, the shuttle, and the measurement."""
     at = _last_periods(result.signal("plant.displacement"))
     shown = [("plant.displacement", "shuttle"), ("model.displacement", "model"), ("sensor.displacement", "measured")]
@@ -249,7 +249,7 @@ def _motion(result: Result) -> Chart:
     return Chart(_title(result), Axis(TIME, "ms"), Axis("displacement", "um"), lines)
 
 
-def _sensed(result: Result) -> Chart:
+def _sensed(result: RunResult) -> Chart:
     """Show how far the sensor is from the truth over some periods."""
     at = _last_periods(result.signal("plant.displacement"))
     error = _thin(result, np.subtract, "sensor.displacement", "plant.displacement", at=at)
@@ -257,7 +257,7 @@ def _sensed(result: Result) -> Chart:
     return Chart(_title(result), Axis(TIME, "ms"), Axis("measured less true", "um"), [line])
 
 
-def _angle(result: Result) -> Chart | None:
+def _angle(result: RunResult) -> Chart | None:
     """Show the angle that a gyroscope reads instead of a rate."""
     name = f"{result.board.spec.active}.angle"
     if name not in _names(result):
@@ -266,7 +266,7 @@ def _angle(result: Result) -> Chart | None:
     return Chart(_title(result), Axis(TIME, "ms"), Axis("angle", "deg"), [line], marks(result))
 
 
-def _aside(result: Result) -> Chart | None:
+def _aside(result: RunResult) -> Chart | None:
     """Show how far the shuttle moves aside as it goes."""
     if "plant.shift" not in _names(result) or _periods(result.signal("plant.displacement")) > MANY:
         return None
@@ -274,7 +274,7 @@ def _aside(result: Result) -> Chart | None:
     return Chart(_title(result), Axis(TIME, "ms"), Axis("displacement", "um"), lines, marks(result))
 
 
-def _followed(result: Result) -> Chart:
+def _followed(result: RunResult) -> Chart:
     """Show the model and the shuttle; where their periods are indistinguishable, the error or the amplitudes."""
     names, time = _names(result), Axis(TIME, "ms")
     periods = _periods(result.signal("plant.displacement"))
@@ -295,7 +295,9 @@ def _followed(result: Result) -> Chart:
     return Chart(_title(result), time, Axis("peak error", "um", is_log=True), [error], marks(result))
 
 
-def _peaks(result: Result, periods: int, of: Callable[..., FloatArray], *names: str) -> tuple[list[float], list[float]]:
+def _peaks(
+    result: RunResult, periods: int, of: Callable[..., FloatArray], *names: str
+) -> tuple[list[float], list[float]]:
     """Return the largest size of each period, or of each column where there are more periods, with its time, ms."""
     edges = np.linspace(0, result.samples, min(COLUMNS, periods) + 1).astype(np.int64).tolist()
     pieces = [[result.signal(name)[first:end] for name in names] for first, end in itertools.pairwise(edges)]
@@ -303,7 +305,7 @@ def _peaks(result: Result, periods: int, of: Callable[..., FloatArray], *names: 
     return [first * result.board.dt_ms for first in edges[:-1]], sizes
 
 
-SHAPES: tuple[tuple[tuple[str, ...], Callable[[Result], Chart | None]], ...] = (
+SHAPES: tuple[tuple[tuple[str, ...], Callable[[RunResult], Chart | None]], ...] = (
     (("rate.arw", "rate.bias_instability", "rate.random_walk", "rate.noise"), _allan),
     (("rate.phase_difference", "sync.error"), _in_step),
     (("gyro.tilt", "gyro.partner_tilt"), _locus),

@@ -11,10 +11,10 @@ from scenarios.report.run import run_report
 from scenarios.report.script import script
 from scenarios.report.svg import picture_file
 from scenarios.report.traces import write_json, write_text
-from scenarios.run import Result
+from scenarios.run import RunResult
 
 
-def keep(result: Result, summary: dict[str, Any], seeds: list[int], stem: Path) -> None:
+def keep(result: RunResult, summary: dict[str, Any], seeds: list[int], stem: Path) -> None:
     """Write the files of a run, each under a temporary name first.
 
     Parameters

@@ -16,7 +16,7 @@ from scenarios.report.figure import TIME, figure, marks
 from scenarios.report.html import as_toml, page
 from scenarios.report.palette import LineStyle, hypothesis, signal
 from scenarios.report.svg import Chart, Series, thin
-from scenarios.run import Result
+from scenarios.run import RunResult
 
 MOST_EVENTS = 300
 CLOSE_UP = 300
@@ -30,7 +30,7 @@ CHARTS = (
 )
 
 
-def run_report(result: Result, summary: dict[str, Any]) -> str:
+def run_report(result: RunResult, summary: dict[str, Any]) -> str:
     """Return the report of a run.
 
     Parameters
@@ -100,7 +100,7 @@ def _comparator(entry: dict[str, Any]) -> str:
     return f"{name} meets the claim too" if entry.get("pid_too") else name
 
 
-def _charts(result: Result) -> list[Chart]:
+def _charts(result: RunResult) -> list[Chart]:
     """Return the figure of the run, and its traces, each column of pixels with its smallest and largest value."""
     if result.samples < 2:
         return [figure(result)]
@@ -139,13 +139,13 @@ def _charts(result: Result) -> list[Chart]:
     return charts
 
 
-def _series(said: str, result: Result, name: str, look: LineStyle | None = None) -> Series:
+def _series(said: str, result: RunResult, name: str, look: LineStyle | None = None) -> Series:
     """Return a signal as a line."""
     samples, values = thin(np.asarray, result.signal(name))
     return Series(said, (samples * result.board.dt_ms).tolist(), values, look=look)
 
 
-def _groups(result: Result) -> Sequence[tuple[str, tuple[str, ...]]]:
+def _groups(result: RunResult) -> Sequence[tuple[str, tuple[str, ...]]]:
     """Return title and signals of every chart of traces; a plant with axes has one for each of them, and the rate."""
     spec = result.board.spec
     if not spec.axes:
@@ -155,7 +155,7 @@ def _groups(result: Result) -> Sequence[tuple[str, tuple[str, ...]]]:
     return [("Angular rate", (f"{spec.active}.rate", "rate.rate")), *along, ("Force", forces)]
 
 
-def _verdicts(result: Result) -> list[dict[str, Any]]:
+def _verdicts(result: RunResult) -> list[dict[str, Any]]:
     """Return the verdicts of each diagnoser against the truth."""
     words = diagnosis_words(result.board.spec.diagnosers)
     said = {name: [words.get(one, one) for one in scores.names] for name, scores in result.board.scores().items()}

@@ -10,7 +10,7 @@ from scenarios.benchmark import results
 from scenarios.benchmark.results import Cost, LeftOut, Row
 from scenarios.benchmark.seeds import BENCHMARK, COMMITMENT, LISTS
 from scenarios.benchmark.track import tracks
-from server.api.bodies import Answer
+from server.api.bodies import AnswerBody
 from server.api.router import Router
 from server.errors import not_found
 
@@ -18,7 +18,7 @@ router = Router(prefix="/benchmarks", tags=["benchmarks"])
 TITLE = "How soon and how honestly a fault is noticed and named"
 
 
-class BenchmarkCard(Answer):
+class BenchmarkCard(AnswerBody):
     """A benchmark among others."""
 
     id: str
@@ -33,7 +33,7 @@ class BenchmarkList(BaseModel):
     benchmarks: list[BenchmarkCard]
 
 
-class TrackResults(Answer):
+class TrackResults(AnswerBody):
     """A track, and the diagnosers it scores, best first; diagnosers without probabilities are last."""
 
     id: str

@@ -32,7 +32,7 @@ class Body(BaseModel):
         }
 
 
-class Answer(BaseModel):
+class AnswerBody(BaseModel):
     """Base of an answer that has fields of other records, by the same names."""
 
     @classmethod

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import BaseModel, Field
 
-from server.api.bodies import Answer
+from server.api.bodies import AnswerBody
 from server.api.deps import SeenDep, ServiceDep
 from server.api.router import Router
 from server.bench.captures import CaptureSet
@@ -13,7 +13,7 @@ from server.stream.wire import CaptureMark
 router = Router(prefix="/benches", tags=["trace"])
 
 
-class TriggerCaptures(Answer):
+class TriggerCaptures(AnswerBody):
     """The captures of one trigger, oldest first."""
 
     signals: list[str]

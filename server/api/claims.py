@@ -9,10 +9,10 @@ from pydantic import BaseModel, Field
 from scenarios.claims import Claim, Mark, claims, marks
 from scenarios.expectation import Verdict, overall
 from scenarios.knobs import Knob, knobs
-from server.api.bodies import Answer
+from server.api.bodies import AnswerBody
 from server.api.deps import ServiceDep, SessionDep
 from server.api.router import Router
-from server.bench.measuring import Run
+from server.bench.measuring import RunSoFar
 from server.version import VERSION
 
 router = Router(prefix="/benches/{bench_id}", tags=["claims"])
@@ -24,7 +24,7 @@ class BenchClaim(Claim):
     knobs: list[Knob]
 
 
-class ClaimList(Answer):
+class ClaimList(AnswerBody):
     """The claims of the scenario of a live bench, judged by the figures of a headless run."""
 
     bench_id: str
@@ -57,7 +57,7 @@ async def list_printed(session: SessionDep) -> MarkList:
 @router.get("/claims")
 async def list_claims(session: SessionDep, service: ServiceDep) -> ClaimList:
     """Measure the claims of a bench over its run since tick 0, with the bits of a headless run."""
-    run = await service.engine.call(Run.of, session)
+    run = await service.engine.call(RunSoFar.of, session)
     figures = await asyncio.to_thread(session.measuring.figures, run)
     scenario, signals = run.scenario, session.signals
     found = claims(scenario, figures.metrics or {}, signals, figures.is_over)

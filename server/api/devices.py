@@ -15,14 +15,14 @@ from core.device.geometry import Geometry
 from core.table import Words
 from scenarios import designer
 from scenarios.designer import Bode, Evaluation, ProcessSpread
-from server.api.bodies import Answer, Body
+from server.api.bodies import AnswerBody, Body
 from server.api.deps import ServiceDep
 from server.api.router import Router
 
 router = Router(prefix="/devices", tags=["devices"])
 
 
-class DeviceCard(Answer):
+class DeviceCard(AnswerBody):
     """A device of the catalogue."""
 
     id: str

@@ -14,12 +14,12 @@ from scenarios.expectation import Verdict, overall
 from scenarios.library import ids, is_demo, library, topics
 from scenarios.report.svg import with_style
 from scenarios.schema import Scenario
-from server.api.bodies import Answer, Body
+from server.api.bodies import AnswerBody, Body
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import SVG
 from server.api.router import Router
 from server.errors import not_found
-from server.runs.figures import Figure, Figures
+from server.runs.figures import ScenarioFigure, ScenarioFigures
 from server.runs.listing import Run
 
 router = Router(prefix="/gallery", tags=["gallery"])
@@ -27,7 +27,7 @@ router = Router(prefix="/gallery", tags=["gallery"])
 First = Annotated[list[str], Query(max_length=64, description="Ids of the visible cards, whose figures are made first")]
 
 
-class Expected(Answer):
+class Expected(AnswerBody):
     """An expectation, and the measured value."""
 
     metric: str
@@ -47,7 +47,7 @@ class Expected(Answer):
     ok: bool | None = Field(None, description="Whether the expectation holds; null before a run")
 
 
-class GalleryCard(Answer):
+class GalleryCard(AnswerBody):
     """A scenario of the library, its figure, and its run if there has been one with this version of the code."""
 
     id: str
@@ -70,7 +70,7 @@ class GalleryCard(Answer):
     expectations: list[Expected]
 
 
-class FigureProgress(Answer):
+class FigureProgress(AnswerBody):
     """Number of finished figures."""
 
     made: int
@@ -131,10 +131,10 @@ async def run_gallery(body: Chosen, service: ServiceDep) -> Gallery:
     return await get_gallery(service)
 
 
-def _card(scenario: Scenario, run: Run | None, figures: Figures) -> GalleryCard:
+def _card(scenario: Scenario, run: Run | None, figures: ScenarioFigures) -> GalleryCard:
     """Return the card of a scenario; a run and a figure have measured the same."""
     head = scenario.head
-    figure: Figure | None = figures.made.get(scenario.id)
+    figure: ScenarioFigure | None = figures.made.get(scenario.id)
     summary = (run.summary if run is not None else None) or (figure.summary if figure is not None else {})
     measured = summary.get("expectations") or [{}] * len(head.expect)
     rows = [

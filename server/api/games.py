@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 from core.cards import EquationCard, ParameterCard, equation_card, parameter_cards
 from scenarios.games import GAMES
 from scenarios.games.game import MOST
-from server.api.bodies import Answer, Body
+from server.api.bodies import AnswerBody, Body
 from server.api.deps import PersonDep, RateLimited, ServiceDep
 from server.api.router import Router
 from server.classroom.games import ClassGame, Play
@@ -33,7 +33,7 @@ def get_player(person: PersonDep) -> Person:
 PlayerDep = Annotated[Person, Depends(get_player)]
 
 
-class GameCard(Answer):
+class GameCard(AnswerBody):
     """A game in a list."""
 
     id: str

@@ -8,7 +8,7 @@ from pydantic import BaseModel, Field
 
 from scenarios.lecture import Lecture, Question
 from scenarios.lectures import lecture, lecture_ids
-from server.api.bodies import Answer, Body
+from server.api.bodies import AnswerBody, Body
 from server.api.deps import CallerDep, PersonDep, RateLimited, ServiceDep
 from server.api.router import Router
 from server.bench.status import Bench
@@ -17,7 +17,7 @@ from server.errors import ApiError, not_found
 router = Router(prefix="/lectures", tags=["lectures"])
 
 
-class LectureCard(Answer):
+class LectureCard(AnswerBody):
     """A lecture among others."""
 
     id: str
@@ -34,7 +34,7 @@ class LectureList(BaseModel):
     lectures: list[LectureCard]
 
 
-class CueDetail(Answer):
+class CueDetail(AnswerBody):
     """A cue: the notes of the speaker, and the panels of the bench."""
 
     title: str

@@ -20,10 +20,10 @@ from server.classroom.access import LTI
 from server.classroom.lti.exercises import choices, configuration, resource
 from server.classroom.lti.keys import KeySets
 from server.classroom.lti.launch import Launch
-from server.classroom.lti.members import Members
+from server.classroom.lti.members import LaunchMembers
 from server.classroom.lti.messages import Login, Messages
 from server.classroom.lti.pages import answer_page, choice_page, instructor_page, login_page, refusal_page
-from server.classroom.lti.scores import Scores
+from server.classroom.lti.scores import LtiScores
 from server.classroom.lti.tool import Tool
 from server.classroom.sheet_work import brief
 from server.errors import ApiError, body_of
@@ -46,8 +46,8 @@ class Lti:
     service: Service
     tool: Tool
     messages: Messages
-    members: Members
-    scores: Scores
+    members: LaunchMembers
+    scores: LtiScores
     key_sets: KeySets
     frames: Frames
     launches: Once[tuple[Launch, Login]]
@@ -67,13 +67,13 @@ def install(app: FastAPI, service: Service) -> Frames:
     origins = sorted({origin for platform in settings.lti for origin in platform.frames})
     frames = Frames(LTI, " ".join(origins), frozenset({f"{LTI}/login", f"{LTI}/launch"}))
     key_sets = KeySets(service.clock)
-    scores = Scores(tool, service.audit, lambda work: brief(work, service.sheets.get(work.sheet_id)))
+    scores = LtiScores(tool, service.audit, lambda work: brief(work, service.sheets.get(work.sheet_id)))
     service.sheets.on_kept = scores.changed
     app.state.lti = Lti(
         service,
         tool,
         Messages(tool, key_sets),
-        Members(service.database, service.classes, service.people, service.sheets, tool),
+        LaunchMembers(service.database, service.classes, service.people, service.sheets, tool),
         scores,
         key_sets,
         frames,

@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 from scenarios.narrator.sentence import Sentence
 from server.api.deps import SeenDep
 from server.api.router import Router
-from server.bench.narration import Mark
+from server.bench.narration import NarrationPlace
 
 router = Router(prefix="/benches", tags=["benches"])
 
@@ -31,6 +31,6 @@ async def list_narration(
     jumps: Annotated[int | None, Query(ge=0, le=2**53, description="Number of jumps in the last answer")] = None,
 ) -> NarrationList:
     """List the sentences of the narrator after a sentence; all sentences if the bench has jumped since."""
-    known = Mark(session.narration.mark.jumps if jumps is None else jumps, after)
+    known = NarrationPlace(session.narration.mark.jumps if jumps is None else jumps, after)
     mark, first, sentences = session.narration.after(known)
     return NarrationList(sentences=sentences, after=first, last=mark.last, jumps=mark.jumps)

@@ -13,7 +13,7 @@ from scenarios.claims import check_marks
 from scenarios.expectation import Verdict
 from scenarios.library import get, ids, library
 from scenarios.schema import Scenario
-from server.api.bodies import Answer, Body, Source
+from server.api.bodies import AnswerBody, Body, Source
 from server.api.deps import ServiceDep
 from server.api.router import Router
 from server.bench.build import prepare
@@ -23,7 +23,7 @@ from server.errors import not_found
 router = Router(prefix="/scenarios", tags=["scenarios"])
 
 
-class ScenarioCard(Answer):
+class ScenarioCard(AnswerBody):
     """A scenario of the library in a few words."""
 
     id: str
@@ -44,7 +44,7 @@ class ScenarioList(BaseModel):
     scenarios: list[ScenarioCard]
 
 
-class ScenarioText(Answer):
+class ScenarioText(AnswerBody):
     """A scenario in full."""
 
     document: dict[str, Any]

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from fastapi import Depends, Path, Query, Response
 from pydantic import BaseModel, Field
 
-from server.api.bodies import Answer, Body, MemberIds
+from server.api.bodies import AnswerBody, Body, MemberIds
 from server.api.deps import PersonDep, RateLimited, ServiceDep
 from server.api.files import HTML
 from server.api.router import Router
@@ -35,7 +35,7 @@ def get_worker(person: PersonDep) -> Person:
 WorkerDep = Annotated[Person, Depends(get_worker)]
 
 
-class SheetCard(Answer):
+class SheetCard(AnswerBody):
     """A sheet in a list."""
 
     id: str

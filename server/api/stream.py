@@ -26,7 +26,7 @@ from server.service import Service
 from server.stream.behind import Behind
 from server.stream.client import CLOSE_FAILED, Client
 from server.stream.hub import CLOSE_FULL, CLOSE_NO_BENCH
-from server.stream.line import Line
+from server.stream.line import WebSocketLine
 from server.stream.panel import Panel
 from server.stream.wire import (
     CLIENT_MESSAGE,
@@ -83,7 +83,7 @@ async def stream(socket: WebSocket, bench_id: str, service: ServiceDep) -> None:
     await socket.accept(subprotocol=SUBPROTOCOL)
     person: Person = socket.scope["person"]
     seen, bench = service.views.seen(session, person), service.views.of(session, person)
-    hub, line = service.hub, Line.of(socket)
+    hub, line = service.hub, WebSocketLine.of(socket)
     room = hub.room(seen)
     client = Client(line, seen, service.metrics.sent, room.news, room.cuts, bench.last_event, person, hub.clock)
     conversation = Conversation(client, session, service, person)

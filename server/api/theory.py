@@ -17,7 +17,7 @@ from core.theory.gain_adaptation import RULES, GainLoop, critical_gain, instabil
 from core.theory.nyquist import PositiveRealReport, positive_real_report
 from core.theory.persistency import excitation, gram_of_tones
 from scenarios.design import designed
-from server.api.bodies import Answer, Body
+from server.api.bodies import AnswerBody, Body
 from server.api.deps import ServiceDep
 from server.api.router import Router
 
@@ -56,7 +56,7 @@ class ExcitationSource(Body):
     filter_pole: float = Field(1.0, gt=1e-3, le=1e3)
 
 
-class ExcitationReport(Answer):
+class ExcitationReport(AnswerBody):
     """How well the input excites the regressor [u, -y', -y]/(s + pole)^2."""
 
     eigenvalues: list[float]

@@ -44,7 +44,7 @@ MOST_SLOWER = 4.0
 """Most by which the estimated time of a tick grows at once: a longer tick has waited for a processor."""
 
 
-class Memory(NamedTuple):
+class BenchMemory(NamedTuple):
     """Memory of a bench; the bytes are subtracted from the memory of its history."""
 
     past_ticks: int
@@ -55,8 +55,8 @@ class Memory(NamedTuple):
     """Captures of users who see all of the bench, and the same again for users who have a view of it."""
 
 
-USUAL = Memory(20_000, 8_000_000, 2_500_000)
-OF_STUDENT = Memory(2000, 1_500_000, 500_000)
+USUAL = BenchMemory(20_000, 8_000_000, 2_500_000)
+OF_STUDENT = BenchMemory(2000, 1_500_000, 500_000)
 
 
 class LiveBench:
@@ -117,7 +117,7 @@ class LiveBench:
         history_ticks: int,
         metrics: Metrics,
         clock: Callable[[], float],
-        memory: Memory = USUAL,
+        memory: BenchMemory = USUAL,
     ) -> None:
         self.scenario, self.board, self.memory = scenario, board, memory
         self._history_ticks, self._metrics, self.clock = history_ticks, metrics, clock

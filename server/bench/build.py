@@ -18,7 +18,7 @@ from scenarios.library import get
 from scenarios.own import beside
 from scenarios.run import build
 from scenarios.schema import Scenario
-from server.bench.bench import OF_STUDENT, USUAL, LiveBench, Memory
+from server.bench.bench import OF_STUDENT, USUAL, BenchMemory, LiveBench
 from server.bench.commands import MAX_SCALE, MIN_SCALE
 from server.bench.replay import TickSource, play, played
 from server.errors import ApiError
@@ -73,7 +73,7 @@ class Builder:
         session.recorded_scale = recorded
         return session
 
-    def _kept(self, board: TickSource, megabytes: int, memory: Memory) -> int:
+    def _kept(self, board: TickSource, megabytes: int, memory: BenchMemory) -> int:
         """Return for how many ticks the signals of a board are kept, in addition to the other memory of its past."""
         left = megabytes - (memory.track_bytes + 2 * memory.capture_bytes) * 1e-6
         affordable = History.ticks_within(left, board.signals.outputs, len(board.signals.taps))

@@ -50,7 +50,7 @@ class Told:
 
 
 @dataclass(frozen=True)
-class Mark:
+class NarrationPlace:
     """How far a narration is: how often the bench has jumped, and the number of the last sentence since it began."""
 
     jumps: int = -1
@@ -76,7 +76,7 @@ class Narration:
         self._sentences: deque[Sentence] = deque(maxlen=KEPT)
         self._narrator = Narrator(spec, self._signals, outputs)
         self._earlier: dict[int, tuple[Narrator, int]] = {}
-        self.mark = Mark(0, 0)
+        self.mark = NarrationPlace(0, 0)
 
     def hear(self, event: Event) -> None:
         """Take an event of the bench."""
@@ -99,7 +99,7 @@ class Narration:
         if sentences:
             with self._lock:
                 self._sentences.extend(sentences)
-                self.mark = Mark(self.mark.jumps, self.mark.last + len(sentences))
+                self.mark = NarrationPlace(self.mark.jumps, self.mark.last + len(sentences))
 
     def remember(self, tick: int, kept: Collection[int]) -> None:
         """Remember the sentences at a tick; of the ticks before, only the kept ticks."""
@@ -122,9 +122,9 @@ class Narration:
             self._narrator = told.narrator
             self._sentences = deque(told.sentences, maxlen=KEPT)
             self._earlier = told.earlier
-            self.mark = Mark(self.mark.jumps + 1, told.last)
+            self.mark = NarrationPlace(self.mark.jumps + 1, told.last)
 
-    def after(self, known: Mark) -> tuple[Mark, int, list[Sentence]]:
+    def after(self, known: NarrationPlace) -> tuple[NarrationPlace, int, list[Sentence]]:
         """Return how far the narration is, the number before the first sentence returned, and those not known yet.
 
         Parameters

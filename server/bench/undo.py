@@ -30,7 +30,7 @@ Way = list[Command | PendingCommand] | Journal
 
 
 @dataclass(frozen=True)
-class Change:
+class UndoableChange:
     """A change of a bench, and the way back from it."""
 
     shown: Undoable
@@ -50,8 +50,8 @@ class Changes:
 
     def __init__(self, bench: LiveBench) -> None:
         self._bench = bench
-        self._done: list[Change] = []
-        self._undone: list[Change] = []
+        self._done: list[UndoableChange] = []
+        self._undone: list[UndoableChange] = []
 
     @property
     def last_done(self) -> Undoable | None:
@@ -95,7 +95,9 @@ class Changes:
         self._bench.refresh_status()
         return event
 
-    def _move(self, source: list[Change], target: list[Change], kind: str, past: str, actor: str) -> Event:
+    def _move(
+        self, source: list[UndoableChange], target: list[UndoableChange], kind: str, past: str, actor: str
+    ) -> Event:
         if not source:
             raise InputError(f"there is nothing to {kind}", "kind", code="conflict")
         change = source.pop()
@@ -103,14 +105,14 @@ class Changes:
         if isinstance(way, Journal):
             before = self._bench.journal(with_past=True)
             event = self._bench.stand(way, actor, "restored", text)
-            target.append(Change(change.shown, before))
+            target.append(UndoableChange(change.shown, before))
             return event
         try:
             back = self._go(way, actor)
         except InputError as error:
             refusal = f"{change.shown.text} can no more be {past}: {error}"
             raise InputError(refusal, "kind", error.hint, "conflict") from None
-        target.append(Change(change.shown, back))
+        target.append(UndoableChange(change.shown, back))
         return self._bench.note(actor, past, text)
 
     def _go(self, way: list[Command | PendingCommand], actor: str) -> Way:
@@ -162,7 +164,7 @@ class Changes:
         now, last = self._bench.clock(), self._done[-1] if self._done else None
         if last is not None and paths and last.paths == paths and now - last.at < AT_ONCE_S:
             way = self._done.pop().way
-        self._done.append(Change(Undoable(seq=event.seq, text=event.text), way, paths, now))
+        self._done.append(UndoableChange(Undoable(seq=event.seq, text=event.text), way, paths, now))
         journals = [i for i, change in enumerate(self._done) if isinstance(change.way, Journal)]
         first = journals[-MOST_JOURNALS - 1] + 1 if len(journals) > MOST_JOURNALS else 0
         self._done = self._done[max(first, len(self._done) - MOST) :]

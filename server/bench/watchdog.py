@@ -28,7 +28,7 @@ from core.errors import InputError
 from core.format import format_short
 from server.bench.bench import LiveBench
 from server.bench.engine import Engine
-from server.bench.recording import Records, Wanted
+from server.bench.recording import RecordingControl, Wanted
 from server.errors import ApiError
 from server.metrics import Metrics
 from server.store.keeping import Keeping
@@ -222,7 +222,7 @@ class Safety:
     def __init__(
         self,
         engine: Engine,
-        records: Records,
+        records: RecordingControl,
         keeping: Keeping,
         metrics: Metrics,
         show: Callable[[Sequence[LiveBench]], None],

@@ -16,7 +16,7 @@ from server.cli.terminal import AssignOption, load, plainly, say
 def fmu(
     scenario: Annotated[str, typer.Argument(help="Library id or file.")],
     assign: AssignOption = None,
-    out: Annotated[Path, typer.Option(metavar="FILE", help="Where the FMU goes.")] = Path("device.fmu"),
+    out: Annotated[Path, typer.Option(metavar="FILE", help="File of the FMU.")] = Path("device.fmu"),
 ) -> None:
     """Write the device of a scenario as an FMU of FMI 3: its linear plant, voltage in, displacement out."""
     chosen = with_values(load(scenario), dict(parse_assignment(text) for text in assign or []))

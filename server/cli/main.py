@@ -85,7 +85,7 @@ def gallery(
     only: Annotated[str, typer.Option(metavar="GLOB", help="Only ids that match.")] = "*",
     as_json: JsonOption = False,
 ) -> None:
-    """Run every library scenario: published claim, expectation, measured, verdict, and the figure of the open loop."""
+    """Run every library scenario: claim, expectation, measured figure, verdict, and the figure of the open loop."""
     from scenarios.campaign.single import beside
 
     chosen = [get(name) for name in ids() if fnmatch.fnmatch(name, only)]
@@ -104,16 +104,18 @@ def gallery(
 def sweep(
     file: Annotated[Path, typer.Argument(help="Campaign in TOML.")],
     workers: Annotated[
-        int | None, typer.Option(help="Processes of this machine, 1 to 1024; as many as it has processors.")
+        int | None, typer.Option(help="Processes of this machine, 1 to 1024; without it, as many as it has processors.")
     ] = None,
     scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler instead, such as tcp://host:8786.")
+        str | None, typer.Option(metavar="ADDRESS", help="Address of a Dask scheduler in place of processes, such as tcp://host:8786.")
     ] = None,
-    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Where results go; sweeps/<id> if not given.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Folder of the results; without it, sweeps/ID.")
+    ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Continue the campaign in the folder.")] = False,
     units: UnitOption = None,
 ) -> None:
-    """Run a campaign: 0 every run was carried out, 1 some could not be, 2 invalid input."""
+    """Run a campaign; exit code 0: every run was carried out, 1: some were not, 2: invalid input."""
     from scenarios.campaign.campaign import Stopped
     from scenarios.campaign.executor import collect_seldom
     from server.cli.sweep import carry_out, read_sweep
@@ -213,9 +215,10 @@ def _show(card: BlockCard) -> None:
 @plainly
 def serve(
     host: Annotated[
-        str | None, typer.Option(help="Address to listen on; anything but loopback needs a token or --classroom.")
+        str | None,
+        typer.Option(help="Address on which the server listens; beyond this machine it needs a token or --classroom."),
     ] = None,
-    port: Annotated[int | None, typer.Option(help="Port to listen on; 0 for any free one.")] = None,
+    port: Annotated[int | None, typer.Option(help="Port on which the server listens; 0 chooses a free one.")] = None,
     data: Annotated[Path | None, typer.Option(help="Folder for database and recordings.")] = None,
     classroom: Annotated[
         bool, typer.Option("--classroom", help="Serve a class on this network: students join by a code, without TLS.")
@@ -223,7 +226,7 @@ def serve(
     open_page: Annotated[bool, typer.Option("--open", help="Open the page in a browser.")] = False,
     units: UnitOption = None,
 ) -> None:
-    """Serve the dashboard."""
+    """Serve the page."""
     from server.cli.serve import serve as start
     from server.settings import load_settings
 
@@ -234,7 +237,7 @@ def serve(
 @app.command()
 @plainly
 def doctor(as_json: JsonOption = False) -> None:
-    """Show effective settings and where each comes from, versions and the state of the kernel cache."""
+    """Show the effective settings with their sources, versions, and the state of the kernel cache."""
     from server.cli.doctor import examine
 
     report = examine()

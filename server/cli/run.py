@@ -25,7 +25,7 @@ def run(
     scenario: Annotated[str, typer.Argument(help="Library id or file.")],
     assign: AssignOption = None,
     units: UnitOption = None,
-    seed: Annotated[int | None, typer.Option(help="Instead of the scenario's own, 0 or more.")] = None,
+    seed: Annotated[int | None, typer.Option(help="A seed in place of the scenario's own, 0 or more.")] = None,
     seeds: Annotated[str | None, typer.Option(metavar="A:B", help="One run for each seed from A to B.")] = None,
     as_json: JsonOption = False,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write trace, report and script here.")] = None,
@@ -37,20 +37,24 @@ def run(
             "also of sensors that are never in use. No figure and no digest depends on it.",
         ),
     ] = False,
-    narrate: Annotated[bool, typer.Option("--narrate", help="Also say in plain sentences what happens.")] = False,
+    narrate: Annotated[bool, typer.Option("--narrate", help="Also print the sentences of the narrator.")] = False,
     controller_process: Annotated[
         str | None,
-        typer.Option(metavar="COMMAND", help="A program that drives, asked over a pipe (docs/other-languages.md)."),
+        typer.Option(metavar="COMMAND", help="A program that drives the bench over a pipe (docs/other-languages.md)."),
     ] = None,
-    controller_timeout: Annotated[float, typer.Option(metavar="S", help="Longest time for one of its answers.")] = 10.0,
+    controller_timeout: Annotated[
+        float, typer.Option(metavar="S", help="Longest time for an answer of this program, s.")
+    ] = 10.0,
     threshold: Annotated[
-        str | None, typer.Option(metavar="METRIC", help="Find where this claim holds, over the range of --over.")
+        str | None,
+        typer.Option(metavar="METRIC", help="Find where in the range of --over the claim about this metric holds."),
     ] = None,
     over: Annotated[
-        str | None, typer.Option(metavar="PATH=LOW:HIGH[:log]", help="The number to turn for --threshold.")
+        str | None,
+        typer.Option(metavar="PATH=LOW:HIGH[:log]", help="The number that --threshold varies, and its range."),
     ] = None,
 ) -> None:
-    """Run a scenario headless: 0 all expectations hold, 1 some do not, 2 invalid input."""
+    """Run a scenario headless; exit code 0: all expectations hold, 1: some do not, 2: invalid input."""
     from scenarios.campaign.single import beside, run_seeds  # each worker process loads this file, and not these
     from scenarios.outside.process import Process
     from scenarios.report.keeping import keep

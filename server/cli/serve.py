@@ -22,7 +22,7 @@ from server.security.identity import fits_header
 from server.security.privacy import keep_private
 from server.settings import ANY_IPV4, ANY_IPV6, Settings
 from server.store.lock import lock
-from server.stream.line import Line
+from server.stream.line import WebSocketLine
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
@@ -139,7 +139,7 @@ def make_server(settings: Settings, app: FastAPI, address: str = "", notice: str
         app,
         loop="uvloop",
         http=Connection,
-        ws=Line,
+        ws=WebSocketLine,
         ws_max_size=settings.message_limit_bytes,
         ws_per_message_deflate=False,
         ws_ping_interval=20.0,

@@ -47,7 +47,7 @@ FEW_LISTED, PIECES = 750, 8
 
 
 @dataclass(frozen=True)
-class Ended:
+class CampaignEnd:
     """How a campaign ended."""
 
     done: int
@@ -89,7 +89,7 @@ def carry_out(
     workers: int,
     scheduler: str,
     on_progress: Callable[[int, int], None],
-) -> Ended:
+) -> CampaignEnd:
     """Run the missing runs of a campaign and write its results.
 
     Raises
@@ -144,7 +144,7 @@ def carry_out(
         processes.shutdown()
         database.close()
         held.close()
-    return Ended(campaign.done, campaign.total, failed, warnings, folder)
+    return CampaignEnd(campaign.done, campaign.total, failed, warnings, folder)
 
 
 def write(sweep: Sweep, parts: ParquetParts, folder: Path, processes: Processes) -> tuple[int, list[str]]:

@@ -39,7 +39,7 @@ BUILT = Path(__file__).resolve().parent / "built_figures"
 
 
 @dataclass(frozen=True)
-class Figure:
+class ScenarioFigure:
     """The result of one scenario: its summary, and its picture as SVG."""
 
     key: str
@@ -47,7 +47,7 @@ class Figure:
     svg: str
 
 
-class Figures:
+class ScenarioFigures:
     """Makes the figures of the library that are not there yet, and keeps all of them at hand.
 
     Parameters
@@ -66,7 +66,7 @@ class Figures:
         self._first: list[str] = []
         self._reading = asyncio.Lock()
         self._ready: Callable[[], Awaitable[None]] | None = None
-        self.made: dict[str, Figure] = {}
+        self.made: dict[str, ScenarioFigure] = {}
         self.failed: dict[str, str] = {}
         self.problem = ""
 
@@ -111,7 +111,7 @@ class Figures:
             name = next((name for name in self._first if name in missing), next(iter(missing)))
             scenario = missing.pop(name)
             try:
-                figure = Figure(self.keys[name], **await self._draw(scenario))
+                figure = ScenarioFigure(self.keys[name], **await self._draw(scenario))
                 self.made[scenario.id] = figure
                 await asyncio.to_thread(keep, self._folder, figure)
             except OSError as error:
@@ -141,7 +141,7 @@ class Figures:
             for folder in (self._folder, BUILT):
                 try:
                     kept = json.loads((folder / f"{key}.json").read_text("utf-8"))
-                    self.made[name] = Figure(key, kept["summary"], kept["svg"])
+                    self.made[name] = ScenarioFigure(key, kept["summary"], kept["svg"])
                     break
                 except (OSError, ValueError, KeyError, TypeError):  # missing, or not whole: it is made again
                     continue
@@ -155,7 +155,7 @@ def key_of(scenario: Scenario) -> str:
     return identify(scenario, [scenario.spec.seed])[1][:32]
 
 
-def keep(folder: Path, figure: Figure) -> None:
+def keep(folder: Path, figure: ScenarioFigure) -> None:
     """Write a figure into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     write_json(folder / f"{figure.key}.json", {"summary": figure.summary, "svg": figure.svg})
@@ -175,7 +175,7 @@ def build(name: str, folder: Path = BUILT) -> None:
         return
     others = [[outcome.model_dump_json() for outcome in outcomes] for outcomes in compared(scenario, [seed]).values()]
     document, _ = identify(scenario, [seed])
-    keep(folder, Figure(key, **draw(document, seed, [[], *others])[1]))
+    keep(folder, ScenarioFigure(key, **draw(document, seed, [[], *others])[1]))
 
 
 def main() -> None:

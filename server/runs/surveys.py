@@ -24,7 +24,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Standing:
+class CampaignStanding:
     """How far a campaign is.
 
     Parameters
@@ -45,7 +45,7 @@ class Standing:
     is_active: bool
 
     @classmethod
-    def of(cls, row: RequestRow, done: int, is_active: bool) -> Standing:
+    def of(cls, row: RequestRow, done: int, is_active: bool) -> CampaignStanding:
         """Return how far the campaign of a request is."""
         return cls(row.id, json.dumps(row.document, default=str), done, is_active)
 
@@ -73,7 +73,7 @@ class Surveys:
         self._ended: dict[str, tuple[int, int]] = {}
         self._under_way: set[asyncio.Task[None]] = set()
 
-    def follow(self, at: Standing) -> Callable[[int, int], None]:
+    def follow(self, at: CampaignStanding) -> Callable[[int, int], None]:
         """Return the callback of a campaign for each batch, in a thread of its own."""
         loop, written = asyncio.get_running_loop(), 0
 
@@ -85,16 +85,16 @@ class Surveys:
 
         return progress
 
-    def write(self, at: Standing) -> None:
+    def write(self, at: CampaignStanding) -> None:
         """Have the files of a campaign brought up to date, without waiting for it."""
         self._start(at).add_done_callback(_tell)
 
-    async def read(self, at: Standing, reader: Callable[[Survey], T]) -> T:
+    async def read(self, at: CampaignStanding, reader: Callable[[Survey], T]) -> T:
         """Call a reader on the results so far."""
         await self._ready(at)
         return await asyncio.to_thread(lambda: reader(Survey(*campaign(at.text, self.folder / at.id))))
 
-    async def report(self, at: Standing, name: str) -> str:
+    async def report(self, at: CampaignStanding, name: str) -> str:
         """Return the report of a campaign; many curves take seconds."""
         await self._ready(at)
         return await self._apart.call(at.done, report, at.text, self.folder / at.id, name)
@@ -105,13 +105,13 @@ class Surveys:
         for task in self._under_way:
             task.cancel()
 
-    def _start(self, at: Standing) -> asyncio.Task[None]:
+    def _start(self, at: CampaignStanding) -> asyncio.Task[None]:
         task = asyncio.create_task(self._bring_up(at))
         self._under_way.add(task)
         task.add_done_callback(self._under_way.discard)
         return task
 
-    async def _ready(self, at: Standing) -> None:
+    async def _ready(self, at: CampaignStanding) -> None:
         """Wait until the files are up to date; of a campaign under way that has some results, not for long."""
         task = self._start(at)
         if not (at.is_active and self._done.get(at.id, (0, 0))[0]):
@@ -120,7 +120,7 @@ class Surveys:
         task.add_done_callback(_tell)
         await asyncio.wait({task}, timeout=WAIT_S)
 
-    async def _bring_up(self, at: Standing) -> None:
+    async def _bring_up(self, at: CampaignStanding) -> None:
         """Write the results that the files lack; of a campaign that has ended, once."""
         known, done = self._done if at.is_active else self._ended, at.done
         folder = self.folder / at.id

@@ -17,7 +17,7 @@ from scenarios.campaign.sweep import Sweep
 from scenarios.key import code_version, content_hash, run_key
 from server.errors import ApiError
 from server.runs.queue import Queue, Requested, check_length
-from server.runs.surveys import Standing, Surveys
+from server.runs.surveys import CampaignStanding, Surveys
 from server.settings import Settings
 from server.store.database import Database
 from server.store.models import RequestRow
@@ -100,7 +100,7 @@ class Sweeps(Requested[SweepRun]):
         sweep = await asyncio.to_thread(Sweep, row.document)
         scheduler = self._settings.scheduler
         processes = None if scheduler else self._queue.processes
-        follow = self._surveys.follow(Standing.of(row, 0, True))
+        follow = self._surveys.follow(CampaignStanding.of(row, 0, True))
 
         def progress(done: int, total: int) -> None:
             on_progress(done, total)
@@ -110,7 +110,7 @@ class Sweeps(Requested[SweepRun]):
 
     async def ended(self, row: RequestRow, done: int) -> None:
         """Have the files of a campaign written to the end."""
-        self._surveys.write(Standing.of(row, done, False))
+        self._surveys.write(CampaignStanding.of(row, done, False))
 
     async def document(self, sweep_id: str) -> dict[str, Any]:
         """Return the document that a campaign was requested with."""
@@ -131,10 +131,14 @@ class Sweeps(Requested[SweepRun]):
         row = await self._readable(sweep_id)
         return await self._surveys.report(self._standing(row), row.label)
 
-    def _standing(self, row: RequestRow) -> Standing:
+    def _standing(self, row: RequestRow) -> CampaignStanding:
         """Return how far a campaign is."""
         campaign = self._queue.campaigns.get(row.id)
-        return Standing.of(row, row.done, False) if campaign is None else Standing.of(row, campaign.done, True)
+        return (
+            CampaignStanding.of(row, row.done, False)
+            if campaign is None
+            else CampaignStanding.of(row, campaign.done, True)
+        )
 
     async def _readable(self, sweep_id: str) -> RequestRow:
         row = await self._requests.get(self.kind, sweep_id)

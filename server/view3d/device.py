@@ -15,14 +15,14 @@ from core.board.instances import faults_of
 from core.format import format_in
 from server.bench.bench import LiveBench
 from server.view3d.marks import Marks
-from server.view3d.part import Part, Picture
+from server.view3d.part import ScenePart, ScenePicture
 from server.view3d.pose import Active, Pose
 from server.view3d.solids import FloatArray, View
 
 P = TypeVar("P", bound=Pose)
 
 
-class Device(ABC, Generic[P]):
+class DeviceModel(ABC, Generic[P]):
     """The device of one bench.
 
     Parameters
@@ -46,14 +46,14 @@ class Device(ABC, Generic[P]):
         self._known: dict[str, Any] = {}
         self._marked: Any = None
         self._marks: Marks
-        self._added: dict[str, Part] = {}
+        self._added: dict[str, ScenePart] = {}
 
     @abstractmethod
     def views(self) -> dict[str, View]:
         """Return the presets of the camera by their names on the page."""
 
     @abstractmethod
-    def parts(self) -> dict[str, Part]:
+    def parts(self) -> dict[str, ScenePart]:
         """Return the parts that are always there, by their names in the scene."""
 
     @abstractmethod
@@ -75,7 +75,7 @@ class Device(ABC, Generic[P]):
         """Return the marks of a pose."""
 
     @abstractmethod
-    def move(self, picture: Picture, pose: P) -> None:
+    def move(self, picture: ScenePicture, pose: P) -> None:
         """Place the parts as in a pose."""
 
     def kept(self, looked: int | None) -> int | None:
@@ -96,14 +96,14 @@ class Device(ABC, Generic[P]):
         when = f"at {format_in(looked * session.dt_ms, 'ms', 3)}" if looked is not None else ""
         return replace(pose, faults=self._acting(tick, looked), when=when)
 
-    def picture(self, pose: P) -> Picture:
+    def picture(self, pose: P) -> ScenePicture:
         """Return the picture of a pose."""
         # A ramp moves in steps of two figures, not at every frame.
         marked = [(fault.block, fault.params, f"{fault.severity:.2g}") for fault in pose.faults], pose.contact
         if marked != self._marked:
             self._marked, self._marks = marked, self.mark(pose)
             self._added = self._marks.parts(self.origin_um)
-        picture = Picture(self._added)
+        picture = ScenePicture(self._added)
         self._marks.colour(picture)
         self.move(picture, pose)
         picture.set("/caption", text=pose.caption)

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from core.format import format_count, format_short
 from server.view3d.colours import ATTENTION, Color, blend
-from server.view3d.part import Part, Picture, label, solid
+from server.view3d.part import ScenePart, ScenePicture, label, solid
 from server.view3d.pose import Active
 from server.view3d.solids import Box, Mesh, Place, arrow, merge
 
@@ -64,14 +64,14 @@ class Marks:
         for part in parts:
             self.tints[part] = max(self.tints[part], min(1.0, share))
 
-    def parts(self, origin_um: float) -> dict[str, Part]:
+    def parts(self, origin_um: float) -> dict[str, ScenePart]:
         """Return solids and labels as parts of the scene; the device is at a place along x."""
         parts = {f"{self.root}/{name}": solid(mesh, ATTENTION) for name, mesh in self.solids.items()}
         for number, ((x, y, z), lines) in enumerate(self.labels.items()):
             parts[f"/labels/{number}"] = label(lines, (x + origin_um, y, z))
         return parts
 
-    def colour(self, picture: Picture) -> None:
+    def colour(self, picture: ScenePicture) -> None:
         """Colour the parts that faults act on."""
         for name, color in self.colors.items():
             picture.set(f"{self.root}/{name}", color=blend(color, ATTENTION, self.tints[name]))

@@ -19,7 +19,7 @@ UM_PER_UNIT = 100.0
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class ScenePart:
     """A node of the scene.
 
     Parameters
@@ -34,7 +34,7 @@ class Part:
     properties: dict[str, Any]
 
 
-class Picture:
+class ScenePicture:
     """The scene of a moment.
 
     Parameters
@@ -43,7 +43,7 @@ class Picture:
         The parts that are on the device at this moment only; a part that stays is the same object.
     """
 
-    def __init__(self, added: dict[str, Part]) -> None:
+    def __init__(self, added: dict[str, ScenePart]) -> None:
         self.added = added
         self.nodes: dict[str, dict[str, Any]] = {}
         """The properties of the other nodes, by their names."""
@@ -63,13 +63,13 @@ def place(x: float, y: float = 0.0, z: float = 0.0) -> Place:
     return x / UM_PER_UNIT, y / UM_PER_UNIT, z / UM_PER_UNIT
 
 
-def solid(mesh: Mesh, color: Color, **options: Any) -> Part:
+def solid(mesh: Mesh, color: Color, **options: Any) -> ScenePart:
     """Return a rigid mesh, or a mesh whose vertices are moved."""
     shape = {"vertices": units(mesh.vertices), "faces": mesh.faces.astype(np.uint32)}
-    return Part("mesh_simple", {**shape, "color": color, "flat_shading": True, "side": "double", **options})
+    return ScenePart("mesh_simple", {**shape, "color": color, "flat_shading": True, "side": "double", **options})
 
 
-def batch(places: FloatArray, size: Place, color: Color) -> Part:
+def batch(places: FloatArray, size: Place, color: Color) -> ScenePart:
     """Return boxes of one size as one batch; places and size in um."""
     box = merge([Box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))])
     properties = {
@@ -82,23 +82,23 @@ def batch(places: FloatArray, size: Place, color: Color) -> Part:
         "flat_shading": True,
         "lod": "off",
     }
-    return Part("batched_meshes_simple", properties)
+    return ScenePart("batched_meshes_simple", properties)
 
 
-def label(lines: Iterable[str], where: Place = (0.0, 0.0, 0.0), *, visible: bool = True) -> Part:
+def label(lines: Iterable[str], where: Place = (0.0, 0.0, 0.0), *, visible: bool = True) -> ScenePart:
     """Return words above a place, um."""
     x, y, z = place(*where)
     properties = {"text": "\n".join(lines), "position": (x, y, z + 0.12), "anchor": "bottom-center"}
-    return Part("label", {**properties, "visible": visible})
+    return ScenePart("label", {**properties, "visible": visible})
 
 
-def frame(x: float = 0.0, y: float = 0.0) -> Part:
+def frame(x: float = 0.0, y: float = 0.0) -> ScenePart:
     """Return a frame at a place that carries other parts, um."""
-    return Part("frame", {"show_axes": False, "position": place(x, y)})
+    return ScenePart("frame", {"show_axes": False, "position": place(x, y)})
 
 
-def lines(points: FloatArray, color: Color) -> Part:
+def lines(points: FloatArray, color: Color) -> ScenePart:
     """Return lines between pairs of points, shape (lines, 2, 3), um."""
-    return Part(
+    return ScenePart(
         "line_segments", {"points": units(points), "colors": color, "thickness": 2.0, "thickness_units": "screen"}
     )

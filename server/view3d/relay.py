@@ -53,7 +53,7 @@ async def _down(socket: WebSocket, scene: ClientConnection) -> None:
                 await socket.send_bytes(message)
 
 
-class Look(msgspec.Struct, tag="look", tag_field="type", forbid_unknown_fields=True):
+class LookMessage(msgspec.Struct, tag="look", tag_field="type", forbid_unknown_fields=True):
     """The one message of a page that is read: the tick it looks at, or null for now."""
 
     tick: int | None
@@ -68,4 +68,4 @@ async def hear(socket: WebSocket, looked: Looked) -> None:
         data = message.get("bytes") or b""
         if len(data) <= LONGEST_LOOK:
             with contextlib.suppress(msgspec.MsgspecError):
-                looked.look(msgspec.msgpack.decode(data, type=Look).tick)
+                looked.look(msgspec.msgpack.decode(data, type=LookMessage).tick)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from server.view3d.device import Device
-from server.view3d.part import Part, Picture
+from server.view3d.device import DeviceModel
+from server.view3d.part import ScenePart, ScenePicture
 from server.view3d.pose import Pose
 from server.view3d.private import PrivateServer
 
@@ -20,7 +20,7 @@ class Scene:
         Its parts, and how a pose moves them.
     """
 
-    def __init__(self, device: Device[Any]) -> None:
+    def __init__(self, device: DeviceModel[Any]) -> None:
         self._device = device
         self._private = PrivateServer()
         self._server = self._private.viser
@@ -36,7 +36,7 @@ class Scene:
         self.nodes: dict[str, Any] = words | {name: self._put(name, part) for name, part in device.parts().items()}
         self.added: dict[str, Any] = {}
         """The nodes of faults and light."""
-        self._picture = Picture({})
+        self._picture = ScenePicture({})
         self._shown: Pose | None = None
 
     @property
@@ -69,6 +69,6 @@ class Scene:
                         setattr(self.nodes[name], key, value)  # viser sends it if it is not equal either
         self._server.flush()
 
-    def _put(self, name: str, part: Part) -> Any:
+    def _put(self, name: str, part: ScenePart) -> Any:
         """Add a node."""
         return getattr(self._server.scene, f"add_{part.kind}")(name, **part.properties)

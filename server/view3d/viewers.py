@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from server.bench.bench import LiveBench
-from server.view3d.device import Device
-from server.view3d.gyroscope.gyroscope import Gyroscope
-from server.view3d.resonator.resonator import Resonator
+from server.view3d.device import DeviceModel
+from server.view3d.gyroscope.gyroscope import GyroscopeModel
+from server.view3d.resonator.resonator import ResonatorModel
 
 if TYPE_CHECKING:
     from server.view3d.scene import Scene
@@ -97,7 +97,7 @@ class Show:
             await asyncio.gather(task, return_exceptions=True)
             await asyncio.to_thread(scene.close)
 
-    async def _play(self, device: Device[Any], scene: Scene, looked: Looked | None) -> None:
+    async def _play(self, device: DeviceModel[Any], scene: Scene, looked: Looked | None) -> None:
         """Show the bench 60 times a second: a page its moment, others now."""
         due, shown = time.monotonic(), None
         while True:
@@ -142,7 +142,7 @@ class Viewers:
             await self.drop(bench_id)
 
 
-def build_scene(session: LiveBench) -> tuple[Device[Any], Scene]:
+def build_scene(session: LiveBench) -> tuple[DeviceModel[Any], Scene]:
     """Build the scene of a bench; viser is loaded here, so that nothing else waits for it."""
     from server.view3d.scene import Scene
 
@@ -150,6 +150,6 @@ def build_scene(session: LiveBench) -> tuple[Device[Any], Scene]:
     return device, Scene(device)
 
 
-def device_of(session: LiveBench) -> Device[Any]:
+def device_of(session: LiveBench) -> DeviceModel[Any]:
     """Return the device of a bench as it is drawn: gyroscopes if its plant has axes, otherwise a resonator."""
-    return Gyroscope(session) if session.board.spec.axes else Resonator(session)
+    return GyroscopeModel(session) if session.board.spec.axes else ResonatorModel(session)

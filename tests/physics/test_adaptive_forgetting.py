@@ -10,7 +10,7 @@ import pytest
 
 from scenarios.edit import with_values
 from scenarios.library import get
-from scenarios.run import Result, run
+from scenarios.run import RunResult, run
 from tests.physics.seeds import HELD_OUT
 from tests.physics.test_self_tuning import regressors
 
@@ -28,13 +28,13 @@ def adaptive(how: str, **more: Any) -> dict[str, Any]:
     return {"kind": "self_tuning", "adaptation": how, **more}
 
 
-def two_devices(seed: int, noise_um: float, samples: int = 4200, **banks: dict[str, Any]) -> Result:
+def two_devices(seed: int, noise_um: float, samples: int = 4200, **banks: dict[str, Any]) -> RunResult:
     diagnosers = {name: {**bank, "hypotheses": PAIR} for name, bank in banks.items()}
     values = {"diagnosers": diagnosers, "sensor.noise_um": noise_um, "samples": samples, "expect": []}
     return run(with_values(get("ch5-two-devices"), values), seed, taps=True)
 
 
-def crossing(result: Result, name: str, level: float, held: int = 20) -> float:
+def crossing(result: RunResult, name: str, level: float, held: int = 20) -> float:
     """Samples from the jump to the first from which p2 stays above a level for 20."""
     above = result.signal(f"{name}.probability.device-2")[JUMP:] > level
     runs = np.flatnonzero(np.convolve(above, np.ones(held), "valid") > held - 0.5)
@@ -177,5 +177,5 @@ def test_fixed_senses_earlier_only_when_it_has_become_ragged():
     assert quiet[1] <= 0.5 and loud[1] >= 0.9
 
 
-def first_above(result: Result, name: str, level: float) -> int:
+def first_above(result: RunResult, name: str, level: float) -> int:
     return int(np.argmax(result.signal(f"{name}.probability.device-2")[JUMP:] > level))

@@ -10,7 +10,7 @@ import pytest
 from scipy.linalg import expm
 
 from core.device.catalogue import device
-from scenarios.run import Result, run
+from scenarios.run import RunResult, run
 from scenarios.schema import Scenario
 
 S = np.array([[0.0, -1.0], [1.0, 0.0]])
@@ -19,7 +19,7 @@ RAD = 180.0 / math.pi
 SLOW = {"frequency_x_hz": 663.676, "frequency_y_hz": 813.282}
 
 
-def bench(kind: str, name: str, ms: float, khz: float, rates: tuple[float, float], **law: Any) -> Result:
+def bench(kind: str, name: str, ms: float, khz: float, rates: tuple[float, float], **law: Any) -> RunResult:
     """Run an adaptive controller with a rate that steps in the middle, rad/s."""
     first, second = (RAD * rate for rate in rates)
     points = [{"at_ms": 0.5 * ms, "deg_per_s": first}, {"at_ms": 0.5 * ms + 1e-3, "deg_per_s": second}]

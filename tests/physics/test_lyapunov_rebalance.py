@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from core.device.catalogue import device
-from scenarios.run import Result, run
+from scenarios.run import RunResult, run
 from scenarios.schema import Scenario
 
 DEG = math.pi / 180.0
 
 
-def bench(ms: float, khz: float, **parts: Any) -> Result:
+def bench(ms: float, khz: float, **parts: Any) -> RunResult:
     document = {
         "sample_rate_khz": khz,
         "duration_ms": ms,

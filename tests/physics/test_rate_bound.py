@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scenarios.run import Result, run
+from scenarios.run import RunResult, run
 from scenarios.schema import Scenario
 
 RATES = (0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 2000.0, 3000.0, 6000.0)
@@ -16,7 +16,9 @@ KINDS = ("adaptive_rate", "mimo_adaptive")
 SETTLED_MS = 500.0
 
 
-def turned(kind: str, name: str, khz: float, rate: float, ms: float = 1000.0, warm: bool = False, **law: Any) -> Result:
+def turned(
+    kind: str, name: str, khz: float, rate: float, ms: float = 1000.0, warm: bool = False, **law: Any
+) -> RunResult:
     document = {
         "sample_rate_khz": khz,
         "duration_ms": ms,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import pytest
 from pydantic import BaseModel, ValidationError
 
-from server.api.bodies import Answer
+from server.api.bodies import AnswerBody
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class ToneCard(BaseModel):
     hertz: float
 
 
-class Card(Answer):
+class Card(AnswerBody):
     """A card of a head."""
 
     id: str

@@ -10,7 +10,7 @@ from core.board.commands import Heal
 from scenarios.library import get
 from scenarios.run import run
 from server.bench.commands import parse
-from server.bench.narration import Mark
+from server.bench.narration import NarrationPlace
 from server.classroom.blind import hide
 from server.classroom.hiding import ACTOR, OF_A_DIAGNOSER, SIGNALS, clear, hide_on
 from tests.server.bench.test_session import advance, session
@@ -143,7 +143,7 @@ def test_a_view_that_hides_a_fault_says_nothing_of_the_error() -> None:
     advance(bench, 4000)
     view = bench.view
     assert view is not None
-    whole, told = (one.narration.after(Mark())[2] for one in (bench, view))
+    whole, told = (one.narration.after(NarrationPlace())[2] for one in (bench, view))
     since = [said.text.rpartition(" ")[2] for said in whole if said.kind == "settled"]
     assert since == ["fault.", "healing."]
     assert [(said.kind, said.tick, said.signals) for said in told] == [("switch", 1000, [])]

@@ -28,7 +28,7 @@ LASTS = timedelta(days=14)
 """How long a class lasts after the last launch; then names are forgotten, as they are of every class."""
 
 
-class Members:
+class LaunchMembers:
     """Lets people in who come by a launch.
 
     Parameters

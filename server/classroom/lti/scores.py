@@ -40,7 +40,7 @@ Key = tuple[str, str]
 
 
 @dataclass(frozen=True)
-class Target:
+class ScoreTarget:
     """Where a score goes; the platform's id of the user is in memory alone."""
 
     launch: Launch
@@ -48,7 +48,7 @@ class Target:
 
 
 @dataclass(frozen=True)
-class Score:
+class LtiScore:
     """A score, as it is sent."""
 
     given: float
@@ -58,7 +58,7 @@ class Score:
     at: str
 
 
-class Scores:
+class LtiScores:
     """Sends scores.
 
     Parameters
@@ -83,9 +83,9 @@ class Scores:
     ) -> None:
         self._tool, self._audit, self._brief_of = tool, audit, brief_of
         self._quiet_s, self._first_wait_s = quiet_s, first_wait_s
-        self._targets: dict[Key, Target] = {}
-        self._wanted: dict[Key, Score] = {}
-        self._sent: dict[Key, Score] = {}
+        self._targets: dict[Key, ScoreTarget] = {}
+        self._wanted: dict[Key, LtiScore] = {}
+        self._sent: dict[Key, LtiScore] = {}
         self._tasks: dict[Key, asyncio.Task[None]] = {}
         self._pool = ThreadPoolExecutor(THREADS, thread_name_prefix="combbench-scores")
 
@@ -94,7 +94,7 @@ class Scores:
         if not launch.line_item or not launch.sheet:
             return
         key = (person.id, launch.sheet)
-        self._targets[key] = Target(launch, person)
+        self._targets[key] = ScoreTarget(launch, person)
         self._sent.pop(key, None)
         if work is not None and work.progress.steps:
             self.changed(work)
@@ -107,7 +107,7 @@ class Scores:
         brief = self._brief_of(work)
         where = "all steps" if brief.done else f"step {brief.step} of {brief.steps}"
         at = now().isoformat(timespec="milliseconds")
-        score = Score(max(0.0, brief.earned), brief.points, brief.done, f"{brief.title}: {where}", at)
+        score = LtiScore(max(0.0, brief.earned), brief.points, brief.done, f"{brief.title}: {where}", at)
         before = self._wanted.get(key)
         if before is not None and _same(before, score) and (key in self._tasks or self._sent.get(key) == before):
             return
@@ -146,7 +146,7 @@ class Scores:
         finally:
             self._tasks.pop(key, None)
 
-    def _note_failure(self, target: Target, sheet: str, error: Exception, tries: int) -> None:
+    def _note_failure(self, target: ScoreTarget, sheet: str, error: Exception, tries: int) -> None:
         """Tell the log every time, and the teacher at the first try and the last."""
         answer = error.response if isinstance(error, RequestException) else None
         status = f": the platform answered {answer.status_code}" if answer is not None else ""
@@ -159,7 +159,7 @@ class Scores:
             )
             self._audit.add("lti", "grade", _line(target, sheet, said), target.person.class_id)
 
-    def _post(self, target: Target, score: Score) -> None:
+    def _post(self, target: ScoreTarget, score: LtiScore) -> None:
         """Send a score; in a thread."""
         platform, now_s = target.launch.platform, int(time.time())
         body: dict[str, Any] = {
@@ -193,10 +193,10 @@ def _scores_of(line_item: str) -> str:
     return parts._replace(path=f"{parts.path.rstrip('/')}/scores").geturl()
 
 
-def _same(one: Score, other: Score) -> bool:
+def _same(one: LtiScore, other: LtiScore) -> bool:
     """Whether the platform would show the same."""
     return (one.given, one.done, one.comment) == (other.given, other.done, other.comment)
 
 
-def _line(target: Target, sheet: str, what: str) -> str:
+def _line(target: ScoreTarget, sheet: str, what: str) -> str:
     return f"the score of {target.person.name} at {sheet} was {what}"

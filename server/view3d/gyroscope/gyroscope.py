@@ -15,14 +15,14 @@ from core.format import format_short
 from server.bench.bench import LiveBench
 from server.bench.description import period_of
 from server.view3d.colours import ATTENTION, FIXED, GROUND, LIGHT, MOVING, SILICON
-from server.view3d.device import Device, finite
+from server.view3d.device import DeviceModel, finite
 from server.view3d.flexure import rigid
 from server.view3d.gyroscope import parts
 from server.view3d.gyroscope.marks import GyroscopeMarks
 from server.view3d.gyroscope.orbit import caption, full_scale, magnified, met
 from server.view3d.gyroscope.parts import AXES, GROUND_UM, RIM_UM, TOP_UM, Ground
 from server.view3d.motion import SEEN_HZ, STROBE_HZ
-from server.view3d.part import Part, Picture, frame, label, lines, place, solid, units
+from server.view3d.part import ScenePart, ScenePicture, frame, label, lines, place, solid, units
 from server.view3d.pose import Pose
 from server.view3d.solids import FloatArray, Mesh, View, arc, arrow, ball
 
@@ -69,7 +69,7 @@ class GyroscopePose(Pose):
     largest_force: str = ""
 
 
-class Gyroscope(Device[GyroscopePose]):
+class GyroscopeModel(DeviceModel[GyroscopePose]):
     """One gyroscope, or two on one frame."""
 
     blank = GyroscopePose()
@@ -93,7 +93,7 @@ class Gyroscope(Device[GyroscopePose]):
         """Return the presets of the camera."""
         return self._ground.views()
 
-    def parts(self) -> dict[str, Part]:
+    def parts(self) -> dict[str, ScenePart]:
         """Return the parts that are always there."""
         found = {"/ground": solid(self._ground.mesh(), GROUND)}
         for name, x in zip(NAMES, self._ground.centres, strict=False):
@@ -148,7 +148,7 @@ class Gyroscope(Device[GyroscopePose]):
         """Return the marks of a pose."""
         return GyroscopeMarks(pose.faults)
 
-    def move(self, picture: Picture, pose: GyroscopePose) -> None:
+    def move(self, picture: ScenePicture, pose: GyroscopePose) -> None:
         """Place the parts as in a pose."""
         for name, (x, y), orbit in zip(NAMES, pose.places, pose.orbits, strict=False):
             for part, (moving, _) in self._moving.items():
@@ -166,7 +166,7 @@ class Gyroscope(Device[GyroscopePose]):
             picture.set("/force", vertices=units(pushing(pose.force).vertices))
         picture.set("/force-words", visible=is_pushed, text=f"force that follows, up to {pose.largest_force}")
 
-    def _body(self) -> dict[str, Part]:
+    def _body(self) -> dict[str, ScenePart]:
         """Return the parts of one device."""
         return {
             "anchors": solid(parts.anchors(), FIXED),

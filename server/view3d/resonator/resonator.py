@@ -19,9 +19,9 @@ from core.sense.dual_beam import DualBeam
 from server.bench.bench import LiveBench
 from server.bench.description import period_of
 from server.view3d.colours import ATTENTION, ESTIMATE, FIXED, GROUND, LIGHT, MOVING, REFERENCE, SILICON, blend, in_batch
-from server.view3d.device import Device, finite
+from server.view3d.device import DeviceModel, finite
 from server.view3d.motion import TURN_EXAGGERATIONS, WANTED_TURN_UM, caption, exaggeration, moment, warning
-from server.view3d.part import Part, Picture, batch, frame, lines, place, solid, units
+from server.view3d.part import ScenePart, ScenePicture, batch, frame, lines, place, solid, units
 from server.view3d.pose import Pose
 from server.view3d.resonator.layout import Layout
 from server.view3d.resonator.marks import ResonatorMarks
@@ -86,7 +86,7 @@ class ResonatorPose(Pose):
     lasers: tuple[Laser, ...] = ()
 
 
-class Resonator(Device[ResonatorPose]):
+class ResonatorModel(DeviceModel[ResonatorPose]):
     """A comb resonator; a device without a drawing is drawn as the reference device."""
 
     blank = ResonatorPose()
@@ -99,7 +99,7 @@ class Resonator(Device[ResonatorPose]):
         }
         self._factor = self._turn_factor = 1.0
         self._shining: tuple[Laser, ...] = ()
-        self._beams: dict[str, Part] = {}
+        self._beams: dict[str, ScenePart] = {}
         self._damage: tuple[Damage | None, float] = (None, 0.0)
         self._flexures = {name: flexure(self.layout, side) for side, name in BEAMS}
 
@@ -107,7 +107,7 @@ class Resonator(Device[ResonatorPose]):
         """Return the presets of the camera."""
         return self.layout.views()
 
-    def parts(self) -> dict[str, Part]:
+    def parts(self) -> dict[str, ScenePart]:
         """Return the parts that are always there."""
         layout = self.layout
         parts = {
@@ -195,7 +195,7 @@ class Resonator(Device[ResonatorPose]):
             self._flexures = {name: flexure(self.layout, side, *self._damage) for side, name in BEAMS}
         return marks
 
-    def move(self, picture: Picture, pose: ResonatorPose) -> None:
+    def move(self, picture: ScenePicture, pose: ResonatorPose) -> None:
         """Place the parts as in a pose."""
         x, y, turn = pose.displacement_um, pose.shift_um, pose.turn
         picture.set("/shuttle", position=place(x, y), wxyz=(math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2)))
@@ -238,7 +238,7 @@ def combs_of(shift_um: float, turn: float, tip_um: float, plant: BlockParams) ->
     return middle + angle * tip_um, middle - angle * tip_um
 
 
-def _beams(lasers: tuple[Laser, ...], top_um: float) -> dict[str, Part]:
+def _beams(lasers: tuple[Laser, ...], top_um: float) -> dict[str, ScenePart]:
     """Return the beams of light, which do not move."""
     parts = {}
     for number, laser in enumerate(lasers):

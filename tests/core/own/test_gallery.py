@@ -12,7 +12,7 @@ from scipy.signal import cont2discrete
 
 from core.block import FloatArray, Oscillator
 from core.own.unit import unit
-from scenarios.run import Result, run
+from scenarios.run import RunResult, run
 from scenarios.schema import Scenario
 from tests.core.own.test_own_units import with_unit
 from tests.core.own.texts import ROOT
@@ -42,7 +42,7 @@ def sampled(device: Oscillator, dt_ms: float) -> tuple[FloatArray, FloatArray]:
     return over, push
 
 
-def true_device(result: Result) -> Oscillator:
+def true_device(result: RunResult) -> Oscillator:
     """Return the device as the faults have left it."""
     nominal = result.board.spec.nominal
     mass, stiffness, damping = (result.signal(f"effects.{name}_scale")[-1] for name in ("mass", "stiffness", "damping"))
@@ -60,7 +60,7 @@ def turn(scenario: Scenario) -> complex:
     return complex(np.exp(2j * np.pi * scenario.document["reference"]["frequency_hz"] * 1e-3 * scenario.spec.dt_ms))
 
 
-def tail_error(result: Result) -> float:
+def tail_error(result: RunResult) -> float:
     return float(result.summary()["metrics"]["control.tail_rms_error_um"])
 
 

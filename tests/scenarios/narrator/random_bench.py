@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.run import Result, run
+from scenarios.run import RunResult, run
 from scenarios.schema import Scenario
 
 DEVICES = ("ch3", "ch4", "lcr-350")
@@ -62,6 +62,6 @@ def random_bench(seed: int) -> Scenario:
     )
 
 
-def told(seed: int) -> Result:
+def told(seed: int) -> RunResult:
     """Run a bench of a seed with every signal, and let the narrator speak."""
     return run(random_bench(seed), taps=True, everything=True, narrate=True)

@@ -18,7 +18,7 @@ from scenarios.narrator.narrator import Narrator
 from scenarios.narrator.samples import NarratorSignals
 from scenarios.narrator.sentence import Sentence
 from scenarios.narrator.settling import Settling
-from scenarios.run import Result, build, run
+from scenarios.run import RunResult, build, run
 from tests.scenarios.narrator.random_bench import random_bench, told
 
 SEEDS = range(1, 11)
@@ -27,7 +27,7 @@ MORE = range(11, 51)
 
 
 @cache
-def result(seed: int) -> Result:
+def result(seed: int) -> RunResult:
     return told(seed)
 
 
@@ -40,7 +40,7 @@ def rms(values: Any) -> float:
     return math.sqrt(sum(value * value for value in values.tolist()) / len(values))
 
 
-def expected_verdicts(found: Result) -> list[tuple[int, str, int, int, int]]:
+def expected_verdicts(found: RunResult) -> list[tuple[int, str, int, int, int]]:
     """Count verdicts one by one: (tick, diagnoser, old, new, first of the twenty)."""
     verdicts = []
     for name, section in found.board.spec.diagnosers.items():
@@ -56,7 +56,7 @@ def expected_verdicts(found: Result) -> list[tuple[int, str, int, int, int]]:
     return sorted(verdicts)
 
 
-def expected_settled(found: Result, doings: list[tuple[int, str]]) -> list[tuple[int, int, float, float]]:
+def expected_settled(found: RunResult, doings: list[tuple[int, str]]) -> list[tuple[int, int, float, float]]:
     """Go through blocks of a hundred ticks: (tick, since, error, limit)."""
     model, measured = single(found.signal("model.displacement")), single(found.signal("sensor.displacement"))
     settled = []
@@ -73,19 +73,19 @@ def expected_settled(found: Result, doings: list[tuple[int, str]]) -> list[tuple
     return settled
 
 
-def doings(found: Result) -> list[tuple[int, str]]:
+def doings(found: RunResult) -> list[tuple[int, str]]:
     """List the events of the scenario before its end or a trip: (tick, kind)."""
     kinds = {"fault": "fault", "heal": "heal", "switch": "switch"}
     events = [(event["at_sample"], next(kinds[key] for key in event if key in kinds)) for event in done(found)]
     return [event for event in events if event[0] < found.samples]
 
 
-def done(found: Result) -> list[dict[str, Any]]:
+def done(found: RunResult) -> list[dict[str, Any]]:
     events: list[dict[str, Any]] = found.scenario.document["events"]
     return events
 
 
-def of(found: Result, *kinds: str) -> list[Sentence]:
+def of(found: RunResult, *kinds: str) -> list[Sentence]:
     return [said for said in found.narration if said.kind in kinds]
 
 

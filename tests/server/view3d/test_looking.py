@@ -11,9 +11,9 @@ import pytest
 import zstandard
 from websockets.exceptions import ConnectionClosed
 
-from server.view3d.gyroscope.gyroscope import Gyroscope
+from server.view3d.gyroscope.gyroscope import GyroscopeModel
 from server.view3d.part import UM_PER_UNIT
-from server.view3d.resonator.resonator import Resonator
+from server.view3d.resonator.resonator import ResonatorModel
 from server.view3d.viewers import device_of
 from tests.server.classroom.group import watcher
 from tests.server.view3d.test_view3d import join
@@ -51,7 +51,7 @@ def test_a_pose_is_that_of_the_tick(live: Any) -> None:
     for tick, severity in ((250, None), (400, 0.2), (600, None), (800, 0.4)):
         # a device that is drawn from now on: the log gives the parameters
         device = device_of(session)
-        assert isinstance(device, Resonator)
+        assert isinstance(device, ResonatorModel)
         pose = device.pose(tick)
         factor = device._factor
         assert pose.displacement_um == pytest.approx(factor * sample(session, "plant.displacement", tick), rel=1e-6)
@@ -73,7 +73,7 @@ def test_a_pose_has_the_light_of_then(live: Any) -> None:
 
     def light(tick: int | None) -> list[bool]:
         device = device_of(session)
-        assert isinstance(device, Resonator)
+        assert isinstance(device, ResonatorModel)
         return [beam.is_through for beam in device.pose(tick).lasers]
 
     assert light(250) == [True, True]
@@ -83,7 +83,7 @@ def test_a_pose_has_the_light_of_then(live: Any) -> None:
 def test_a_gyroscope_is_shown_as_it_was(live: Any) -> None:
     session = stepped(live, scenario="gyro-adaptive", ticks=3000)
     device = device_of(session)
-    assert isinstance(device, Gyroscope)
+    assert isinstance(device, GyroscopeModel)
     for tick in (1200, 2345):
         pose = device.pose(tick)
         x, y = (sample(session, f"plant.{axis}", tick) for axis in session.board.spec.axes[:2])
