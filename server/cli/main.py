@@ -107,7 +107,10 @@ def sweep(
         int | None, typer.Option(help="Processes of this machine, 1 to 1024; without it, as many as it has processors.")
     ] = None,
     scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Address of a Dask scheduler in place of processes, such as tcp://host:8786.")
+        str | None,
+        typer.Option(
+            metavar="ADDRESS", help="Address of a Dask scheduler in place of processes, such as tcp://host:8786."
+        ),
     ] = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Folder of the results; without it, sweeps/ID.")
