@@ -16,14 +16,17 @@ const shown = () => useMe.getState().at;
 function slowServer(): () => void {
   be("teacher");
   connect(bench);
-  const { promise, resolve } = Promise.withResolvers<void>();
+  let resolve = () => {};
+  const promise = new Promise<void>((done) => {
+    resolve = done;
+  });
   window.history.replaceState(null, "", "/?bench=stage");
   server.on("GET", "/me", TEACHER);
   server.on("GET", "/benches/stage", async () => {
     await promise;
     return { ...bench, id: "stage" };
   });
-  return resolve;
+  return () => resolve();
 }
 
 it.each([
