@@ -84,7 +84,7 @@ class Room:
 
     Parameters
     ----------
-    session : LiveBench or BlindView
+    session : LiveBench or View
         The bench as they see it.
     around : callable
         Returns the fields of a status that the bench itself does not know.
@@ -95,12 +95,16 @@ class Room:
         self.clients: set[Client] = set()
         self.cuts = SharedCuts(session)
         self.news = News(session, around)
+        self._scenario = session.scenario_id
         self._head = self._last = self._status_event = -1
         self._behind: list[tuple[tuple[int, int], ...]] = []
         self._status_at = 0.0
 
     def publish(self, now: float) -> Iterator[None]:
         """Offer every page the news; pause between groups of pages."""
+        if self.session.scenario_id != self._scenario:  # no status carries title, interval and blocks of another one
+            self._scenario = self.session.scenario_id
+            self.turn()
         head, last = self.cuts.refresh(), self.session.events.last
         self.cuts.gather()
         status = last != self._status_event and now - self._status_at >= EVENT_STATUS_S
@@ -115,6 +119,12 @@ class Room:
                 client.offer(**new)
                 if served % PAGES_AT_ONCE == 0:
                     yield
+
+
+    def turn(self) -> None:
+        """Close the streams, because another bench is to be seen; its pages come back at once."""
+        for client in list(self.clients):
+            client.close(CLOSE_TURNED, "the visible part of the bench has changed")
 
 
 class Hub:
@@ -239,8 +249,9 @@ class Hub:
 
     def turn_bench(self, bench_id: str) -> None:
         """Close the streams of a bench whose view has changed; its pages come back at once."""
-        for client in self._all(bench_id):
-            client.close(CLOSE_TURNED, "the visible part of the bench has changed")
+        for seen, room in self._rooms.items():
+            if seen.id == bench_id:
+                room.turn()
 
     def close_all(self, reason: str) -> None:
         """Close every stream because the server stops."""

@@ -95,10 +95,7 @@ async function put(lecture: Lecture, at: number): Promise<void> {
   jump.to("live");
   // on a phone the vote of the cue before leaves the place to the lanes
   useView.setState(({ extra }) => ({ sample: undefined, extra: extra === "vote" ? "" : extra }));
-  const shown = useBench.getState().bench;
-  // a status carries neither the title nor the sample interval of another scenario
-  const isOther = bench.title !== shown?.title || bench.dt_ms !== shown.dt_ms;
-  if (bench.id !== stage || bench.id !== shown?.id || isOther) openBench(bench.id, true);
+  if (bench.id !== stage || bench.id !== useBench.getState().bench?.id) openBench(bench.id, true);
   if (stage && bench.id !== stage) await remove(stage);
   useLecture.setState({ at, tick, stage: bench.id });
   keep();

@@ -3,7 +3,6 @@ import { beforeEach, expect, it, vi } from "vitest";
 import { useLecture } from "../../bench/lecture";
 import { useView } from "../../bench/view-store";
 import { showVote } from "../../bench/vote";
-import { useBench } from "../../stream/bench-store";
 import { server } from "../../testing/fake-server";
 import { connect } from "../../testing/fake-transport";
 import { recordedAnswer, recordedBench } from "../../testing/recorded";
@@ -57,17 +56,6 @@ it.each([
   const { user } = mount(<Page />);
   await user.keyboard(key);
   await vi.waitFor(() => expect(cuesAsked()).toEqual([String(number)]));
-});
-
-it("opens the stream anew after a cue of another scenario: no status carries its title", async () => {
-  const board = begin();
-  const other = { ...bench, title: "Seven steps" };
-  server.on("POST", "/lectures/:id/cues/:number", { bench: other, tick: 20, digest: "" });
-  const { user } = mount(<Page />);
-  await user.keyboard("{PageDown}");
-  await vi.waitFor(() => expect(board.isOpen).toBe(false));
-  board.hello(other);
-  expect(useBench.getState().bench?.title).toBe("Seven steps");
 });
 
 it("R runs the bench, W asks why, A opens the vote and X reveals it", async () => {
