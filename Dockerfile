@@ -1,5 +1,5 @@
 # The bench in one image: page built, kernels compiled for this processor and for levels of others, one worker, no root.
-# A tag moves; README.md says how to pin it by its digest.
+# A tag moves; docs/container.md explains how to pin it by its digest.
 ARG BASE=python:3.11-slim-bookworm
 
 # ---- what both builds need
@@ -40,7 +40,7 @@ RUN .venv/bin/uv pip install --quiet --no-deps --editable . \
  && .venv/bin/python -m compileall -q -j 0 core scenarios server .venv/lib \
  && .venv/bin/python -m scenarios.built_kernels \
  && .venv/bin/python -m scenarios.kernels && chmod -R a+rX kernels \
- && .venv/bin/python -m server.runs.build_figures \
+ && .venv/bin/python -m server.runs.figures \
  && .venv/bin/python -m pip uninstall --quiet --yes uv pip setuptools \
  && /audit/bin/python scripts/audit.py python sbom --python .venv/bin/python
 

@@ -41,7 +41,7 @@ flakes: setup  ## Run a suite again and again beside busy processes; list the te
 mutations: setup  ## Plant known faults one by one, and see that the tests notice (ARGS=words of their names)
 	@.venv/bin/python scripts/mutations.py $(ARGS)
 
-check: $(PYTHON_STAMP) $(NODE_STAMP)  ## Run the static checks: format, lint, imports, types
+check: $(PYTHON_STAMP) $(NODE_STAMP)  ## Run the static checks: format, lint, imports, types; list changed sentences for a second look
 	@.venv/bin/python scripts/run_tests.py check
 
 fix: $(PYTHON_STAMP) $(NODE_STAMP)  ## Format everything and mend what the linters can mend
@@ -55,16 +55,16 @@ bench: $(PYTHON_STAMP)  ## Measure speed, each figure as a ratio to a peer in th
 	@.venv/bin/combbench bench $(ARGS)
 
 load: setup  ## Many watchers of one bench for 20 s: frame rate, latency, board timing
-	@.venv/bin/python scripts/load.py $(ARGS)
+	@.venv/bin/python scripts/load.py pages $(ARGS)
 
 page-speed: setup  ## How often eight scopes are drawn, what a frame costs, how soon a click acts, the heap over 30 min, campaigns
 	@cd web && ../scripts/npm exec -- playwright test -c measure.config.ts $(ARGS)
 
 class-load: setup  ## A class of 30 students and 60 watchers: joining, effects, memory
-	@.venv/bin/python scripts/class_load.py $(ARGS)
+	@.venv/bin/python scripts/load.py class $(ARGS)
 
 soak: setup  ## Eight benches and watchers for 30 minutes: memory and timing must stay flat
-	@.venv/bin/python scripts/load.py --benches 8 --watchers 8 --seconds 1800 --flat $(ARGS)
+	@.venv/bin/python scripts/load.py pages --benches 8 --watchers 8 --seconds 1800 --flat $(ARGS)
 
 wheel: $(PYTHON_STAMP)  ## Build a wheel with machine code for x86-64-v2, x86-64-v3 and aarch64 Linux, for this version of Python
 	@.venv/bin/python -m scenarios.built_kernels
@@ -77,10 +77,11 @@ audit: $(PYTHON_STAMP) $(NODE_STAMP) ## List all packages into sbom/, and ask th
 	@.venv/bin/python scripts/audit.py python sbom
 	@.venv/bin/python scripts/audit.py page sbom
 
-codegen: $(PYTHON_STAMP) $(NODE_STAMP)  ## Regenerate the page's types from the service's OpenAPI document, and the answers its tests use
+codegen: $(PYTHON_STAMP) $(NODE_STAMP)  ## Regenerate the page's types, the answers its tests use, and the generated parts of the documents
 	@.venv/bin/python -m server.openapi > web/openapi.json
 	@scripts/npm --prefix web run codegen
 	@.venv/bin/python scripts/record_answers.py
+	@.venv/bin/python scripts/write_documents.py
 
 digests: $(KERNEL_STAMP)  ## Renew the digests tests hold runs to (ARGS=--draw: with other benches)
 	@.venv/bin/python -m tests.scenarios.digests --renew $(ARGS)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from core.block import FloatArray
 from core.board.parse import parse
@@ -138,9 +137,8 @@ def _shares(geometry: Geometry, draws: int, seed: int) -> DeviceSpread:
     return DeviceSpread(spread.drawn, {name: spread.found[name] / value for name, value in evaluate(geometry).items()})
 
 
-@dataclass(frozen=True)
-class Statistics:
-    """Spread of one parameter over the drawn devices."""
+class SpreadStatistics(BaseModel):
+    """The spread of one parameter."""
 
     variation_pct: float
     p01: float
@@ -148,7 +146,7 @@ class Statistics:
     p99: float
 
     @classmethod
-    def of(cls, spread: DeviceSpread, name: str) -> Statistics:
+    def of(cls, spread: DeviceSpread, name: str) -> SpreadStatistics:
         """Return the statistics of one parameter."""
         low, middle, high = (spread.percentile(name, share) for share in (1.0, 50.0, 99.0))
-        return cls(spread.variation_pct(name), low, middle, high)
+        return cls(variation_pct=spread.variation_pct(name), p01=low, p50=middle, p99=high)

@@ -6,14 +6,17 @@
 from __future__ import annotations
 
 import argparse
+import shutil
 import subprocess
 import sys
 from collections import Counter
 
-from run_tests import REPORT, find_browser, tests
+from run_tests import REPORT, ROOT, find_browser, tests
 
 PARTS = ("python", "page", "browser")
 BUSY = "while True: pass"
+# The browser part keeps the pictures of its failures here until it runs again.
+PICTURES = ROOT / "web" / "test-results"
 
 
 def main() -> int:
@@ -41,13 +44,17 @@ def main() -> int:
                 failed = [outcome.name for outcome in step.outcomes if outcome.state == "failed"]
                 failures.update(failed)
                 broken += step.code != 0
+                if step.code and PICTURES.exists():
+                    shutil.copytree(PICTURES, REPORT / f"round-{number + 1}", dirs_exist_ok=True)
                 print(f"round {number + 1}: {step.summary().strip()}", flush=True)
     finally:
         for process in busy:
             process.kill()
             process.wait()
     print(
-        f"\n{broken} of the steps failed", *(f"{count:4} x {name}" for name, count in failures.most_common()), sep="\n"
+        f"\n{broken} of the steps failed; pictures of them are in {REPORT}",
+        *(f"{count:4} x {name}" for name, count in failures.most_common()),
+        sep="\n",
     )
     return 1 if broken else 0
 

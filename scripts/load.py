@@ -1,7 +1,9 @@
 """Put a server of our own under load on loopback, measure, and say whether it kept its promises.
 
-Every watcher is a WebSocket client that acknowledges each frame and commands now and then; one more subscribes and
-never reads. All of them run in this process, whose share of a processor is printed with the server's share.
+``pages`` watch some benches: each is a WebSocket client that acknowledges every frame and commands now and then; one
+more subscribes and never reads. In a ``class`` students join one after another as fast as the server admits them, each
+opens the stream of the own bench and commands it; a teacher's grid asks for all of them every second; further pages
+watch one more bench. All clients run in this process, whose share of a processor is printed with the server's share.
 """
 
 from __future__ import annotations
@@ -18,7 +20,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Coroutine
+from collections.abc import Coroutine
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,22 +28,24 @@ from typing import Any
 
 import httpx
 import uvloop
-from watcher import Watcher
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed
+from websockets.typing import Subprotocol
 
-SETTLE_S = 1.5
+from server.stream.codec import HEADER
+from server.stream.wire import SUBPROTOCOL
+
+SETTLE_S = 2.0
 """Not measured: opening connections, and building at first use."""
+COMMAND = {"set": {"controllers.mrac.adaptation_gain": 1.0}}
+"""What watchers send; it leaves the bench as it is."""
+SIGNALS = ["reference.voltage", "drive.voltage", "plant.displacement", "sensor.displacement"]
+SUBSCRIBE = {"type": "subscribe", "panel": 1, "signals": SIGNALS, "mode": "roll", "window_ms": 4, "width": 800}
 
 
 def percentile(values: list[float], share: float) -> float:
     """Return the value below which ``share`` of the values are; NaN without values."""
     return sorted(values)[min(len(values) - 1, int(share * len(values)))] if values else float("nan")
-
-
-COMMANDS: dict[str, dict[str, object] | None] = {
-    "time_scale": None,
-    "set": {"set": {"controllers.mrac.adaptation_gain": 1.0}},
-}
-"""Commands of watchers by kind; they leave the bench as it is. The time scale is the scale of the bench."""
 
 
 class Server:
@@ -76,11 +80,14 @@ class Server:
             time.sleep(0.1)
         raise SystemExit("the server did not become ready")
 
-    def add_bench(self, scale: float) -> dict[str, Any]:
-        """Start a bench."""
-        answer = self.http.post("/api/v1/benches", json={"scenario": "first-look", "time_scale": scale})
-        answer.raise_for_status()
-        found: dict[str, Any] = answer.json()
+    def post(self, path: str, body: dict[str, Any]) -> dict[str, Any]:
+        """Post as the teacher."""
+        found: dict[str, Any] = self.http.post(path, json=body).raise_for_status().json()
+        return found
+
+    def get(self, path: str) -> dict[str, Any]:
+        """Get as the teacher."""
+        found: dict[str, Any] = self.http.get(path).raise_for_status().json()
         return found
 
     def count(self) -> Counts:
@@ -148,114 +155,245 @@ def _histogram(text: str, name: str) -> dict[float, float]:
     return {float(edge): float(count) for edge, count in edges}
 
 
-async def command(watcher: Watcher, phase: float, per_s: float) -> None:
-    """Send commands at a steady pace, until cancelled."""
-    await asyncio.sleep(phase / per_s)
-    while True:
-        watcher.ask()
-        await asyncio.sleep(1.0 / per_s)
+class Watcher:
+    """One page's stream, at little cost, so that the server is measured.
+
+    Parameters
+    ----------
+    line : ClientConnection
+        An open stream.
+    """
+
+    def __init__(self, line: ClientConnection) -> None:
+        self._line, self.seen, self.closed = line, asyncio.Event(), ""
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin to measure anew."""
+        self.frames = 0
+        self.late_ms: list[float] = []
+        self.replies_ms: list[float] = []
+
+    async def read(self) -> None:
+        """Take and acknowledge every frame until the server closes."""
+        await self._line.send(json.dumps(SUBSCRIBE))
+        try:
+            async for message in self._line:
+                now = time.monotonic()
+                if isinstance(message, bytes):
+                    _, _, _, number, _, _, cut_s = HEADER.unpack_from(message)
+                    await self._line.send(f'{{"type":"ack","frame":{number}}}')
+                    self.frames += 1
+                    self.seen.set()
+                    self.late_ms.append(1e3 * (now - cut_s))
+                elif message.startswith('{"type":"reply"'):
+                    self.replies_ms.append(1e3 * (now - float(json.loads(message)["id"])))
+        except ConnectionClosed:
+            pass
+        self.closed = f"{self._line.close_code} {self._line.close_reason}"
+
+    async def command(self, phase: float, per_s: float) -> None:
+        """Send commands at a steady pace; their answers tell how long they took."""
+        await asyncio.sleep(phase / per_s)
+        while not self.closed:
+            await self._line.send(json.dumps({"type": "command", "id": str(time.monotonic()), "command": COMMAND}))
+            await asyncio.sleep(1.0 / per_s)
 
 
-async def drive(server: Server, told: argparse.Namespace) -> dict[str, Any]:
-    """Run the load and return the measurements."""
-    loop = asyncio.get_running_loop()
-    benches = [server.add_bench(told.scale) for _ in range(told.benches)]
-    watchers = []
-    for number in range(told.watchers + 1):
-        bench = benches[number % len(benches)]["id"]
-        address = f"ws://{server.address}/api/v1/benches/{bench}/stream"
-        watcher = Watcher(address, server.token, COMMANDS[told.kind] or {"kind": "time_scale", "value": told.scale})
-        await loop.create_connection(lambda watcher=watcher: watcher, "127.0.0.1", server.port)  # type: ignore[misc]
-        await watcher.opened.wait()
-        watchers.append(watcher)
-    *watchers, stalled = watchers
-    stalled.stop_reading()
-    asking = []
-    if told.commands:
-        phases = enumerate(watchers)
-        asking = [asyncio.create_task(command(one, i / len(watchers), told.commands)) for i, one in phases]
-    await asyncio.sleep(SETTLE_S)
-    before = await asyncio.to_thread(server.count)
-    for watcher in watchers:
-        watcher.forget()
-    memory = []
-    while (now := time.monotonic()) < before.at + told.seconds:
-        memory.append(server.memory_mb())
-        await asyncio.sleep(min(max(1.0, told.seconds / 100), before.at + told.seconds - now))
-    frames = [watcher.frames for watcher in watchers]
-    after = await asyncio.to_thread(server.count)
-    for task in asking:
-        task.cancel()
-    for watcher in [*watchers, stalled]:
-        watcher.leave()
-    elapsed = after.at - before.at
-    late = [late for watcher in watchers for late in watcher.late_ms]
-    replies = [reply for watcher in watchers for reply in watcher.replies_ms]
-    device_s = (after.ticks - before.ticks) * benches[0]["dt_ms"] * 1e-3
-    settled = memory[len(memory) // 10 :]
+async def open_stream(server: Server, bench: str, secret: str) -> ClientConnection:
+    """Open the stream of a bench."""
+    return await connect(
+        f"ws://{server.address}/api/v1/benches/{bench}/stream",
+        additional_headers={"Authorization": f"Bearer {secret}"},
+        subprotocols=[Subprotocol(SUBPROTOCOL)],
+        compression=None,
+        proxy=None,
+        max_size=None,
+        close_timeout=1.0,
+    )
+
+
+class Load:
+    """The watchers of a server, and the measurements of both.
+
+    Parameters
+    ----------
+    server : Server
+        The server.
+    tasks : asyncio.TaskGroup
+        In which they read.
+    """
+
+    def __init__(self, server: Server, tasks: asyncio.TaskGroup) -> None:
+        self.server, self._group = server, tasks
+        self.watchers: list[Watcher] = []
+        self._tasks: list[asyncio.Task[None]] = []
+
+    def begin(self, work: Coroutine[Any, Any, None]) -> None:
+        """Do something until the load ends."""
+        self._tasks.append(self._group.create_task(work))
+
+    async def watch(self, bench: str, secret: str) -> Watcher:
+        """Add a watcher, and wait for its first picture."""
+        watcher = Watcher(await open_stream(self.server, bench, secret))
+        self.watchers.append(watcher)
+        self.begin(watcher.read())
+        await watcher.seen.wait()
+        return watcher
+
+    def command(self, watchers: list[Watcher], per_s: float) -> None:
+        """Let watchers command, one after another."""
+        for number, watcher in enumerate(watchers if per_s else []):
+            self.begin(watcher.command(number / len(watchers), per_s))
+
+    async def measure(self, seconds: float, flat_after: float) -> dict[str, Any]:
+        """Measure for a while, then end the load; memory may grow in a first share of the time."""
+        await asyncio.sleep(SETTLE_S)
+        before = await asyncio.to_thread(self.server.count)
+        for watcher in self.watchers:
+            watcher.forget()
+        memory = []
+        while time.monotonic() < before.at + seconds:
+            memory.append(self.server.memory_mb())
+            await asyncio.sleep(1.0)
+        after = await asyncio.to_thread(self.server.count)
+        elapsed = after.at - before.at
+        frames = [watcher.frames / elapsed for watcher in self.watchers]
+        replies = [reply for watcher in self.watchers for reply in watcher.replies_ms]
+        late = [late for watcher in self.watchers for late in watcher.late_ms]
+        closed = [watcher.closed for watcher in self.watchers if watcher.closed]
+        for task in self._tasks:
+            task.cancel()
+        settled = memory[int(flat_after * len(memory)) :]
+        return {
+            "frames_per_s_slowest": round(min(frames), 1),
+            "cut_to_receipt_p95_ms": round(percentile(late, 0.95), 1),
+            "cut_to_receipt_p99_ms": round(percentile(late, 0.99), 1),
+            "command_reply_p95_ms": round(percentile(replies, 0.95), 1),
+            "command_reply_p99_ms": round(percentile(replies, 0.99), 1),
+            "loop_lag_p99_ms": after.lag_p99_ms(before),
+            "rounds_over_0.1_s_late": after.woke_late(before),
+            "overruns": after.overruns - before.overruns,
+            "ticks_per_s": round((after.ticks - before.ticks) / elapsed, 1),
+            "server_share_of_a_core": round((after.processor_s - before.processor_s) / elapsed, 3),
+            "clients_share_of_a_core": round((after.own_s - before.own_s) / elapsed, 3),
+            "memory_mb": round(settled[-1]),
+            "memory_growth_mb": round(max(settled[len(settled) // 2 :]) - settled[0], 1),
+            "closed": closed,
+        }
+
+
+async def watch_benches(server: Server, given: argparse.Namespace) -> dict[str, Any]:
+    """Let pages watch some benches, and one more that never reads."""
+    asked = {"scenario": "first-look", "time_scale": given.scale}
+    benches = [server.post("/api/v1/benches", asked) for _ in range(given.benches)]
+    async with asyncio.TaskGroup() as tasks:
+        load = Load(server, tasks)
+        for number in range(given.watchers):
+            await load.watch(benches[number % len(benches)]["id"], server.token)
+        stalled = await open_stream(server, benches[0]["id"], server.token)
+        await stalled.send(json.dumps(SUBSCRIBE))
+        load.command(load.watchers, given.commands)
+        found = await load.measure(given.seconds, 0.1)
+        stalled.transport.abort()
+    device_s = found.pop("ticks_per_s") * benches[0]["dt_ms"] * 1e-3
+    return {**found, "board_rate": round(device_s / (given.scale * given.benches), 4)}
+
+
+def promises_to_pages(found: dict[str, Any], given: argparse.Namespace) -> dict[str, bool]:
+    """Return the promises to pages, and whether each was kept."""
     return {
-        "frames_per_s_slowest": round(min(frames) / elapsed, 1),
-        "frames_per_s_mean": round(sum(frames) / len(frames) / elapsed, 1),
-        "cut_to_receipt_p50_ms": round(percentile(late, 0.5), 1),
-        "cut_to_receipt_p99_ms": round(percentile(late, 0.99), 1),
-        "command_reply_p50_ms": round(percentile(replies, 0.5), 1),
-        "command_reply_p99_ms": round(percentile(replies, 0.99), 1),
-        "loop_lag_p99_ms": after.lag_p99_ms(before),
-        "server_share_of_a_core": round((after.processor_s - before.processor_s) / elapsed, 3),
-        "clients_share_of_a_core": round((after.own_s - before.own_s) / elapsed, 3),
-        "board_rate": round(device_s / (told.scale * told.benches * elapsed), 4),
-        "overruns": after.overruns - before.overruns,
-        "memory_mb": round(settled[-1]),
-        "memory_growth_mb": round(max(settled[-len(settled) // 4 :]) - settled[0], 1),
-        "stalled": stalled.closed or "cut off",
-        "closed": [watcher.closed for watcher in watchers if watcher.closed],
-    }
-
-
-def broken(found: dict[str, Any], flat: bool) -> list[str]:
-    """Name the promises that were not kept."""
-    kept = {
         "every watcher gets 20 frames/s": found["frames_per_s_slowest"] >= 20,
         "no watcher is dropped": not found["closed"],
         "every bench keeps its rate within 1 %": abs(found["board_rate"] - 1) <= 0.01,
         "event loop lag p99 < 20 ms": found["loop_lag_p99_ms"] <= 20,
-        "memory is flat within 10 %": not flat or found["memory_growth_mb"] < 0.1 * found["memory_mb"],
+        "memory is flat within 10 %": not given.flat or found["memory_growth_mb"] < 0.1 * found["memory_mb"],
     }
-    return [promise for promise, is_kept in kept.items() if not is_kept]
 
 
-def under(load: Callable[[Server], Coroutine[Any, Any, dict[str, Any]]], watchers: int) -> dict[str, Any]:
-    """Start a server, put a load on it, stop it; return the measurements."""
-    with tempfile.TemporaryDirectory() as folder:
-        server = Server(Path(folder), watchers)
-        try:
-            server.wait_ready()
-            return uvloop.run(load(server))
-        finally:
-            server.stop()
+async def look(client: httpx.AsyncClient, path: str, taken_ms: list[float]) -> None:
+    """Ask for the grid every second, as the teacher's page does."""
+    while True:
+        began = time.monotonic()
+        (await client.get(path)).raise_for_status()
+        taken_ms.append(1e3 * (time.monotonic() - began))
+        await asyncio.sleep(1.0)
 
 
-def report(found: dict[str, Any], missed: list[str]) -> int:
-    """Print the measurements and the promises that were not kept; return the exit code."""
-    print(json.dumps(found, indent=2))
-    for promise in missed:
-        print(f"not kept: {promise}")
-    return 1 if missed else 0
+async def hold_class(server: Server, given: argparse.Namespace) -> dict[str, Any]:
+    """Let students join and command their benches, while further pages watch one more bench."""
+    bench = server.post("/api/v1/benches", {"scenario": "first-look"})
+    group = server.post("/api/v1/classes", {"name": "Load"})
+    path = f"/api/v1/classes/{group['id']}"
+    base: dict[str, Any] = {"base_url": f"http://{server.address}", "trust_env": False, "timeout": 60.0}
+    async with asyncio.TaskGroup() as tasks, httpx.AsyncClient(**base) as client:
+        load = Load(server, tasks)
+        grid_ms: list[float] = []
+
+        async def join(name: str) -> tuple[Watcher, float]:
+            began, headers = time.monotonic(), {"Origin": f"http://{server.address}"}
+            answer = await client.post(f"{path}/join", json={"code": group["code"], "name": name}, headers=headers)
+            joined = answer.raise_for_status().json()
+            return await load.watch(joined["bench"], joined["session"]), time.monotonic() - began
+
+        joined = await asyncio.gather(*(join(f"Student {number}") for number in range(given.students)))
+        for _ in range(given.watchers):
+            await load.watch(bench["id"], server.token)
+        load.command([watcher for watcher, _ in joined], given.commands)
+        client.headers["Authorization"] = f"Bearer {server.token}"
+        load.begin(look(client, f"{path}/members", grid_ms))
+        found = await load.measure(given.seconds, 0.5)
+        benches = [server.get(f"/api/v1/benches/{tile['bench']}") for tile in server.get(f"{path}/members")["members"]]
+    return {
+        **found,
+        "join_to_trace_p95_s": round(percentile([took for _, took in joined], 0.95), 2),
+        "grid_p95_ms": round(percentile(grid_ms, 0.95), 1),
+        "slowest_rate_of_a_bench": round(min(one["achieved_scale"] / one["time_scale"] for one in benches), 3),
+    }
+
+
+def promises_to_a_class(found: dict[str, Any], _: argparse.Namespace) -> dict[str, bool]:
+    """Return the promises to a class, and whether each was kept."""
+    return {
+        "from the code to a moving trace, p95 <= 3 s": found["join_to_trace_p95_s"] <= 3,
+        "effect of a command, p95 <= 250 ms": found["command_reply_p95_ms"] + found["cut_to_receipt_p95_ms"] <= 250,
+        "no overrun": found["overruns"] == 0,
+        "memory < 1.5 GB, and flat": found["memory_mb"] < 1500 and found["memory_growth_mb"] < 30,
+        "no page is dropped": not found["closed"],
+    }
 
 
 def main() -> int:
-    """Read the arguments, run, report."""
+    """Read the arguments, run, report; the exit code is 1 when a promise was not kept."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--benches", type=int, default=1)
-    parser.add_argument("--watchers", type=int, default=20, help="spread over the benches")
-    parser.add_argument("--seconds", type=float, default=20.0)
-    parser.add_argument("--scale", type=float, default=1.0, help="device seconds per second")
-    parser.add_argument("--commands", type=float, default=2.0, help="per second and watcher; each is an event for all")
-    parser.add_argument("--kind", choices=COMMANDS, default="time_scale", help="of the commands")
-    parser.add_argument("--flat", action="store_true", help="memory must not grow")
-    told = parser.parse_args()
-    found = under(lambda server: drive(server, told), told.watchers)
-    return report(found, broken(found, told.flat))
+    kinds = parser.add_subparsers(required=True)
+    pages = kinds.add_parser("pages")
+    pages.set_defaults(load=watch_benches, promises=promises_to_pages, students=0)
+    pages.add_argument("--benches", type=int, default=1)
+    pages.add_argument("--watchers", type=int, default=20, help="spread over the benches")
+    pages.add_argument("--seconds", type=float, default=20.0)
+    pages.add_argument("--scale", type=float, default=1.0, help="device seconds per second")
+    pages.add_argument("--commands", type=float, default=2.0, help="per second and page; each is an event for all")
+    pages.add_argument("--flat", action="store_true", help="memory must not grow")
+    group = kinds.add_parser("class")
+    group.set_defaults(load=hold_class, promises=promises_to_a_class)
+    group.add_argument("--students", type=int, default=30)
+    group.add_argument("--watchers", type=int, default=60, help="of the teacher's bench")
+    group.add_argument("--seconds", type=float, default=180.0, help="histories of students are full after five minutes")
+    group.add_argument("--commands", type=float, default=0.5, help="per second and student")
+    given = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        server = Server(Path(folder), given.students + given.watchers)
+        try:
+            server.wait_ready()
+            found = uvloop.run(given.load(server, given))
+        finally:
+            server.stop()
+    print(json.dumps(found, indent=2))
+    missed = [promise for promise, is_kept in given.promises(found, given).items() if not is_kept]
+    for promise in missed:
+        print(f"not kept: {promise}")
+    return 1 if missed else 0
 
 
 if __name__ == "__main__":

@@ -88,6 +88,7 @@ def checks() -> list[Step]:
         Step("format", [f"{BIN}ruff", "format", "--check", "."]),
         Step("lint", [f"{BIN}ruff", "check", "."]),
         Step("imports", [f"{BIN}lint-imports"]),
+        Step("prose", [f"{BIN}python", "scripts/prose.py"]),
         Step("types", [f"{BIN}mypy"], aside=True),
         Step("page-check", [*NPM, "run", "check"], aside=True),
     ]

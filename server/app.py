@@ -11,7 +11,6 @@ from fastapi import FastAPI
 from scenarios import wall
 from server import errors
 from server.api import (
-    aliases,
     audit,
     benches,
     benchmarks,
@@ -33,10 +32,10 @@ from server.api import (
     lesson,
     links,
     me,
-    metrics,
     narration,
     parameter_sets,
     places,
+    qr,
     readouts,
     recordings,
     runs,
@@ -69,7 +68,6 @@ from server.version import VERSION
 ROUTERS = (
     catalog,
     devices,
-    aliases,
     scenarios,
     units,
     benches,
@@ -94,6 +92,7 @@ ROUTERS = (
     classes,
     lesson,
     driving,
+    qr,
     blind,
     captures,
     games,
@@ -123,7 +122,7 @@ def create_app(settings: Settings) -> FastAPI:
     service = Service(settings)
     public = service.public
     token = settings.token.get_secret_value() if settings.token else token_of(settings.data)
-    identity = Identity(token, public, loopback_only=settings.classroom, shard=settings.shard)
+    identity = Identity(token, public, loopback_only=settings.classroom)
 
     frames: Frames | None = None
 
@@ -146,9 +145,9 @@ def create_app(settings: Settings) -> FastAPI:
         servers=[{"url": str(public)}] if public.origin else None,
     )
     app.state.service, app.state.identity = service, identity
-    errors.install(app, public.prefix)
+    errors.install(app)
     document.install(app)
-    for module in (*ROUTERS, health, metrics, joining, places):
+    for module in (*ROUTERS, health, joining, places):
         app.router.routes += module.router.routes
     if importlib.util.find_spec("server.view3d") is not None:
         from server.api import view3d
@@ -167,17 +166,9 @@ def create_app(settings: Settings) -> FastAPI:
     app.add_middleware(
         Gate,
         identity=identity,
-        people=service.people,
-        driving=service.driving,
-        come_back=service.come_back,
-        is_blind=service.views.is_blind,
         origin=OriginPolicy(settings.host, settings.allowed_hosts, public, settings.classroom),
-        open_paths=frozenset({"/metrics"}) if settings.metrics_open else frozenset(),
-        prefix=public.prefix,
+        service=service,
         frames=frames,
-        units=settings.units,
-        student_events=settings.student_events,
-        clock=service.clock,
     )
     app.add_middleware(errors.CatchAll)
     app.add_middleware(SecurityHeaders, prefix=public.prefix, frames=frames)

@@ -7,11 +7,10 @@ import logging
 from collections.abc import Iterable, Mapping, Sequence
 from http import HTTPStatus
 from typing import Any
-from urllib.parse import urlencode
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
-from fastapi.responses import JSONResponse, RedirectResponse, Response
+from fastapi.responses import JSONResponse
 from pydantic import BaseModel, field_validator
 from sqlalchemy.exc import DBAPIError
 from starlette.exceptions import HTTPException
@@ -25,7 +24,6 @@ from scenarios.arrow import pa
 
 log = logging.getLogger(__name__)
 
-SHARD = "shard"
 """Name in the query of an address that tells the proxy which of several processes it leads to."""
 LONGEST = 300
 """Characters of a message, a field or a hint: one line a person reads."""
@@ -84,20 +82,6 @@ class ApiError(HTTPException):
     ) -> None:
         super().__init__(status, message, dict(headers or {}))
         self.body = ErrorBody(code=code, message=message, field=field, hint=hint)
-
-
-class Elsewhere(Exception):
-    """Another of several processes has it; the answer redirects there through the proxy.
-
-    Parameters
-    ----------
-    shard : str
-        Its letter.
-    """
-
-    def __init__(self, shard: str) -> None:
-        super().__init__(shard)
-        self.shard = shard
 
 
 def not_found(noun: str, name: str, hint: str = "", field: str = "", known: Iterable[str] = ()) -> ApiError:
@@ -176,36 +160,19 @@ REFUSED = (InputError, ApiError, DBAPIError)
 
 
 def why(error: Exception) -> str:
-    """Return in words why something was refused."""
+    """Return the reason of a refusal in words; the cause of a failure of the database goes to the log alone."""
     if isinstance(error, DBAPIError):
         log.error("the database refused: %s", error.orig)
         return STORAGE
     return str(error)
 
 
-def install(app: FastAPI, prefix: str) -> None:
-    """Answer every failure of ``app`` in the one shape.
-
-    Parameters
-    ----------
-    app : FastAPI
-        The application.
-    prefix : str
-        The prefix a proxy takes off every path.
-    """
+def install(app: FastAPI) -> None:
+    """Answer every failure of ``app`` in the one shape."""
 
     @app.exception_handler(ApiError)
     async def _(_request: Request, error: ApiError) -> JSONResponse:
         return reply(error.status_code, error.body, error.headers)
-
-    @app.exception_handler(Elsewhere)
-    async def _(request: Request, error: Elsewhere) -> Response:
-        if request.query_params.get(SHARD) == error.shard:
-            text = f"process {error.shard} has that, and the proxy does not lead there"
-            return reply(409, ErrorBody(code="elsewhere", message=text, hint="docs/scaling.md has its set-up"))
-        rest = [(name, value) for name, value in request.query_params.multi_items() if name != SHARD]
-        query = urlencode([*rest, (SHARD, error.shard)])
-        return RedirectResponse(f"{prefix}{request.url.path}?{query}", 307)
 
     @app.exception_handler(DBAPIError)
     async def _(_request: Request, error: DBAPIError) -> JSONResponse:

@@ -17,8 +17,7 @@ from server.bench.benches import Benches
 from server.bench.checkpoints import Checkpoints
 from server.bench.engine import Engine
 from server.bench.idling import Idling
-from server.bench.recording import Records
-from server.bench.reopening import Reopening
+from server.bench.recording import RecordingControl
 from server.bench.watchdog import Safety, Watchdog
 from server.classroom.audit import Audit
 from server.classroom.blinds import Blinds
@@ -38,7 +37,7 @@ from server.clock import Clock, ManualClock
 from server.computing.computing import Computing
 from server.lag import Lateness, probe
 from server.metrics import Metrics
-from server.runs.figures import Figures
+from server.runs.figures import ScenarioFigures
 from server.runs.jobs import Jobs
 from server.runs.kernels import Kernels
 from server.runs.queue import Queue
@@ -50,7 +49,7 @@ from server.security.person import Person
 from server.security.public import PublicOrigin
 from server.settings import Settings
 from server.store.change import Change
-from server.store.database import Database
+from server.store.database import FILE, Database
 from server.store.keeping import Keeping
 from server.store.links import Links
 from server.store.parameter_sets import ParameterSets
@@ -83,15 +82,10 @@ class Service:
         self.clock = ManualClock() if settings.clock == "manual" else Clock()
         self.hub = Hub(settings, self.metrics, self._lag, self.clock)
         self.engine = Engine(self.metrics, self._after_round, self.clock)
-        place = settings.data / "combbench.sqlite3"
-        self.database = self.shared = Database(settings.database_url or place)
-        if settings.shard and settings.database_url:  # others use that one too; classes and recordings stay here
-            self.database = Database(place)
-        self.databases = {self.database, self.shared}
-        shard = settings.shard
-        self.recordings = Recordings(self.database, settings.data / "recordings", settings.disk_reserve_bytes, shard)
-        self.parameter_sets = ParameterSets(self.shared)
-        self.people, self.audit = People(self.database, shard), Audit(self.database)
+        self.database = Database(settings.database_url or settings.data / FILE)
+        self.recordings = Recordings(self.database, settings.data / "recordings", settings.disk_reserve_bytes)
+        self.parameter_sets = ParameterSets(self.database)
+        self.people, self.audit = People(self.database), Audit(self.database)
         self.computing = Computing(self.clock)
         self.benches = Benches(self.engine, settings, self.metrics, self.computing, self.audit.witness)
         self.units = self.benches.builder.units
@@ -102,7 +96,7 @@ class Service:
         self.student_benches = StudentBenches(
             self.database, self.people, self.benches, self.swap, self.close_benches, self.checkpoints
         )
-        self.blinds, self.votes = Blinds(self.database, self.engine, self._turn_pages), Votes(self.database, shard)
+        self.blinds, self.votes = Blinds(self.database, self.engine, self._turn_pages), Votes(self.database)
         game_table = GameTable(self.database)
         self.classes = Classes(
             self.database,
@@ -114,15 +108,13 @@ class Service:
             self.votes,
             game_table,
             settings.max_students,
-            shard,
         )
-        self.records = Records(self.engine, self.recordings, settings.max_recording_ticks)
-        self.links = Links(self.shared, settings.max_links)
-        self.idling = Idling(self._present, settings.idle_minutes, self.clock)
-        self.queue = Queue(self.shared, settings, self.metrics)
+        self.records = RecordingControl(self.engine, self.recordings, settings.max_recording_ticks)
+        self.links = Links(self.database, settings.max_links)
+        self.queue = Queue(self.database, settings, self.metrics)
         self.jobs, self.thresholds = Jobs(self.queue, settings), Thresholds(self.queue, settings)
-        self.sweeps = Sweeps(self.queue, settings, self.shared)
-        self.figures = Figures(self.queue, settings)
+        self.sweeps = Sweeps(self.queue, settings, self.database)
+        self.figures = ScenarioFigures(self.queue, settings)
         self.games = Games(
             game_table,
             self.classes,
@@ -133,7 +125,7 @@ class Service:
             self._turn_pages,
             self.swap,
         )
-        self.keeping = Keeping(self.database, self.shared, settings)
+        self.keeping = Keeping(self.database, settings)
         self.safety = Safety(
             self.engine,
             self.records,
@@ -149,7 +141,7 @@ class Service:
         self.joining = Joining(self.classes, self.clock)
         self.sheets = Sheets(
             self.database,
-            Shelf(self.shared),
+            Shelf(self.database),
             self.classes,
             self.people,
             self.benches,
@@ -158,11 +150,17 @@ class Service:
             self.blinds,
         )
         self.viewers = _viewers()
-        self.views = Views(self.benches, self.people, self.hub, self.idling, self.viewers is not None, self.close_bench)
         self.file_turn, self.experiment_turn = asyncio.Semaphore(1), asyncio.Semaphore(1)
-        self.reopening = Reopening(
-            self.benches, self.engine, self.links, self.idling, self.close_bench, self.experiment_turn
+        self.idling = Idling(
+            self.benches,
+            self.engine,
+            self.links,
+            self._present,
+            settings.idle_minutes,
+            self.close_bench,
+            self.experiment_turn,
         )
+        self.views = Views(self.benches, self.people, self.hub, self.idling, self.viewers is not None, self.close_bench)
         self.kernels = Kernels()
         self.is_ready = False
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -171,8 +169,7 @@ class Service:
     async def running(self) -> AsyncIterator[None]:
         """Start everything, and stop it in the opposite order."""
         self._loop = asyncio.get_running_loop()
-        for database in self.databases:
-            await asyncio.to_thread(database.migrate)
+        await asyncio.to_thread(self.database.migrate)
         await self.recordings.recover()
         await self.people.recover()
         await self.lesson.recover()
@@ -186,7 +183,7 @@ class Service:
         await self.queue.recover()
         tasks = [asyncio.create_task(self.hub.run()), asyncio.create_task(probe(self.lag))]
         tasks.append(asyncio.create_task(self.keeping.run(self.clock)))
-        lasting = (self.audit, self.checkpoints, self.classes, self.driving, self.reopening, self.sheets)
+        lasting = (self.audit, self.checkpoints, self.classes, self.driving, self.idling, self.sheets)
         tasks += [asyncio.create_task(part.run(self.clock)) for part in lasting]
         tasks.append(asyncio.create_task(self.queue.warm(self._calm)))
         tasks.append(asyncio.create_task(self.computing.warm(self._calm)))
@@ -216,8 +213,7 @@ class Service:
             await self.audit.write()
             await asyncio.to_thread(self.watchdog.stop)
             await asyncio.to_thread(self.engine.stop)
-            for database in self.databases:
-                await asyncio.to_thread(database.close)
+            await asyncio.to_thread(self.database.close)
 
     async def _use_own_code(self) -> None:
         """Take code for this very processor once all of it is compiled, where code for its level has served so far."""

@@ -33,52 +33,66 @@ class Settings(BaseSettings):
     model_config = SettingsConfigDict(env_prefix=PREFIX, extra="forbid")
 
     host: str = Field(
-        "127.0.0.1", description="Address to listen on; anything but loopback needs a token or classroom."
+        "127.0.0.1",
+        description="Address on which the server listens. An address that other machines reach needs `token`, or "
+        "`classroom`, whose default is 0.0.0.0.",
     )
-    port: int = Field(8000, ge=0, le=65535, description="Port to listen on; 0 picks a free one.")
-    data: Path = Field(Path("data"), description="Folder for the database, recordings and run results.")
+    port: int = Field(8000, ge=0, le=65535, description="Port on which the server listens; 0 chooses a free one.")
+    data: Path = Field(Path("data"), description="Folder of the database, the recordings and the results of runs.")
     database_url: str = Field(
-        "", repr=False, description="Database by address, such as postgresql://...; SQLite in data if unset."
+        "", repr=False, description="Address of the database, such as `postgresql://...`; SQLite in `data` if unset."
     )
-    shard: str = Field(
-        "",
-        pattern="^[2-9a-hjkmnp-z]?$",
-        description="Letter of this process where several serve one public_origin; its ids and codes begin with it.",
+    token: SecretStr | None = Field(
+        None, description="Access token; if unset, the server makes one in the data folder."
     )
-    token: SecretStr | None = Field(None, description="Access token; made and kept in the data folder if unset.")
-    allowed_hosts: list[str] = Field([], description="Further host names the page may be opened under.")
+    allowed_hosts: list[str] = Field([], description="Further host names under which browsers may open the page.")
     public_origin: str = Field(
-        "", description="Address of the page behind a proxy, such as https://lab.example or https://lab.example/bench."
+        "",
+        description="Address of the page behind a proxy (docs/behind-a-proxy.md), such as `https://lab.example` or "
+        "`https://lab.example/bench`.",
     )
     trusted_proxies: list[str] = Field(
         [],
-        description="Addresses or networks of proxies whose X-Forwarded-For says where a request is from; for limits.",
+        description="Addresses or networks of proxies; limits count the addresses in their `X-Forwarded-For`.",
     )
     classroom: bool = Field(
-        False, description="Serve a class on this network without TLS; the token is accepted from this machine alone."
+        False,
+        description="Serve a class on this network without TLS (docs/teaching.md); the token then works on this "
+        "machine alone.",
     )
-    lti: list[Platform] = Field([], description="Learning platforms that may launch the bench by LTI 1.3.")
+    lti: list[Platform] = Field(
+        [], description="Learning platforms that may launch the bench by LTI 1.3, as tables `[[lti]]`: docs/lti.md."
+    )
     units: Literal["off", "teacher", "everyone"] = Field(
         "teacher",
-        description="Persons whose scenarios may carry their own units: none, the teacher, or everyone.",
+        description="Persons whose scenarios may carry user units (docs/own-units.md): `off`, `teacher` or `everyone`, "
+        "which needs the extra `wall` (docs/other-languages.md).",
     )
-    unit_files: list[Path] = Field([], description="User units, a file each, that every new bench has.")
-    metrics_open: bool = Field(False, description="Serve /metrics without a token.")
-    open_page: bool = Field(False, description="Open the page in a browser once the service answers.")
+    unit_files: list[Path] = Field(
+        [],
+        description="Files of user units that every new bench has, one unit each; `--unit FILE` on the command line.",
+    )
+    metrics_open: bool = Field(False, description="Serve `/metrics` without a token.")
+    open_page: bool = Field(False, description="Open the page in a browser once the server answers.")
 
     max_benches: int = Field(16, ge=1, le=256, description="Live benches at once.")
     idle_minutes: float = Field(
         15.0,
         ge=0,
-        description="Minutes until an unused bench is closed; 0 closes none.",
+        description="Minutes until an unused bench is closed; its address opens it again unchanged. 0 closes none.",
     )
-    max_students: int = Field(60, ge=1, le=500, description="Students of all classes, each with a bench beside those.")
-    student_history_mb: int = Field(16, ge=1, le=10_000, description="Memory of the history of a student's bench.")
-    student_ticks_per_s: int = Field(
-        20_000, ge=100, description="Ticks a second to which the time scale of a student's bench is limited."
+    max_students: int = Field(
+        60,
+        ge=1,
+        le=500,
+        description="Students of all classes; each has a bench that does not count as one of `max_benches`.",
     )
-    student_events: int = Field(1000, ge=1, description="Events that a scenario of a student may have.")
-    max_links: int = Field(10_000, ge=0, description="Experiments and layouts kept by a link.")
+    student_history_mb: int = Field(
+        16, ge=1, le=10_000, description="MB of memory for the history of a student's bench."
+    )
+    student_ticks_per_s: int = Field(20_000, ge=100, description="Most ticks that a student's bench runs in a second.")
+    student_events: int = Field(1000, ge=1, description="Most events of a student's scenario.")
+    max_links: int = Field(10_000, ge=0, description="Experiments and layouts that the server keeps for links.")
     max_clients: int = Field(512, ge=1, description="Open streams over all benches.")
     max_clients_per_bench: int = Field(256, ge=1, description="Open streams of one bench.")
     max_snapshots: int = Field(32, ge=1, description="Snapshots kept per bench.")
@@ -88,40 +102,59 @@ class Settings(BaseSettings):
     max_run_mb: int = Field(
         1000,
         ge=1,
-        description="MB of numbers in the trace of a run; beyond, it lacks taps, then outputs no figure is made of.",
+        description="MB of numbers in the trace of a run; beyond, it lacks taps, then outputs that no figure needs.",
     )
     max_sweep_runs: int = Field(100_000, ge=1, description="Runs of one campaign.")
     max_recording_ticks: int = Field(20_000_000, ge=1, description="Ticks of one recording.")
     quota_bytes: int = Field(
-        50_000_000_000, ge=0, description="Bytes of recordings, runs and their database; beyond, no new ones."
+        50_000_000_000,
+        ge=0,
+        description="Bytes of recordings, runs and their database; beyond, the server refuses new ones.",
     )
     disk_reserve_bytes: int = Field(
-        100_000_000, ge=0, description="Free space that is never used: recordings end, runs are refused."
+        100_000_000,
+        ge=0,
+        description="Bytes of the disk that stay free: with less, recordings end and runs are refused.",
     )
     retention_days: float = Field(
-        0.0, ge=0, description="Days recordings and runs are kept; 0 keeps them without limit."
+        0.0, ge=0, description="Days for which recordings and runs are kept; 0 keeps them without limit."
     )
     max_trace_ticks: int = Field(200_000, ge=1, description="Ticks of one full-rate trace download.")
-    history_ticks: int = Field(200_000, ge=2_000, le=5_000_000, description="Ticks every signal is kept for, at most.")
-    history_mb: int = Field(72, ge=1, le=10_000, description="Memory the history of one bench may take.")
+    history_ticks: int = Field(
+        200_000, ge=2_000, le=5_000_000, description="Most ticks of each signal in the history of a bench."
+    )
+    history_mb: int = Field(72, ge=1, le=10_000, description="MB of memory for the history of a bench.")
 
-    body_limit_bytes: int = Field(1 << 20, ge=1024, description="Largest request body.")
-    message_limit_bytes: int = Field(64 << 10, ge=1024, description="Largest WebSocket message of a client.")
-    command_rate_per_s: float = Field(20.0, gt=0, description="Commands per second one client may keep up.")
-    command_burst: int = Field(40, ge=1, description="Commands one client may send at once.")
-    frame_rate_hz: float = Field(60.0, gt=0, le=120, description="Frames per second of a stream.")
+    body_limit_bytes: int = Field(1 << 20, ge=1024, description="Bytes of the largest request body.")
+    message_limit_bytes: int = Field(
+        64 << 10, ge=1024, description="Bytes of the largest WebSocket message from a client."
+    )
+    command_rate_per_s: float = Field(
+        20.0, gt=0, description="Commands a second that a client may send in the long run."
+    )
+    command_burst: int = Field(40, ge=1, description="Commands that a client may send at once.")
+    frame_rate_hz: float = Field(60.0, gt=0, le=120, description="Frames a second of a stream.")
 
     clock: Literal["machine", "manual"] = Field(
         "machine",
-        description="Clock of benches and limits; manual is for tests on loopback: requests advance it.",
+        description="Clock of benches and limits; `manual` is for tests on loopback, where requests advance it.",
     )
-    run_workers: int = Field(1, ge=0, le=64, description="Processes for headless runs and campaigns; 0 refuses them.")
-    figures: bool = Field(
-        True, description="Make the figures that are missing when the gallery is opened, at low priority."
+    run_workers: int = Field(
+        1, ge=0, le=64, description="Processes that compute headless runs and campaigns; 0 refuses them."
     )
-    scheduler: str = Field("", description="Dask scheduler for campaigns; processes of this machine if unset.")
-    log_format: str = Field("auto", pattern="^(auto|text|json)$", description="Log lines: text, json, or by terminal.")
-    log_level: str = Field("INFO", pattern="^(DEBUG|INFO|WARNING|ERROR)$", description="Least severe line logged.")
+    figures: bool = Field(True, description="Make missing figures when the gallery is opened, at low priority.")
+    scheduler: str = Field(
+        "",
+        description="Address of a Dask scheduler for campaigns (docs/scaling.md); processes of this machine if unset.",
+    )
+    log_format: str = Field(
+        "auto",
+        pattern="^(auto|text|json)$",
+        description="Form of log lines: `text`, `json`, or `auto`: text in a terminal, else JSON.",
+    )
+    log_level: str = Field(
+        "INFO", pattern="^(DEBUG|INFO|WARNING|ERROR)$", description="Least severe level that is logged."
+    )
 
     @field_validator("trusted_proxies")
     @classmethod

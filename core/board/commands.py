@@ -24,10 +24,15 @@ class Timed(Table):
     kind: ClassVar[str]
     """Its name in the log."""
 
-    at_sample: int | None = Field(None, ge=0, description="sample at which it takes effect")
-    at_ms: float | None = Field(None, ge=0, le=LONGEST_MS, description="device time at which it takes effect")
+    at_sample: int | None = Field(None, ge=0, description="the sample at which the command takes effect")
+    at_ms: float | None = Field(
+        None, ge=0, le=LONGEST_MS, description="the device time at which the command takes effect"
+    )
     when: str | None = Field(
-        None, max_length=200, description="'<signal> > <value>' or '<signal> < <value>', watched from at_sample on"
+        None,
+        max_length=200,
+        description="the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; "
+        "it counts from at_sample on",
     )
 
     @model_validator(mode="after")
@@ -79,7 +84,9 @@ class Inject(Timed):
     fault: str
     severity: float
     profile: Profile = Profile()
-    parameters: dict[str, Any] = Field(default={}, max_length=20, description="what else the fault lets one choose")
+    parameters: dict[str, Any] = Field(
+        default={}, max_length=20, description="the other parameters of the fault, by name"
+    )
 
 
 class Set(Timed):
@@ -101,7 +108,7 @@ class MakeSafe(Timed):
     """Take the outputs to their safe values, as a trip does; says why."""
 
     kind = "make_safe"
-    make_safe: str = Field(min_length=1, max_length=200, description="why, in words")
+    make_safe: str = Field(min_length=1, max_length=200, description="the reason, in words")
 
 
 Command = ResetTrip | Heal | Inject | Set | Switch | MakeSafe

@@ -23,22 +23,24 @@ SMALLEST = 1e-30
 class Turn(BaseModel):
     """The last change of the verdict up to a sample."""
 
-    tick: int | None = Field(description="The first sample with the verdict there is; none in what is kept")
-    before: str = Field(description="The verdict before it; empty without a change")
-    since: int = Field(description="The first sample kept")
+    tick: int | None = Field(description="First sample with the present verdict; null if that sample is no longer kept")
+    before: str = Field(description="Verdict before that sample; empty without a change")
+    since: int = Field(description="First sample that is kept")
 
 
 class ModelAccount(BaseModel):
     """One hypothesis before and after a sample."""
 
     name: str
-    residual_um: list[float] = Field(description="For each displacement measured")
-    covariance_um2: list[list[float]] | None = Field(description="Of the residuals, row by row")
+    residual_um: list[float] = Field(description="One residual for each measured displacement")
+    covariance_um2: list[list[float]] | None = Field(description="Covariance of the residuals, row by row")
     log_likelihood: float | None
     prior: float
     posterior: float
     recorded: float
-    missed_sigma: float = Field(description="Root of the square that its diagnoser weighs, over its covariance")
+    missed_sigma: float = Field(
+        description="Residuals in standard deviations: the root of the square by which the diagnoser judges"
+    )
     gain: list[list[float]] = Field(
         description="Kalman gain, a row for each state and a column for each residual; empty without a filter"
     )
@@ -54,10 +56,10 @@ class Account(BaseModel):
     tick: int
     time_ms: float
     floor: float
-    residuals: list[str] = Field(description="Signals of the residuals, below the name of the diagnoser")
-    weighed: str = Field(description="What the prior is, in words")
-    evidence: str = Field(description="What log_likelihood is, in LaTeX; empty for that of the normal density")
-    gain_units: list[str] = Field(description="Of the rows of each gain")
+    residuals: list[str] = Field(description="Signals of the residuals, without the name of the diagnoser")
+    weighed: str = Field(description="Meaning of the prior, in words")
+    evidence: str = Field(description="Formula of log_likelihood in LaTeX; empty for the normal density")
+    gain_units: list[str] = Field(description="Units of the rows of each gain")
     models: list[ModelAccount]
 
 

@@ -26,7 +26,7 @@ class Lost(NamedTuple):
 
 
 def next_look(tick: int) -> int:
-    """Return the tick after this one at which all states are looked at."""
+    """Return the next tick at which all states are examined."""
     return tick - tick % EVERY + EVERY
 
 

@@ -44,11 +44,11 @@ MOST_SEED = 2**53
 class BoardSettings(Table):
     """The numbers of a bench that belong to no block."""
 
-    sample_rate_khz: float = Field(100.0, ge=0.1, le=1e5, description="ticks per ms of device time")
-    seed: int = Field(1, ge=0, le=MOST_SEED, description="seed of all noise")
+    sample_rate_khz: float = Field(100.0, ge=0.1, le=1e5, description="ticks for each ms of device time")
+    seed: int = Field(1, ge=0, le=MOST_SEED, description="the seed of all noise")
     without_driver: Literal["hold", "safe"] = Field(
         "hold",
-        description="what a live bench does when its driver, one of several people, is gone: go on, or safe outputs",
+        description="the reaction of a live bench of several persons whose driver leaves: hold continues, safe trips",
     )
 
 

@@ -79,7 +79,7 @@ borrowed: set[str] = set()
 
 
 def address(block: Block, width: int = 1) -> int:
-    """Return where the C function of the step of a block is: pointers to parameters, state, all signals, and places."""
+    """Return the address of the C function of a step; it takes pointers to parameters, state, signals and places."""
     found = _addresses.get((block, width))
     if found is None:
         found = _addresses[block, width] = loaded(step(block, width).kept())

@@ -41,7 +41,7 @@ class ForcedDrive(Block):
         phase_deg: float = parameter(0.0, "phase at t = 0", "deg")
 
     class Packed(Record):
-        """The force, its turns per ms, turns at the start, interval."""
+        """Amplitude of the force, frequency in turns per ms, phase in turns, sample interval."""
 
         force: float
         cycles: float

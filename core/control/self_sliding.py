@@ -34,8 +34,8 @@ class SelfSliding(Block):
 
     ``relative_degree_one`` has :math:`s=e`; ``augmented`` has :math:`s=e+\alpha(\theta^T\bar w-G_m[u])` and adapts
     along the filtered regressor :math:`\bar w=G_m[w]`; ``printed`` along w itself; ``velocity`` has
-    :math:`s=\dot e+ce` and feeds back s and the velocity as well. Static gains cannot add damping, so a fault of
-    damping or a large one of mass stays; :math:`k_e` has no value it could go to.
+    :math:`s=\dot e+ce` and feeds back s and the velocity as well. Static gains cannot add damping, so the
+    error of a damping fault or of a large mass fault remains; no value of :math:`k_e` is ideal.
     """
 
     title = "Self-sliding control"

@@ -12,7 +12,8 @@ import cmath
 import math
 from collections.abc import Sequence
 
-from pydantic import BaseModel
+import numpy as np
+from pydantic import BaseModel, Field
 
 from core.block import Oscillator
 from core.diagnose.excitation import LEAST_INFORMATION
@@ -21,6 +22,9 @@ from core.diagnose.hypothesis import Hypothesis
 FACTORS = ("mass", "stiffness", "damping", "gain")
 SAME = 1e-3
 """Largest error of an equivalent change, as a share of the response."""
+SWEEP_POINTS = 160
+SWEEP_SPAN = 4.0
+"""The sweep reaches from a centre over this number to the centre times this number."""
 
 
 class Response(BaseModel):
@@ -48,6 +52,31 @@ class AliasMap(BaseModel):
     stiffness_per_mass: float
     responses: list[Response]
     pairs: list[Pair]
+
+
+class NamedPair(BaseModel):
+    """Two hypotheses."""
+
+    first: str
+    second: str
+
+
+class AliasSweep(BaseModel):
+    """For a single tone of the first amplitude, the closest pair over frequency."""
+
+    frequency_hz: list[float]
+    distance_um: list[float]
+    pair: list[int] = Field(description="Position of the pair in pairs_named, for each frequency")
+    pairs_named: list[NamedPair]
+
+
+class AliasReport(BaseModel):
+    """The separate hypotheses and the coinciding hypotheses, now and at other drive frequencies."""
+
+    map: AliasMap
+    sensor_noise_um: float
+    f0_hz: float
+    sweep: AliasSweep
 
 
 def alias_map(
@@ -93,6 +122,42 @@ def alias_map(
         stiffness_per_mass=-nominal.mass * omega * omega / nominal.stiffness,
         responses=responses,
         pairs=sorted(pairs, key=lambda pair: pair.distance_um),
+    )
+
+
+def alias_report(
+    hypotheses: Sequence[Hypothesis],
+    nominal: Oscillator,
+    tones: Sequence[tuple[float, float]],
+    within_um: float,
+    sensor_noise_um: float,
+) -> AliasReport:
+    """Return the map at the tones of a drive, and the closest pair under single tones around the resonance.
+
+    Parameters
+    ----------
+    hypotheses, nominal, tones, within_um
+        As `alias_map` takes them; at least one tone.
+    sensor_noise_um : float
+        Noise of the sensor, which the report repeats.
+    """
+    f0 = 1e3 * nominal.natural_frequency / (2.0 * math.pi)
+    frequency, volts = tones[0]
+    # An axis of octaves has no place for a constant, so the map is then drawn around the resonance.
+    centre = math.sqrt(f0 * (frequency or f0))
+    grid = np.geomspace(centre / SWEEP_SPAN, centre * SWEEP_SPAN, SWEEP_POINTS).tolist()
+    closest = [alias_map(hypotheses, nominal, [(hz, volts)]).pairs[0] for hz in grid]
+    named = sorted({(pair.first, pair.second) for pair in closest})
+    return AliasReport(
+        map=alias_map(hypotheses, nominal, tones, within_um),
+        sensor_noise_um=sensor_noise_um,
+        f0_hz=f0,
+        sweep=AliasSweep(
+            frequency_hz=grid,
+            distance_um=[pair.distance_um for pair in closest],
+            pair=[named.index((pair.first, pair.second)) for pair in closest],
+            pairs_named=[NamedPair(first=first, second=second) for first, second in named],
+        ),
     )
 
 

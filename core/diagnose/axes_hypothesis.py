@@ -62,6 +62,6 @@ class AxesModels(ModelList):
         FIVE_OF_AXES,
         min_length=2,
         max_length=LANE,
-        description="the models to choose from",
+        description="the models among which the diagnoser chooses",
         json_schema_extra={"unit": "", "live": False, "equation": "5.2.4"},
     )

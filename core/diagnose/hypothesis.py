@@ -19,7 +19,7 @@ class NamedModel(BlockParams):
         min_length=1,
         max_length=24,
         pattern=r"^[^\s.\x00-\x1f\x7f]+$",
-        description="short name, without spaces or dots",
+        description="a short name, without spaces or dots",
     )
 
     @property
@@ -88,7 +88,7 @@ class BankParams(ModelList):
         SEVEN_STEP,
         min_length=2,
         max_length=LANE,
-        description="the models to choose from",
+        description="the models among which the diagnoser chooses",
         json_schema_extra={"unit": "", "live": False, "equation": "5.2.4"},
     )
 

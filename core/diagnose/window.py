@@ -54,7 +54,7 @@ class WindowSample(Record):
 
 
 class State(KalmanBank.State):
-    """The filters; samples and tone of the window, place of the next sample; sums, and new ones; the samples."""
+    """The filters; length, next place and tone of the window; its sums, the sums of this turn of the ring; the ring."""
 
     samples: float
     place: float

@@ -44,14 +44,14 @@ class Model(Block):
             [1.0],
             min_length=1,
             max_length=2,
-            description="of the transfer function, highest power first",
+            description="coefficients of the numerator, highest power first",
             json_schema_extra={"unit": "", "live": False, "equation": "4.3.1.2"},
         )
         denominator: list[Sized] = Field(
             [1.0, 1.0],
             min_length=2,
             max_length=3,
-            description="of the transfer function, highest power first",
+            description="coefficients of the denominator, highest power first",
             json_schema_extra={"unit": "", "live": False, "equation": "4.3.1.2"},
         )
         damping_ratio: float = parameter(0.7, "damping ratio of the damped model", gt=0, le=10, live=False)

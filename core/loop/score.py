@@ -240,7 +240,7 @@ class FalseSwitch(BaseModel):
     """A diagnoser that had found the truth turns to another verdict for some samples."""
 
     tick: int
-    samples: int = Field(description="Until it said the truth again, or the truth changed")
+    samples: int = Field(description="Samples until the verdict was true again, or the truth changed")
 
 
 class Scores(BaseModel):
@@ -252,7 +252,7 @@ class Scores(BaseModel):
     truth: int
     correct_fraction: float
     false_switches: int
-    last_false_switches: list[FalseSwitch] = Field([], description="The newest of them")
+    last_false_switches: list[FalseSwitch] = Field([], description="The newest false switches")
     delays: list[int | None]
     since_tick: int
     nis: float | None

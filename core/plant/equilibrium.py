@@ -21,8 +21,8 @@ Force = Callable[[FloatArray, float, float], FloatArray]
 
 
 @dataclass(frozen=True)
-class Fold:
-    """The end of a stable branch: travel, voltage on the shuttle, place of the worst corner sideways."""
+class FoldPoint:
+    """The last rest position under a slowly rising drive: travel, voltage, place of the worst corner sideways."""
 
     x_um: float
     volts: float
@@ -146,7 +146,7 @@ def fold(
     size: int,
     farthest: float = 20.0,
     step: float = 0.05,
-) -> Fold | None:
+) -> FoldPoint | None:
     """Return the first place, to either side, where the equilibrium becomes unstable as the drive rises.
 
     Parameters
@@ -164,7 +164,7 @@ def fold(
 
     Returns
     -------
-    Fold or None
+    FoldPoint or None
         The fold of the side that needs less voltage; None if both sides are stable over the travel searched. A device
         that is unstable without any drive has its fold at 0 V.
     """
@@ -179,11 +179,11 @@ def folds(
     size: int,
     farthest: float = 20.0,
     step: float = 0.05,
-) -> list[Fold]:
+) -> list[FoldPoint]:
     """Return the folds to either side that exist; arguments as for `fold`."""
     rest = rest_at(force, np.zeros(size), *squared(stators, 0.0))
     if rest is None or not is_stable(force, rest, *squared(stators, 0.0)):
-        return [Fold(0.0, 0.0, 0.0)]
+        return [FoldPoint(0.0, 0.0, 0.0)]
     folds = [_one_side(force, stators, lateral, rest, side, farthest, step) for side in (1.0, -1.0)]
     return [entry for entry in folds if entry is not None]
 
@@ -196,7 +196,7 @@ def _one_side(
     side: float,
     farthest: float,
     step: float,
-) -> Fold | None:
+) -> FoldPoint | None:
     def stable(x: float, near: FloatArray) -> tuple[bool, FloatArray]:
         held = voltage_at(force, x, near, stators)
         if held is None:
@@ -214,7 +214,7 @@ def _one_side(
                 return None
         else:
             pace *= 0.5
-    return Fold(x, float(last[-1]), lateral(last[:-1]))
+    return FoldPoint(x, float(last[-1]), lateral(last[:-1]))
 
 
 def bias_pull_in(p: Plane.Packed, suspension: Suspension, highest: float = 400.0) -> float | None:

@@ -39,7 +39,7 @@ class GyroscopePair(TwoAxisPlant):
 
         partner: Device = Field(
             default_factory=lambda: device(USUAL),
-            description="the second gyroscope: a name in the catalogue, and values written over it",
+            description="the second gyroscope: a name in the catalogue, and values that replace its own",
             json_schema_extra={"unit": "", "live": False, "equation": "6.1.5"},
         )
 

@@ -87,7 +87,7 @@ class TwoAxisPlant(Block):
 
 @kernel
 def start(p: TwoAxisPlant.Packed, x: TwoAxisPorts) -> None:
-    """Set the start at the first tick."""
+    """Set position and velocity to their initial values at the first tick."""
     if x.tick == 0.0:
         x.x, x.y = p.initial_x_um, p.initial_y_um
         x.x_velocity, x.y_velocity = p.initial_x_velocity_um_ms, p.initial_y_velocity_um_ms

@@ -148,7 +148,7 @@ def predict(p: Tracked, s: Filter, drive: Gathered) -> None:
 
 @kernel
 def correct(s: Filter, residual: float, h: float, noise: float) -> float:
-    """Correct a filter by a residual of slope ``h``; return the logarithm of its likelihood."""
+    """Correct a filter by the residual of a measurement with slope ``h`` in x; return the log of its likelihood."""
     c11 = s.p11
     c12 = s.p12
     c13 = s.p13

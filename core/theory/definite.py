@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
+from pydantic import BaseModel, Field
 
 from core.errors import InputError
 
@@ -13,33 +13,21 @@ MOST = 50
 TINY = 1e-12
 
 
-@dataclass(frozen=True)
-class Definiteness:
-    """Verdict on a matrix.
-
-    Parameters
-    ----------
-    positive_definite, semidefinite : bool
-        Whether x'Ax > 0, or >= 0, for every x that is not 0.
-    symmetric : bool
-        Whether it equals its transpose; only the symmetric part counts in x'Ax.
-    eigenvalues : tuple of float
-        Of the symmetric part, smallest first.
-    minors : tuple of float
-        Its leading principal minors: all positive when it is positive definite (Sylvester).
-    """
+class DefinitenessReport(BaseModel):
+    """Whether x'Ax is positive for every x."""
 
     positive_definite: bool
     semidefinite: bool
     symmetric: bool
-    eigenvalues: tuple[float, ...]
-    minors: tuple[float, ...]
+    eigenvalues: tuple[float, ...] = Field(description="Eigenvalues of the symmetric part, smallest first")
+    minors: tuple[float, ...] = Field(description="Leading principal minors of the symmetric part")
 
 
-def definiteness(matrix: Sequence[Sequence[float]]) -> Definiteness:
+def definiteness(matrix: Sequence[Sequence[float]]) -> DefinitenessReport:
     r"""Judge :math:`x^TAx` by the symmetric part :math:`\tfrac12(A+A^T)`.
 
-    The eigenvalues of A itself do not decide: for [[1, 4], [0, 1]] both are 1, and x'Ax is -2 at [1, -1].
+    The eigenvalues of A itself do not decide: for [[1, 4], [0, 1]] both are 1, and x'Ax is -2 at [1, -1]. All leading
+    principal minors of the symmetric part are positive when A is positive definite (Sylvester).
 
     Raises
     ------
@@ -54,7 +42,7 @@ def definiteness(matrix: Sequence[Sequence[float]]) -> Definiteness:
     half = 0.5 * (values + values.T)
     eigenvalues = np.linalg.eigvalsh(half)
     size = TINY * max(float(np.max(np.abs(eigenvalues))), 1e-300)
-    return Definiteness(
+    return DefinitenessReport(
         positive_definite=bool(eigenvalues[0] > size),
         semidefinite=bool(eigenvalues[0] >= -size),
         symmetric=bool(np.array_equal(values, values.T)),

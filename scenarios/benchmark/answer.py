@@ -1,4 +1,4 @@
-"""Answer of a diagnoser in a case: evidence that grows with a fault, and the probability of each class if any."""
+"""Answer of a diagnoser in a case: evidence that grows with a fault; the probability of each class, if it has these."""
 
 from __future__ import annotations
 

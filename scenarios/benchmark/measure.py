@@ -24,7 +24,7 @@ from scenarios.benchmark.figures import (
     rises,
     scores,
 )
-from scenarios.benchmark.results import WITHIN_SAMPLES, CaseDigest, LeftOut, Results, Row, bins, hash_of
+from scenarios.benchmark.results import WITHIN_SAMPLES, BenchmarkResults, CaseDigest, LeftOut, Row, bins, hash_of
 from scenarios.benchmark.seeds import BENCHMARK, SeedList
 from scenarios.benchmark.track import WARM, BenchmarkTrack, Case, tracks
 from scenarios.key import code_version
@@ -54,7 +54,7 @@ def measure(
     seeds: SeedList,
     told: Told = lambda _track, _done, _all: None,
     own: Document | None = None,
-) -> Results:
+) -> BenchmarkResults:
     """Measure diagnosers on tracks.
 
     Parameters
@@ -83,7 +83,7 @@ def measure(
         track = tracks()[name]
         sections = {unit: section(block, track) for unit, block in scored.items()}
         rows += _rows(name, track, sections, own, seeds, told)
-    return Results(
+    return BenchmarkResults(
         benchmark=BENCHMARK,
         version=code_version(),
         seeds=seeds.name,

@@ -90,7 +90,7 @@ class Cost(Table):
     over_mmae: float
 
 
-class Results(Table):
+class BenchmarkResults(Table):
     """Rows, and the version and seeds of the computation.
 
     Attributes
@@ -129,11 +129,11 @@ class Results(Table):
         rows = [row for row in self.rows if row.track == track]
         return sorted(rows, key=_place)
 
-    def without_cases(self) -> Results:
+    def without_cases(self) -> BenchmarkResults:
         """Return the results without the digests of the cases."""
         return self.model_copy(update={"rows": [row.model_copy(update={"cases": []}) for row in self.rows]})
 
-    def differences(self, other: Results) -> list[str]:
+    def differences(self, other: BenchmarkResults) -> list[str]:
         """Return where the rows of other results differ from these, each in a line."""
         found = []
         theirs = {(row.unit, row.track): row for row in other.rows}
@@ -175,7 +175,7 @@ def bins(counts: Sequence[Sequence[float]]) -> list[Bin]:
     ]
 
 
-def read(text: str, field: str) -> Results:
+def read(text: str, field: str) -> BenchmarkResults:
     """Read results.
 
     Raises
@@ -184,11 +184,11 @@ def read(text: str, field: str) -> Results:
         When they are malformed.
     """
     try:
-        return Results.model_validate_json(text)
+        return BenchmarkResults.model_validate_json(text)
     except ValidationError as error:
         if error.errors()[0]["type"] == "json_invalid":
             raise InputError("is not JSON", field, code="malformed") from None
-        raise from_validation(error, {"": [*Results.model_fields]}).under(field) from None
+        raise from_validation(error, {"": [*BenchmarkResults.model_fields]}).under(field) from None
 
 
 KEPT = Path("results.json")
@@ -196,11 +196,11 @@ KEPT = Path("results.json")
 
 
 @cache
-def kept() -> Results:
+def kept() -> BenchmarkResults:
     """Return the table that comes with this version."""
     return read((files(__package__) / KEPT.name).read_text("utf-8"), KEPT.name)
 
 
-def write(results: Results) -> str:
+def write(results: BenchmarkResults) -> str:
     """Return results as a file."""
     return results.model_dump_json(indent=1) + "\n"

@@ -21,7 +21,7 @@ from core.board.pattern import Pattern, Uneven
 from core.board.pending import PendingCommand, PendingQueue
 from core.compile.machine import WIDTH
 from core.errors import InputError
-from scenarios.campaign.outcome import Outcome, outcome, summed
+from scenarios.campaign.outcome import RunOutcome, outcome, summed
 from scenarios.run import DEFAULT_SAMPLES, figures
 from scenarios.schema import Scenario
 from scenarios.signals import watched
@@ -33,7 +33,7 @@ MOST_NUMBERS = 16_000_000
 Run = tuple[Scenario, int]
 
 
-def outcomes(runs: Sequence[Run], on_tick: Callable[[int], None] = lambda _: None) -> list[Outcome]:
+def outcomes(runs: Sequence[Run], on_tick: Callable[[int], None] = lambda _: None) -> list[RunOutcome]:
     """Carry out runs, each a scenario and a seed; return their outcomes in the same order.
 
     Parameters
@@ -43,7 +43,7 @@ def outcomes(runs: Sequence[Run], on_tick: Callable[[int], None] = lambda _: Non
     on_tick : callable
         Called every now and then with the ticks of all runs so far; it may raise to end them.
     """
-    found: dict[int, Outcome] = {}
+    found: dict[int, RunOutcome] = {}
     groups: dict[Any, list[int]] = defaultdict(list)
     shapes: dict[int, Any] = {}
     for number, (scenario, _) in enumerate(runs):
@@ -74,7 +74,7 @@ def shape(scenario: Scenario) -> Any:
     return blocks, tuple(spec.driving.items()), spec.measuring, spec.dt_ms, scenario.samples
 
 
-def _abreast(runs: Sequence[Run], numbers: list[int], found: dict[int, Outcome], tell: Callable[[], None]) -> None:
+def _abreast(runs: Sequence[Run], numbers: list[int], found: dict[int, RunOutcome], tell: Callable[[], None]) -> None:
     """Carry out runs of one shape, `WIDTH` at a time, and add their outcomes; some have to continue alone."""
     scenario = runs[numbers[0]][0]
     samples = scenario.samples or DEFAULT_SAMPLES
@@ -102,7 +102,7 @@ def _together(
     waits: dict[int, PendingQueue],
     runs: Sequence[Run],
     chosen: list[int],
-) -> dict[int, Outcome]:
+) -> dict[int, RunOutcome]:
     """Carry out some runs; ``waits`` has the commands of the lists of events seen so far, by their identity."""
     began = time.perf_counter()
     try:

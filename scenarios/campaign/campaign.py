@@ -12,20 +12,22 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import AbstractContextManager, nullcontext
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from core.compile.machine import WIDTH
 from core.errors import InputError
 from scenarios.campaign.batch import outcomes
-from scenarios.campaign.cluster import Cluster, open_cluster
 from scenarios.campaign.executor import LOST, Processes
-from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.outcome import RunOutcome
 from scenarios.campaign.remaining import Remaining, Run
 from scenarios.campaign.signs import Cancelled, tell
 from scenarios.campaign.sweep import Sweep
 from scenarios.key import code_version
 from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
+
+if TYPE_CHECKING:
+    from scenarios.campaign.cluster import Cluster
 
 BATCH_S = 1.0
 """Computing time of a batch, long enough that the cost of sending it does not matter."""
@@ -59,7 +61,7 @@ class ResultTable(Protocol):
 class TraceKeeper(Protocol):
     """Keeps the trace of the first run of a campaign; it is called in a worker process, so it can be pickled."""
 
-    def __call__(self, document: dict[str, Any], seed: int, others: Others) -> tuple[Outcome, Any]:
+    def __call__(self, document: dict[str, Any], seed: int, others: Others) -> tuple[RunOutcome, Any]:
         """Carry the run out; return its outcome, and the additional result."""
 
 
@@ -88,11 +90,11 @@ def compute(runs: list[Run], version: str) -> tuple[Found, float]:
             except InputError as error:
                 read[id(point)] = error
     good: list[tuple[str, tuple[Scenario, int]]] = []
-    found: list[tuple[str, Outcome]] = []
+    found: list[tuple[str, RunOutcome]] = []
     for key, point, seed in runs:
         scenario = read[id(point)]
         if isinstance(scenario, InputError):
-            found.append((key, Outcome(seed=seed, error=str(scenario))))
+            found.append((key, RunOutcome(seed=seed, error=str(scenario))))
         else:
             good.append((key, (scenario, seed)))
     made = outcomes([run for _, run in good], tell)
@@ -213,6 +215,8 @@ class Campaign:
 
     def _open(self) -> AbstractContextManager[Processes | Cluster]:
         if self._scheduler:
+            from scenarios.campaign.cluster import open_cluster  # few campaigns go to a cluster
+
             return open_cluster(self._scheduler)
         return Processes(self._workers) if self._processes is None else nullcontext(self._processes)
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from scenarios.arrow import pa
-from scenarios.campaign.outcome import Diagnosis, Outcome
+from scenarios.campaign.outcome import Diagnosis, RunOutcome
 from scenarios.campaign.sweep import Sweep
 
 FIXED = {
@@ -26,7 +26,7 @@ truth was found, null for a missed change; samples by evidence (`scenarios.campa
 ABOUT = b"combbench"
 """The content of a column, stored with its name: an axis, a figure, or the result of a diagnoser."""
 
-Row = tuple[int, str, Outcome]
+Row = tuple[int, str, RunOutcome]
 """The number of a run, its key, and its outcome."""
 
 

@@ -46,7 +46,7 @@ class Processes(Executor):
         self._lock = threading.Lock()
 
     def submit(self, function: Callable[..., T], /, *arguments: Any, **named: Any) -> Future[T]:
-        """Hand over a piece of work; the processes are started with the first.
+        """Give a piece of work to the processes; the first piece starts them.
 
         Raises
         ------

@@ -48,7 +48,7 @@ class Diagnosis(BaseModel):
     faulty: list[int] = []
 
 
-class Outcome(BaseModel):
+class RunOutcome(BaseModel):
     """One run, independent of its requests."""
 
     seed: int
@@ -69,19 +69,19 @@ class Outcome(BaseModel):
         return self.stopped.reason if self.stopped is not None else ""
 
 
-def outcome(scenario: Scenario, seed: int, on_tick: Callable[[int], None] | None = None) -> Outcome:
+def outcome(scenario: Scenario, seed: int, on_tick: Callable[[int], None] | None = None) -> RunOutcome:
     """Run a scenario and count its results; a scenario that cannot be run gives its error."""
     began = time.perf_counter()
     try:
         result = run(scenario, seed, figures_only=True, on_tick=on_tick)
     except InputError as error:
-        return Outcome(seed=seed, error=str(error))
+        return RunOutcome(seed=seed, error=str(error))
     found = outcome_of(result)
     found.elapsed_s = time.perf_counter() - began
     return found
 
 
-def outcome_of(result: RunResult) -> Outcome:
+def outcome_of(result: RunResult) -> RunOutcome:
     """Return the outcome of a result: the same whether all its outputs were kept or only the outputs of its figures."""
     found = summed(result.scenario, result.board, result.metrics, result.digest, result.trace, result.warnings)
     found.elapsed_s = result.elapsed_s
@@ -95,9 +95,9 @@ def summed(
     digest: str,
     trace: dict[str, FloatArray],
     warnings: list[str],
-) -> Outcome:
+) -> RunOutcome:
     """Return the outcome of a run that has come to its end."""
-    return Outcome(
+    return RunOutcome(
         seed=board.spec.seed,
         digest=digest,
         ticks=board.tick,

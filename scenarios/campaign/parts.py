@@ -17,7 +17,7 @@ import numpy as np
 
 from scenarios.arrow import csv, pa, pq
 from scenarios.campaign.columns import ABOUT, Row, about, columns, fitted, union
-from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.outcome import RunOutcome
 from scenarios.campaign.sums import Sums
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import Tallies
@@ -167,7 +167,7 @@ class ParquetParts:
         keys = {number: self._sweep.key(number) for number in numbers}
         texts = dict(read(list(dict.fromkeys(keys.values()))))
         rows: list[Row] = [
-            (number, key, Outcome.model_validate_json(texts[key])) for number, key in keys.items() if key in texts
+            (number, key, RunOutcome.model_validate_json(texts[key])) for number, key in keys.items() if key in texts
         ]
         return columns(self._sweep, rows) if rows else None
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from core.errors import InputError
 from scenarios.campaign.batch import outcomes
-from scenarios.campaign.outcome import Outcome, outcome_of
+from scenarios.campaign.outcome import RunOutcome, outcome_of
 from scenarios.campaign.sums import Moments
 from scenarios.campaign.sweep import Sweep
 from scenarios.counterpart import counterpart, replaced
@@ -47,7 +47,7 @@ def counterparts(scenario: Scenario) -> dict[str, Scenario]:
     return found
 
 
-def compared(scenario: Scenario, seeds: Sequence[int]) -> dict[str, list[Outcome]]:
+def compared(scenario: Scenario, seeds: Sequence[int]) -> dict[str, list[RunOutcome]]:
     """Carry out the counterparts of a scenario."""
     others = counterparts(scenario)
     return {kind: outcomes([(other, seed) for seed in seeds]) for kind, other in others.items()}
@@ -64,7 +64,7 @@ def run_seeds(scenario: Scenario, seeds: Sequence[int]) -> dict[str, Any]:
 
 
 def summary(
-    scenario: Scenario, runs: Sequence[Outcome], others: Mapping[str, Sequence[Outcome]] | None = None
+    scenario: Scenario, runs: Sequence[RunOutcome], others: Mapping[str, Sequence[RunOutcome]] | None = None
 ) -> dict[str, Any]:
     """Return the summary of the runs of a scenario with one seed or several.
 
@@ -116,7 +116,7 @@ def summary(
     return found
 
 
-def _spread(runs: Sequence[Outcome]) -> dict[str, tuple[float, float]]:
+def _spread(runs: Sequence[RunOutcome]) -> dict[str, tuple[float, float]]:
     """Return mean and standard deviation of every figure, as a campaign adds them up."""
     found = {}
     for name in sorted({name for run in runs for name in run.metrics}):

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from core.block import FloatArray, IntArray
 from scenarios.arrow import pa, pc
 from scenarios.campaign.columns import DIAGNOSIS, Row, columns, diagnosers, named
-from scenarios.campaign.outcome import EVIDENCE, Outcome
+from scenarios.campaign.outcome import EVIDENCE, RunOutcome
 from scenarios.campaign.points import Labels
 from scenarios.campaign.sums import DiagnosisSums, Moments, Spread, Sums
 from scenarios.campaign.sweep import Sweep
@@ -203,7 +203,7 @@ def receiver_operating_characteristic(healthy: FloatArray, faulty: FloatArray) -
     )
 
 
-def tally(sweep: Sweep, outcomes: Mapping[str, Outcome]) -> list[PointTally]:
+def tally(sweep: Sweep, outcomes: Mapping[str, RunOutcome]) -> list[PointTally]:
     """Add up a campaign, point by point, without the runs that are still to come.
 
     Parameters

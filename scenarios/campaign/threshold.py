@@ -13,7 +13,7 @@ from scenarios.campaign.campaign import ResultTable as Results
 from scenarios.campaign.check import check
 from scenarios.campaign.executor import Processes
 from scenarios.campaign.halving import ROUNDS, Halving, ThresholdGoal
-from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.outcome import RunOutcome
 from scenarios.campaign.sweep import Sweep
 from scenarios.claims import holds
 from scenarios.edit import with_values
@@ -108,7 +108,7 @@ class Search(Campaign):
 
     @property
     def progress(self) -> float:
-        """Share of the rounds that is done, the grid as much as all others together."""
+        """Share of the search that is done: the grid is one half of it, all rounds after it are the other."""
         rounds = self._halving.rounds
         share = super().done / super().total if super().total else 0.0
         return 0.5 * share if rounds == 0 else min(1.0, 0.5 + 0.5 * (rounds - 1 + share) / ROUNDS)
@@ -143,7 +143,7 @@ class Search(Campaign):
         texts: dict[str, Any] = dict(self._table.outcomes(keys))
         found = []
         for value, key in zip(self._values, keys, strict=True):
-            one = Outcome.model_validate_json(texts[key])
+            one = RunOutcome.model_validate_json(texts[key])
             if one.error:
                 raise InputError(f"{self._wanted.path} = {format_short(value, '', 4)}: {one.error}", "path")
             found.append((value, one.metrics.get(self._wanted.metric)))

@@ -5,7 +5,10 @@ from __future__ import annotations
 from functools import cache
 from importlib.resources import files
 
+from core.board.commands import Inject, Switch
+from core.board.spec import Spec
 from core.errors import unknown
+from core.registry import blocks
 from scenarios.schema import Scenario
 
 
@@ -39,6 +42,25 @@ def get(name: str) -> Scenario:
     if name not in ids():
         raise unknown("scenario", name, ids(), "scenario")
     return _read(name)
+
+
+@cache
+def topics(scenario: Scenario) -> list[str]:
+    """Return the topics of a scenario, in the words of the catalogue."""
+    controllers, faults = blocks("control"), blocks("faults")
+    specs: list[Spec] = [scenario.spec, *scenario.twins.values()]
+    topics = [str(scenario.document.get("device", {}).get("id", ""))]
+    driving = [name for spec in specs for name in spec.driving.values()]
+    commands = [command for event in scenario.events for command in event]
+    driving += [command.switch for command in commands if isinstance(command, Switch)]
+    topics += [controllers[name].title if name in controllers else name for name in driving]
+    for spec in specs:
+        found = [*spec.diagnosers.values(), *spec.identifiers.values(), *spec.readouts.values()]
+        topics += [section.block.title for section in found]
+        topics.append(spec.sensors[spec.measuring].block.title)
+    injected = [command.fault for command in commands if isinstance(command, Inject)]
+    topics += [faults[name].title if name in faults else name for name in injected]
+    return list(dict.fromkeys(topic for topic in topics if topic))
 
 
 @cache

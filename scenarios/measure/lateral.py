@@ -14,7 +14,7 @@ from core.device.lateral import lateral
 from core.device.pull_in import rotation_pull_in_v
 from core.plant.body import worst
 from core.plant.equilibrium import (
-    Fold,
+    FoldPoint,
     bias_pull_in,
     fold,
     is_stable,
@@ -96,7 +96,7 @@ def _planar(p: Plane.Packed, state: Plane.State, far_um: float) -> dict[str, flo
     return figures
 
 
-def _folded(end: Fold | None) -> dict[str, float]:
+def _folded(end: FoldPoint | None) -> dict[str, float]:
     if end is None:
         return {}
     return {

@@ -2,26 +2,34 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from pydantic import BaseModel
 
 from core.board.board import Board
 from core.plant.body import worst
-from core.plant.equilibrium import Fold, Force, folds, planar_force, slaved_force, stators_of
-from core.plant.escape import Boundary, boundary
+from core.plant.equilibrium import FoldPoint, Force, folds, planar_force, slaved_force, stators_of
+from core.plant.escape import boundary
 from core.plant.shuttle import LEFT, RIGHT, comb_voltage
 from core.plant.suspension import Suspension
 
 
-@dataclass(frozen=True)
-class UnstableRegion:
-    """Folds to either side, and the boundary with the drive held; both are empty if the plant cannot pull in."""
+class SafeBoundary(BaseModel):
+    """The speed beyond which the energy suffices to reach the stators, along x."""
 
+    x_um: list[float]
+    speed_um_ms: list[float]
+
+
+class UnstableRegionMap(BaseModel):
+    """The region where a bench as it is now pulls in; empty if its plant cannot."""
+
+    tick: int
     plant: str
-    folds: list[Fold]
-    boundary: Boundary | None
+    drive_v: float
+    folds: list[FoldPoint]
+    boundary: SafeBoundary | None
 
 
-def unstable_region(board: Board, drive_v: float = 0.0) -> UnstableRegion:
+def unstable_region(board: Board, drive_v: float = 0.0) -> UnstableRegionMap:
     """Return the unstable region of a board with the faults it has now.
 
     Parameters
@@ -43,9 +51,16 @@ def unstable_region(board: Board, drive_v: float = 0.0) -> UnstableRegion:
         ends = folds(force, stators_of(p), lambda q: float(worst(p, float(q[1]), float(q[2]))), 3)
         size = 3
     else:
-        return UnstableRegion(kind, [], None)
+        return UnstableRegionMap(tick=board.tick, plant=kind, drive_v=drive_v, folds=[], boundary=None)
     mass = float(p.mass) * board.value("effects.mass_scale")
     first, second = stators_of(p)
     short = board.value("plant.short")
     right, left = comb_voltage(first - drive_v, short, RIGHT), comb_voltage(second - drive_v, short, LEFT)
-    return UnstableRegion(kind, ends, boundary(force, mass, right * right, left * left, size))
+    edge = boundary(force, mass, right * right, left * left, size)
+    return UnstableRegionMap(
+        tick=board.tick,
+        plant=kind,
+        drive_v=drive_v,
+        folds=ends,
+        boundary=edge and SafeBoundary(x_um=edge.x_um.tolist(), speed_um_ms=edge.speed_um_ms.tolist()),
+    )

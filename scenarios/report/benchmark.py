@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from core.format import format_number, format_share, format_si
 from scenarios.benchmark.figures import WIDE, Estimate
-from scenarios.benchmark.results import Results, Row
+from scenarios.benchmark.results import BenchmarkResults, Row
 from scenarios.benchmark.track import BenchmarkTrack
 
 HEAD = (
@@ -21,7 +21,7 @@ HEAD = (
 NONE = "-"
 
 
-def benchmark_text(results: Results, tracks: dict[str, BenchmarkTrack]) -> str:
+def benchmark_text(results: BenchmarkResults, tracks: dict[str, BenchmarkTrack]) -> str:
     """Return all measured tracks, the data to recompute them, and the diagnosers that are left out."""
     lines = []
     for name, track in tracks.items():
@@ -38,7 +38,7 @@ def benchmark_text(results: Results, tracks: dict[str, BenchmarkTrack]) -> str:
     return "\n".join(lines)
 
 
-def track_table(results: Results, track: str) -> list[str]:
+def track_table(results: BenchmarkResults, track: str) -> list[str]:
     """Return the lines of a track, best diagnoser first, with half the width of the 95 % intervals."""
     return _aligned([("", *HEAD), *(_cells(row) for row in results.ranked(track))])
 

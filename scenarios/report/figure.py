@@ -295,7 +295,9 @@ def _followed(result: RunResult) -> Chart:
     return Chart(_title(result), time, Axis("peak error", "um", is_log=True), [error], marks(result))
 
 
-def _peaks(result: RunResult, periods: int, of: Callable[..., FloatArray], *names: str) -> tuple[list[float], list[float]]:
+def _peaks(
+    result: RunResult, periods: int, of: Callable[..., FloatArray], *names: str
+) -> tuple[list[float], list[float]]:
     """Return the largest size of each period, or of each column where there are more periods, with its time, ms."""
     edges = np.linspace(0, result.samples, min(COLUMNS, periods) + 1).astype(np.int64).tolist()
     pieces = [[result.signal(name)[first:end] for name in names] for first, end in itertools.pairwise(edges)]

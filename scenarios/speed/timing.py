@@ -72,9 +72,10 @@ ALIVE = ("plant", "effects", "sensor", "reference", "model", "open_loop", "drive
 
 
 def block_costs(board: Board, *only: str, alive: Sequence[str] = ALIVE) -> dict[str, float]:
-    """Return the cost of some blocks or all, ns per tick, dispatch included: a tick with it run once more.
+    """Return the cost of some blocks or all, ns per tick, dispatch included.
 
-    The least of all repeats counts: other work on the machine only ever adds to it.
+    It is the time by which a tick is longer when it runs the block once more. The least of all repeats counts, because
+    other work on the machine only adds to it.
     """
     candidates = {"": partial(loop_cost, board, [*alive], 50_000)}
     for instance in board.wiring.instances:

@@ -24,7 +24,7 @@ class StudyPicture:
 
 
 class Study:
-    """Base of every study."""
+    """Base of the studies: a study computes figures of a bench, and may draw curves."""
 
     title: ClassVar[str]
     Params: ClassVar[type[BlockParams]]

@@ -10,14 +10,15 @@ from pydantic import BaseModel, Field, model_validator
 from core.own.admission import kept
 from scenarios.schema import Scenario
 from server.api.bodies import Body as StrictBody
+from server.api.bodies import Source, Values
 from server.api.deps import CallerDep, PersonDep, RateLimited, SeenDep, ServiceDep, SessionDep
 from server.api.router import Router
-from server.bench.blind import HINT
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Command
 from server.bench.description import document_of
 from server.bench.events import Event
-from server.bench.hiding import BlindView
 from server.bench.status import Bench
+from server.bench.view import View
+from server.classroom.hiding import HINT, blind_of
 from server.errors import ApiError
 
 MAX_NAME = 80
@@ -28,23 +29,23 @@ router = Router(prefix="/benches", tags=["benches"])
 class NewBench(StrictBody):
     """The scenario of a new bench, and how it starts."""
 
-    scenario: str | dict[str, Any] = Field(description="Library id, TOML text, or document")
-    set: dict[str, Any] = Field({}, description="Values by dotted path, written over the scenario")
-    seed: int | None = Field(None, ge=0, le=2**53)
-    paused: bool = False
-    keep: bool = Field(False, description="Keep it open, however long it is unused")
+    scenario: Source
+    set: Values = Field({})
+    seed: int | None = Field(None, ge=0, le=2**53, description="Null: the seed of the scenario")
+    paused: bool = Field(False, description="Start paused")
+    keep: bool = Field(False, description="Never close the bench for being unused; for the teacher alone")
     time_scale: float | None = Field(
         DEFAULT_SCALE,
         ge=MIN_SCALE,
         le=MAX_SCALE,
-        description="Device seconds per wall second; null: as fast as possible. Unless given, the device's own",
+        description="Device seconds per wall second; null: as fast as possible; left out: usual for the device",
     )
     quiet_lead: bool = Field(
         False,
         description=(
-            "Run as fast as possible to two seconds, at the time scale, before the first command of the scenario that "
-            "waits for a tick; from there on at the time scale. After a reset again; a time_scale command ends it. "
-            "Bits are the same"
+            "Run as fast as possible until two seconds of wall time before the first command of the scenario that "
+            "waits for a tick, and at the time scale from there on. A reset begins this again, and a time_scale "
+            "command ends it. The bits stay the same"
         ),
     )
 
@@ -82,11 +83,11 @@ class CommandResult(BaseModel):
 
 
 class EventList(BaseModel):
-    """Events behind a number; ``lost`` of them are older than the bench keeps."""
+    """Events after a number."""
 
     events: list[Event]
-    last: int
-    lost: int
+    last: int = Field(description="Number of the newest event of the bench")
+    lost: int = Field(description="Number of events after the number that the bench no longer keeps")
 
 
 class Digest(BaseModel):
@@ -99,14 +100,14 @@ class Digest(BaseModel):
 class ForkFrom(StrictBody):
     """The start of a fork."""
 
-    snapshot: str | None = Field(None, description="A snapshot of the bench; null: this moment, or the tick")
-    tick: int | None = Field(None, ge=0, le=2**53, description="A tick of the past, computed again; null: the snapshot")
-    before: bool = Field(False, description="Leave out the commands at that very tick")
+    snapshot: str | None = Field(None, description="Id of a snapshot to fork from; null: the tick, or the present")
+    tick: int | None = Field(None, ge=0, le=2**53, description="A past tick, computed again; null: the snapshot")
+    before: bool = Field(False, description="Leave out the commands at this tick")
     window_ticks: int = Field(
-        20_000, ge=0, le=1_000_000, description="Ticks before it that are computed too, for its panels"
+        20_000, ge=0, le=1_000_000, description="Earlier ticks that are computed again for its panels"
     )
-    paused: bool = Field(False, description="It waits, and may seek other ticks until something is done on it")
-    name: str = Field("", max_length=MAX_NAME, description="Its name, in addition to its title")
+    paused: bool = Field(False, description="Start paused; the fork may seek other ticks until its first change")
+    name: str = Field("", max_length=MAX_NAME, description="Name of the fork, in addition to the title of its scenario")
 
     @model_validator(mode="after")
     def _has_one_moment(self) -> Self:
@@ -120,24 +121,24 @@ class ForkFrom(StrictBody):
 class BenchName(StrictBody):
     """Name of a bench."""
 
-    name: str = Field(max_length=MAX_NAME, description="Empty: by the title of its scenario alone")
+    name: str = Field(max_length=MAX_NAME, description="Name of the bench; empty: only the title of its scenario")
 
 
 class Variant(StrictBody):
-    """How the second bench differs."""
+    """The difference between a bench and its variant."""
 
-    set: dict[str, Any] = Field({}, description="Values by dotted path; a whole table may be one")
-    repeat: bool = Field(False, description="The commands to this bench are repeated, to its tick; there it pauses")
+    set: dict[str, Any] = Field({}, description="Values by dotted path; a value may be a whole table")
+    repeat: bool = Field(False, description="Repeat the commands to this bench up to its tick, and pause there")
 
 
 @router.post("", status_code=201, dependencies=[RateLimited])
 async def create_bench(body: NewBench, service: ServiceDep, person: PersonDep, response: Response) -> Bench:
-    """Make a bench and let it run; a student's takes the place of the one before."""
+    """Make a bench and start it; the new bench of a student replaces the earlier one."""
     if person.role == "watcher":
         raise ApiError(403, "forbidden", "a link to watch opens one bench")
     await service.benches.check(body.scenario, body.set)
     if person.role == "student":
-        blind = (await service.student_benches.get(person)).hiding.blind  # it may be on its way back
+        blind = blind_of(await service.student_benches.get(person))  # it may be on its way back
         if blind is not None and blind.question.game is None:  # a game may be left
             raise ApiError(409, "blind", "a fault is hidden on your bench", hint=HINT)
         service.driving.check(service.people.bench_of(person), person)  # the bench before is closed with it
@@ -151,7 +152,7 @@ async def create_bench(body: NewBench, service: ServiceDep, person: PersonDep, r
 
 @router.get("")
 async def list_benches(service: ServiceDep, person: PersonDep) -> BenchList:
-    """List the live benches without the benches of students, which their class lists; a student sees the own bench."""
+    """List the live benches of the teacher; a class lists the benches of its students. A student gets the own bench."""
     if person.is_teacher:
         return BenchList(benches=service.views.all(person))
     found = service.benches.find(service.people.bench_of(person))
@@ -180,7 +181,7 @@ async def delete_bench(session: SessionDep, service: ServiceDep) -> None:
 @router.post("/{bench_id}/reopen", dependencies=[RateLimited])
 async def reopen_bench(bench_id: str, service: ServiceDep, person: PersonDep) -> Bench:
     """Return a bench; a closed idle bench is opened again under its id, with the same bits, paused or running."""
-    session = await service.reopening.bring_back(bench_id)
+    session = await service.idling.bring_back(bench_id)
     service.idling.saw(bench_id)
     return service.views.of(session, person)
 
@@ -195,7 +196,7 @@ async def command(
     reset_trip, is still read.
     """
     entry = await service.benches.command(session, command, caller)
-    if isinstance(seen := service.views.seen(session, person), BlindView):
+    if isinstance(seen := service.views.seen(session, person), View):
         entry = seen.told(entry)
     return CommandResult(tick=entry.tick, time_ms=entry.tick * session.dt_ms, entry=entry)
 

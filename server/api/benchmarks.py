@@ -10,6 +10,7 @@ from scenarios.benchmark import results
 from scenarios.benchmark.results import Cost, LeftOut, Row
 from scenarios.benchmark.seeds import BENCHMARK, COMMITMENT, LISTS
 from scenarios.benchmark.track import tracks
+from server.api.bodies import AnswerBody
 from server.api.router import Router
 from server.errors import not_found
 
@@ -17,13 +18,13 @@ router = Router(prefix="/benchmarks", tags=["benchmarks"])
 TITLE = "How soon and how honestly a fault is noticed and named"
 
 
-class BenchmarkCard(BaseModel):
+class BenchmarkCard(AnswerBody):
     """A benchmark among others."""
 
     id: str
     title: str
     tracks: list[str]
-    command: str = Field(description="What computes its table anew")
+    command: str = Field(description="Command that computes the table again")
 
 
 class BenchmarkList(BaseModel):
@@ -32,7 +33,7 @@ class BenchmarkList(BaseModel):
     benchmarks: list[BenchmarkCard]
 
 
-class TrackResults(BaseModel):
+class TrackResults(AnswerBody):
     """A track, and the diagnosers it scores, best first; diagnosers without probabilities are last."""
 
     id: str
@@ -46,15 +47,15 @@ class TrackResults(BaseModel):
 class BenchmarkDetail(BenchmarkCard):
     """A benchmark with the table of the diagnosers of the library."""
 
-    version: str = Field(description="Of the code the table was computed with")
+    version: str = Field(description="Version of the code that computed the table")
     seeds: str
-    cases: int = Field(description="Of each track")
+    cases: int = Field(description="Number of cases of each track")
     commitment: str = Field(description="SHA-256 of the hidden seeds")
-    false_alarm_samples: int = Field(description="Mean samples between false alarms that thresholds are set for")
-    within_samples: list[int] = Field(description="Delays of `found_within`")
+    false_alarm_samples: int = Field(description="Mean samples between false alarms, to which thresholds are set")
+    within_samples: list[int] = Field(description="Delays, in samples, that the entries of `found_within` belong to")
     results: list[TrackResults]
     left_out: list[LeftOut]
-    costs: dict[str, Cost] = Field(description="Of each diagnoser, on the machine that computed the table")
+    costs: dict[str, Cost] = Field(description="Cost of each diagnoser, on the machine that computed the table")
 
 
 @router.get("")
@@ -79,25 +80,14 @@ def _card() -> BenchmarkCard:
 def _detail() -> BenchmarkDetail:
     kept = results.kept()
     cases, _ = LISTS[kept.seeds]
-    return BenchmarkDetail(
-        **_card().model_dump(),
-        version=kept.version,
-        seeds=kept.seeds,
+    return BenchmarkDetail.of(
+        _card(),
+        kept,
         cases=cases,
         commitment=COMMITMENT,
-        false_alarm_samples=kept.false_alarm_samples,
         within_samples=[*results.WITHIN_SAMPLES],
         results=[
-            TrackResults(
-                id=name,
-                title=one.title,
-                question=one.question,
-                note=one.note,
-                classes=[*one.classes],
-                rows=kept.ranked(name),
-            )
-            for name, one in tracks().items()
+            TrackResults.of(track, id=name, classes=[*track.classes], rows=kept.ranked(name))
+            for name, track in tracks().items()
         ],
-        left_out=kept.left_out,
-        costs=kept.costs,
     )

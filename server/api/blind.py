@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated
 
 from pydantic import BaseModel, Field
 
-from server.api.bodies import Body
-from server.api.classes import Outcomes
+from server.api.bodies import Body, MemberIds, Source
 from server.api.deps import PersonDep, RateLimited, ServiceDep, SessionDep
 from server.api.router import Router
-from server.api.students import students_of
-from server.bench.blind import HiddenQuestion
+from server.api.students import Outcomes, refusal, students_of
+from server.bench.bench import LiveBench
+from server.bench.status import HiddenQuestion
 from server.classroom.blind_class import begin_for
 from server.classroom.blinds import Answer
-from server.errors import REFUSED, ApiError, why
+from server.classroom.hiding import blind_of
+from server.errors import ApiError
 
 router = Router(tags=["blind"])
 
@@ -25,54 +26,52 @@ RULE = (
     "that is no surer than a guess, earns 0. On average you earn most by saying how sure you really are."
 )
 
+Shows = Annotated[bool, Field(description="Show the diagnosers; the question is then whether to trust them")]
+
 
 class Hide(Body):
     """A fault to hide on the user's own bench."""
 
-    seed: int = Field(ge=0, le=2**53, description="The same one hides the same fault, but for students of a class")
-    shows: bool = Field(False, description="The diagnosers may be looked at: whether to trust them is the question")
+    seed: int = Field(ge=0, le=2**53, description="Equal seeds hide equal faults, except in a class")
+    shows: Shows = False
 
 
 class Said(Body):
     """The presumed fault of the device, and the confidence."""
 
-    said: str = Field(max_length=24)
-    confidence: float = Field(ge=0, le=1)
+    said: str = Field(max_length=24, description="Name of the hypothesis")
+    confidence: float = Field(ge=0, le=1, description="Probability, in the opinion of the user, that it is right")
 
 
 class Blindness(BaseModel):
     """The hidden fault of a bench, and the answers before."""
 
-    question: HiddenQuestion | None = Field(description="Null while nothing is hidden")
-    rule: str = Field(description="How points are counted")
-    answers: list[Answer] = Field(description="Oldest first, each with the truth")
+    question: HiddenQuestion | None = Field(description="The hidden fault to find; null while no fault is hidden")
+    rule: str = Field(description="Rule of the points, in words")
+    answers: list[Answer] = Field(description="Earlier answers with the truth, oldest first")
 
 
 class HideForAll(Body):
     """A question to the students of a class."""
 
-    scenario: str | dict[str, Any] = Field("ch5-seven-step", description="Library id, TOML text, or document")
-    shows: bool = Field(False, description="The diagnosers may be looked at: whether to trust them is the question")
-    members: list[str] | None = Field(None, max_length=500, description="Ids of students; null: all of them")
+    scenario: Source = "ch5-seven-step"
+    shows: Shows = False
+    members: MemberIds = None
 
 
 class BlindClass(BaseModel):
     """The hidden faults of the students of a class, and their answers."""
 
     rule: str
-    hidden: int = Field(description="How many have not answered yet")
-    answers: list[Answer] = Field(description="Oldest first, including faults that are still hidden")
+    hidden: int = Field(description="Number of students who have not answered yet")
+    answers: list[Answer] = Field(description="Answers and truths, oldest first, also of faults still hidden")
 
 
 @router.get(BENCH)
 async def get_blind(session: SessionDep, service: ServiceDep, person: PersonDep) -> Blindness:
     """Return the question of a bench, and the answers so far."""
-    hiding = session.hiding
-    return Blindness(
-        question=hiding.blind.question if hiding.blind is not None and hiding.blind.question.game is None else None,
-        rule=RULE,
-        answers=service.blinds.of_person(person.id),
-    )
+    answers = service.blinds.of_person(person.id)
+    return Blindness(question=_question(session), rule=RULE, answers=answers)
 
 
 @router.post(BENCH, status_code=201, dependencies=[RateLimited])
@@ -102,7 +101,7 @@ async def give_up(session: SessionDep, service: ServiceDep, person: PersonDep) -
 
 @router.post(CLASS, dependencies=[RateLimited])
 async def hide_for_class(class_id: str, body: HideForAll, service: ServiceDep) -> Outcomes:
-    """Give students a new bench each, with a device and a hidden fault of their own."""
+    """Make a new bench for each student; device and hidden fault differ from student to student."""
     students = await students_of(service, class_id, body.members)
     failed = await begin_for(service.classes, service.blinds, students, body.scenario, body.shows)
     await service.checkpoints.write()  # they are blind after a crash too
@@ -122,15 +121,17 @@ async def get_class_blind(class_id: str, service: ServiceDep) -> BlindClass:
 async def reveal_class(class_id: str, service: ServiceDep, person: PersonDep) -> Outcomes:
     """Reveal their faults to all students of a class; students without an answer get no points."""
     await service.classes.row(class_id)
-    done, failed = 0, []
+    refusals = []
     for student in service.people.students(class_id):
         session = service.student_benches.find(student)
-        if session is None or session.hiding.blind is None or session.hiding.blind.question.game is not None:
-            continue
-        try:
-            await service.blinds.reveal(session, person)
-            done += 1
-        except REFUSED as error:
-            failed.append(f"{student.name}: {why(error)}")
-    service.audit.add("teacher", "blind", f"showed the hidden faults to {done} students", class_id)
-    return Outcomes(done=done, failed=failed)
+        if session is not None and _question(session) is not None:
+            refusals.append(await refusal(student, service.blinds.reveal(session, person)))
+    outcomes = Outcomes.of(refusals)
+    service.audit.add("teacher", "blind", f"showed the hidden faults to {outcomes.done} students", class_id)
+    return outcomes
+
+
+def _question(session: LiveBench) -> HiddenQuestion | None:
+    """Return the question of a bench where a fault is hidden; a game has a question of its own."""
+    blind = blind_of(session)
+    return blind.question if blind is not None and blind.question.game is None else None

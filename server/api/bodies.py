@@ -1,15 +1,15 @@
-"""Request bodies: all refuse unknown fields, silent conversions and NaN."""
+"""Bodies: requests refuse unknown fields, silent conversions and NaN; answers take fields from records."""
 
 from __future__ import annotations
 
 import json
 import math
 from collections.abc import Callable, Coroutine
-from typing import Any
+from typing import Annotated, Any, Self
 
 from fastapi import Request, Response
 from fastapi.routing import APIRoute
-from pydantic import BaseModel, ConfigDict, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from core.nesting import DEEPEST, TOO_DEEP, depth
 
@@ -30,6 +30,26 @@ class Body(BaseModel):
             name: int(value) if name in whole and isinstance(value, float) and value.is_integer() else value
             for name, value in values.items()
         }
+
+
+class AnswerBody(BaseModel):
+    """Base of an answer that has fields of other records, by the same names."""
+
+    @classmethod
+    def of(cls, *records: object, **given: Any) -> Self:
+        """Take every field from the first record that has it, unless its value is given here."""
+        values = {
+            name: getattr(record, name)
+            for record in reversed(records)
+            for name in cls.model_fields
+            if name not in given and hasattr(record, name)
+        }
+        return cls.model_validate({**values, **given}, from_attributes=True)
+
+
+Source = Annotated[str | dict[str, Any], Field(description="Library id, TOML text, or document")]
+MemberIds = Annotated[list[str] | None, Field(max_length=500, description="Ids of students; null: the whole class")]
+Values = Annotated[dict[str, Any], Field(description="Values by dotted path; they replace values of the scenario")]
 
 
 def strict_json(text: str | bytes) -> Any:

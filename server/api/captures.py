@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pydantic import BaseModel, Field
 
+from server.api.bodies import AnswerBody
 from server.api.deps import SeenDep, ServiceDep
 from server.api.router import Router
 from server.bench.captures import CaptureSet
@@ -12,11 +13,11 @@ from server.stream.wire import CaptureMark
 router = Router(prefix="/benches", tags=["trace"])
 
 
-class TriggerCaptures(BaseModel):
+class TriggerCaptures(AnswerBody):
     """The captures of one trigger, oldest first."""
 
     signals: list[str]
-    trigger: str = Field(description="The signal that triggers")
+    trigger: str = Field(description="Name of the signal that triggers")
     edge: str
     level: float
     upper: float | None
@@ -24,24 +25,7 @@ class TriggerCaptures(BaseModel):
     window_ticks: int
     before_ticks: int = Field(description="Ticks of the window before the trigger")
     captures: list[CaptureMark]
-    is_short: bool = Field(description="Memory leaves room for no more of them")
-
-    @classmethod
-    def of(cls, kept: CaptureSet) -> TriggerCaptures:
-        """Describe the captures of a trigger."""
-        what = kept.what
-        return cls(
-            signals=list(what.signals),
-            trigger=what.trigger,
-            edge=what.edge,
-            level=what.level,
-            upper=what.upper,
-            hysteresis=what.hysteresis,
-            window_ticks=what.window,
-            before_ticks=what.before,
-            captures=[CaptureMark.of(one) for one in kept.captures],
-            is_short=kept.is_short,
-        )
+    is_short: bool = Field(description="Whether memory limits the number of captures")
 
 
 class BenchCaptures(BaseModel):
@@ -54,4 +38,11 @@ class BenchCaptures(BaseModel):
 async def list_captures(session: SeenDep, service: ServiceDep) -> BenchCaptures:
     """List the captures of a bench; a trace of the signals, start_tick and end_tick of one has every sample of it."""
     await service.hub.capture(session)
-    return BenchCaptures(triggers=[TriggerCaptures.of(kept) for kept in session.captures.sets()])
+    return BenchCaptures(triggers=[_described(kept) for kept in session.captures.sets()])
+
+
+def _described(kept: CaptureSet) -> TriggerCaptures:
+    """Describe the captures of a trigger."""
+    marks = [CaptureMark.of(one) for one in kept.captures]
+    what = kept.what
+    return TriggerCaptures.of(what, kept, window_ticks=what.window, before_ticks=what.before, captures=marks)

@@ -10,7 +10,7 @@ from pydantic import BaseModel
 
 from core.cards import BlockCard
 from core.registry import catalog
-from server.api.compression import takes_gzip
+from server.api.page import takes_gzip
 from server.api.router import Router
 from server.version import VERSION
 

@@ -9,9 +9,10 @@ from pydantic import BaseModel, Field
 from scenarios.claims import Claim, Mark, claims, marks
 from scenarios.expectation import Verdict, overall
 from scenarios.knobs import Knob, knobs
+from server.api.bodies import AnswerBody
 from server.api.deps import ServiceDep, SessionDep
 from server.api.router import Router
-from server.bench.measuring import Run
+from server.bench.measuring import RunSoFar
 from server.version import VERSION
 
 router = Router(prefix="/benches/{bench_id}", tags=["claims"])
@@ -23,7 +24,7 @@ class BenchClaim(Claim):
     knobs: list[Knob]
 
 
-class ClaimList(BaseModel):
+class ClaimList(AnswerBody):
     """The claims of the scenario of a live bench, judged by the figures of a headless run."""
 
     bench_id: str
@@ -33,11 +34,11 @@ class ClaimList(BaseModel):
     claim: str
     seed: int
     version: str
-    tick: int = Field(description="Ticks that are measured")
+    tick: int = Field(description="Number of ticks that are measured")
     ends_at: int = Field(description="Tick at which a headless run ends; later ticks do not count")
-    is_over: bool = Field(description="Whether the run has come to its end; until then nothing is ticked or crossed")
-    reason: str = Field(description="Why nothing is measured; empty if it is")
-    verdict: Verdict | None = Field(description="Null until the run has come to its end")
+    is_over: bool = Field(description="Whether the run has ended; until then no claim is marked as met or missed")
+    reason: str = Field(description="Why no figure is measured; empty otherwise")
+    verdict: Verdict | None = Field(description="Verdict on all claims; null until the run has ended")
     claims: list[BenchClaim]
 
 
@@ -56,22 +57,18 @@ async def list_printed(session: SessionDep) -> MarkList:
 @router.get("/claims")
 async def list_claims(session: SessionDep, service: ServiceDep) -> ClaimList:
     """Measure the claims of a bench over its run since tick 0, with the bits of a headless run."""
-    run = await service.engine.call(Run.of, session)
+    run = await service.engine.call(RunSoFar.of, session)
     figures = await asyncio.to_thread(session.measuring.figures, run)
     scenario, signals = run.scenario, session.signals
     found = claims(scenario, figures.metrics or {}, signals, figures.is_over)
-    return ClaimList(
+    return ClaimList.of(
+        scenario.head,
+        figures,
+        run,
         bench_id=session.id,
         scenario_id=scenario.id,
-        title=scenario.head.title,
-        source=scenario.head.source,
-        claim=scenario.head.claim,
         seed=session.board.spec.seed,
         version=VERSION,
-        tick=figures.tick,
-        ends_at=run.ends_at,
-        is_over=figures.is_over,
-        reason=figures.reason,
         verdict=overall(claim.verdict for claim in found),
         claims=[
             BenchClaim(**dict(claim), knobs=knobs(scenario, entry))

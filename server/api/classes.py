@@ -8,16 +8,15 @@ from fastapi import Request, Response
 from pydantic import BaseModel, Field
 
 from server.api.benches import NewBench
-from server.api.bodies import Body
+from server.api.bodies import Body, MemberIds
 from server.api.deps import RateLimited, ServiceDep
 from server.api.joining import address_of, give_session
 from server.api.router import Router
-from server.api.students import student_of, students_of
+from server.api.students import Outcomes, refusal, student_of, students_of
 from server.bench.commands import Command
 from server.classroom.classes import Class
 from server.classroom.sheet_work import brief
 from server.classroom.tile import Tile, tile_of
-from server.errors import REFUSED, why
 from server.security.person import Person
 from server.service import Service
 
@@ -27,9 +26,9 @@ LONGEST_H = 24.0 * 14
 
 
 class Minutes(Body):
-    """How long a code lets students in."""
+    """The lifetime of a code."""
 
-    minutes: float = Field(120.0, gt=0, le=60 * LONGEST_H)
+    minutes: float = Field(120.0, gt=0, le=60 * LONGEST_H, description="Minutes for which the code is valid")
 
 
 class NewClass(Body):
@@ -37,8 +36,8 @@ class NewClass(Body):
 
     name: str = Field(min_length=1, max_length=100)
     bench: NewBench = Field(default_factory=lambda: NewBench(scenario="first-look"))
-    hours: float = Field(8.0, gt=0, le=LONGEST_H, description="Until it ends and its students are forgotten")
-    minutes: float = Field(120.0, gt=0, le=60 * LONGEST_H, description="How long the first code lets students in")
+    hours: float = Field(8.0, gt=0, le=LONGEST_H, description="Hours until the class ends and its students are deleted")
+    minutes: float = Field(120.0, gt=0, le=60 * LONGEST_H, description="Minutes for which the first code is valid")
 
 
 class ClassList(BaseModel):
@@ -55,7 +54,7 @@ class Join(Body):
 
 
 class Joined(BaseModel):
-    """A session, for a program: send it as a bearer. Browsers join by the page and get a cookie."""
+    """A session for a program, which sends it as a bearer token; browsers join by the page and get a cookie."""
 
     id: str
     session: str
@@ -63,7 +62,7 @@ class Joined(BaseModel):
 
 
 class Members(BaseModel):
-    """The students of a class in the order in which they came, each with a picture of the bench."""
+    """The students of a class in the order in which they joined, each with a small picture of the bench."""
 
     members: list[Tile]
 
@@ -72,19 +71,12 @@ class ForAll(Body):
     """A command to the benches of a class."""
 
     command: Command
-    members: list[str] | None = Field(None, max_length=500, description="Ids of students; null: all of them")
-
-
-class Outcomes(BaseModel):
-    """The outcome of a command to many benches."""
-
-    done: int
-    failed: list[str] = Field(description="Name and reason of each that refused")
+    members: MemberIds = None
 
 
 @router.post("", status_code=201, dependencies=[RateLimited])
 async def open_class(body: NewClass, service: ServiceDep, request: Request, response: Response) -> Class:
-    """Open a class; its code is in the answer."""
+    """Open a class; the answer contains its code."""
     await service.benches.check(body.bench.scenario, body.bench.set)
     made = await service.classes.open(body.name, body.bench.wanted(), body.hours, body.minutes)
     response.headers["Location"] = f"/api/v1/classes/{made.id}"
@@ -137,7 +129,7 @@ async def join_class(class_id: str, body: Join, request: Request, response: Resp
 
 @router.get("/{class_id}/members", response_model=Members)
 async def list_members(class_id: str, service: ServiceDep) -> Response:
-    """Show every student: name, bench, state, verdict and truth, a small trace."""
+    """List the students of a class with name, bench, state, verdict, truth and a small trace."""
     await service.classes.row(class_id)
     found = Members(members=[_tile(service, person) for person in service.people.students(class_id)])
     # written at once: checking sixty tiles again takes the loop ten times as long
@@ -146,7 +138,7 @@ async def list_members(class_id: str, service: ServiceDep) -> Response:
 
 @router.delete("/{class_id}/members/{member_id}", status_code=204, dependencies=[RateLimited])
 async def remove_member(class_id: str, member_id: str, service: ServiceDep) -> None:
-    """Send a student away: the session ends at once, the bench is closed."""
+    """Remove a student from a class: the session ends at once, and the bench is closed."""
     await service.classes.remove(await student_of(service, class_id, member_id))
 
 
@@ -155,17 +147,11 @@ async def command_all(class_id: str, body: ForAll, service: ServiceDep) -> Outco
     """Carry out a command on the benches of all students or some at their next tick edges, no matter who drives."""
     students = await students_of(service, class_id, body.members)
 
-    async def one(person: Person) -> str | None:
-        try:
-            session = await service.student_benches.get(person)
-            await service.benches.command(session, body.command, "teacher")
-        except REFUSED as error:
-            return f"{person.name}: {why(error)}"
-        return None
+    async def command(person: Person) -> None:
+        session = await service.student_benches.get(person)
+        await service.benches.command(session, body.command, "teacher")
 
-    said = await asyncio.gather(*(one(person) for person in students))
-    failed = [text for text in said if text is not None]
-    return Outcomes(done=len(said) - len(failed), failed=failed)
+    return Outcomes.of(await asyncio.gather(*(refusal(person, command(person)) for person in students)))
 
 
 @router.post("/{class_id}/scenario", dependencies=[RateLimited])

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, cast
 
-from fastapi import Depends, Request, WebSocket
+from fastapi import Depends, Request
 from starlette.requests import HTTPConnection
 
 from server.bench.bench import LiveBench, Seen
-from server.computing.computing import Computing
 from server.errors import ApiError
 from server.security.identity import Identity
 from server.security.person import Person
@@ -16,18 +15,12 @@ from server.service import Service
 from server.settings import Settings
 
 
-def get_service(request: Request) -> Service:
+def get_service(connection: HTTPConnection) -> Service:
     """Return the service of the application."""
-    return cast(Service, request.app.state.service)
-
-
-def get_socket_service(socket: WebSocket) -> Service:
-    """Return the service of the application, for a WebSocket."""
-    return cast(Service, socket.app.state.service)
+    return cast(Service, connection.app.state.service)
 
 
 ServiceDep = Annotated[Service, Depends(get_service)]
-SocketServiceDep = Annotated[Service, Depends(get_socket_service)]
 
 
 def get_identity(request: Request) -> Identity:
@@ -46,14 +39,6 @@ def get_session(bench_id: str, service: ServiceDep) -> LiveBench:
 
 
 SessionDep = Annotated[LiveBench, Depends(get_session)]
-
-
-def get_computing(service: ServiceDep) -> Computing:
-    """Return the processes that compute for requests."""
-    return service.computing
-
-
-ComputingDep = Annotated[Computing, Depends(get_computing)]
 
 
 def get_person(connection: HTTPConnection) -> Person:
@@ -77,8 +62,6 @@ def get_seen(session: SessionDep, service: ServiceDep, person: PersonDep) -> See
 
 
 SeenDep = Annotated[Seen, Depends(get_seen)]
-
-
 CallerDep = Annotated[str, Depends(get_caller)]
 
 

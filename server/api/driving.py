@@ -19,11 +19,12 @@ class DrivingTurn(Body):
 
     do: Literal["ask", "hand_over", "refuse", "take", "leave"] = Field(
         description=(
-            "ask the driver for the bench; hand it over to a person, or refuse a request; take it (the teacher, or a "
-            "student who handed over the own bench); leave it: the next person who gives a command drives"
+            "ask: request the bench from its driver. hand_over: let a person drive. refuse: decline a request. take: "
+            "drive at once (the teacher, or a student who handed over the own bench). leave: the next person who gives "
+            "a command drives"
         )
     )
-    to: str = Field("", max_length=32, description="Id of the person who gets it, or is refused")
+    to: str = Field("", max_length=32, description="Id of the person who is to drive, or whose request is declined")
 
     @model_validator(mode="after")
     def _has_a_person(self) -> Self:
@@ -35,12 +36,12 @@ class DrivingTurn(Body):
 class Drives(BaseModel):
     """The users of the bench now."""
 
-    company: Company | None = Field(description="Null while it is one person")
+    company: Company | None = Field(description="Persons who have the bench open; null while there is only one")
 
 
 @router.post("", dependencies=[RateLimited])
 async def change_driver(body: DrivingTurn, session: SessionDep, person: PersonDep, service: ServiceDep) -> Drives:
-    """Change who drives a bench, or ask for it."""
+    """Change the driver of a bench, or request the bench."""
     driving = service.driving
     if body.do == "hand_over":
         driving.hand_over(session.id, person, body.to)

@@ -2,33 +2,10 @@
 
 from __future__ import annotations
 
+from importlib.resources import files
 from typing import Any
 
-UNIT = '''from core.block import Block, BlockParams, parameter
-from core.control.controller import ControllerPorts
-from core.record import Record
-
-
-class Gain(Block):
-    """Proportional control."""
-
-    title = "Gain"
-
-    class Params(BlockParams):
-        gain_v_um: float = parameter(-2.0, "gain", "V/um", ge=-1e3, le=1e3)
-
-    class Packed(Record):
-        """The number that the step reads."""
-
-        gain_v_um: float
-
-    class Ports(ControllerPorts):
-        """The ports of every controller."""
-
-    @staticmethod
-    def step(p, s, x):
-        x.voltage = p.gain_v_um * (x.model - x.measured)
-'''
+UNIT = (files("scenarios.starters") / "blank.py").read_text("utf-8")
 SHEET = """+++
 schema = 1
 title = "Displacement"
@@ -136,6 +113,7 @@ EXAMPLES: dict[str, tuple[Any, Any]] = {
         {"numerator": [1.0], "denominator": [1.0, 0.5, 1.0]},
     ),
     "judge_positive_definite": ({"matrix": [[2.0, 1.0], [1.0, 2.0]]}, {"matrix": [[1.0, 2.0], [2.0, 1.0]]}),
+    "draw_qr_code": ({"text": "https://lab.example/join?code=k7m4x9p2tq5h"}, {"text": "http://192.168.1.5:8000/join"}),
     "judge_persistency": (
         {"tones": [{"amplitude": 1.0, "frequency": 1.0}]},
         {"tones": [{"amplitude": 1.0, "frequency": 0.5}, {"amplitude": 1.0, "frequency": 2.0}], "filter_pole": 2.0},

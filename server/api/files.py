@@ -71,15 +71,15 @@ def _pieces(file: BinaryIO) -> Iterator[bytes]:
 Tick = Annotated[int | None, Query(ge=-(2**53), le=2**53)]
 Signals = Annotated[
     Sequence[Annotated[str, Field(max_length=8000)]],
-    Query(max_length=1000, description="Names, one each time, or several between commas; all unless given"),
+    Query(max_length=1000, description="Names of signals, repeated or separated by commas; left out: all signals"),
 ]
 
 
 def get_cut(
     signals: Signals = (),
     start_tick: Tick = None,
-    end_tick: Annotated[int | None, Query(ge=-(2**53), le=2**53, description="The one behind the last")] = None,
-    every: Annotated[int, Query(ge=1, le=1_000_000, description="Every so many ticks")] = 1,
+    end_tick: Annotated[int | None, Query(ge=-(2**53), le=2**53, description="The tick after the last")] = None,
+    every: Annotated[int, Query(ge=1, le=1_000_000, description="Keep one tick of every so many")] = 1,
 ) -> Cut:
     """Read from the query which part of a trace is wanted."""
     return Cut(tuple(name for name in signals if name.strip()), start_tick, end_tick, every)

@@ -4,57 +4,50 @@ from __future__ import annotations
 
 import asyncio
 import fnmatch
-from functools import cache
 from typing import Annotated
 
 from fastapi import Query, Response
 from pydantic import BaseModel, Field
 
-from core.board.commands import Inject, Switch
-from core.board.spec import Spec
 from core.errors import InputError
-from core.registry import blocks
 from scenarios.expectation import Verdict, overall
-from scenarios.library import ids, is_demo, library
+from scenarios.library import ids, is_demo, library, topics
 from scenarios.report.svg import with_style
 from scenarios.schema import Scenario
-from server.api.bodies import Body
+from server.api.bodies import AnswerBody, Body
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import SVG
 from server.api.router import Router
 from server.errors import not_found
-from server.runs.figures import Figure, Figures
+from server.runs.figures import ScenarioFigure, ScenarioFigures
 from server.runs.listing import Run
 
 router = Router(prefix="/gallery", tags=["gallery"])
 
+First = Annotated[list[str], Query(max_length=64, description="Ids of the visible cards, whose figures are made first")]
 
-First = Annotated[list[str], Query(max_length=64, description="Ids of cards in sight: their figures come first")]
 
-
-class Expected(BaseModel):
+class Expected(AnswerBody):
     """An expectation, and the measured value."""
 
     metric: str
     published: str
     published_value: float | None
     expected: str
-    expected_words: str = Field(description="The same for readers, with a unit and its prefix")
-    verdict: Verdict | None = Field(
-        description="The word of the measured value; before a run, the word if the expectation holds"
-    )
-    fitted: list[str] = Field(description="Fields of the scenario that were chosen so that it agrees")
-    reason: str = Field(description="Why nothing is said by comparing it with the open loop")
+    expected_words: str = Field(description="The expected value in words, with its unit")
+    verdict: Verdict | None = Field(description="Verdict on the value; before a run, if the expectation holds")
+    fitted: list[str] = Field(description="Fields of the scenario chosen so that the figure agrees with the text")
+    reason: str = Field(description="Why there is no comparison with the open loop")
     note: str
     measured: float | None = None
-    open_loop: float | None = Field(None, description="With the open loop in place of the controller")
-    pid: float | None = Field(None, description="With the comparator in its place, where the claim is against a PID")
-    comparator: str = Field("", description="Name of that PID: the best of its family on the healthy device")
-    pid_too: bool = Field(False, description="Whether that PID meets the claim too; until a run, as declared")
-    ok: bool | None = Field(None, description="Null until it has been run")
+    open_loop: float | None = Field(None, description="Figure with the open loop in place of the controller")
+    pid: float | None = Field(None, description="Figure with a PID in its place, where the claim is against a PID")
+    comparator: str = Field("", description="Name of this PID, the best of its family on the healthy device")
+    pid_too: bool = Field(False, description="Whether this PID meets the claim too; before a run, as declared")
+    ok: bool | None = Field(None, description="Whether the expectation holds; null before a run")
 
 
-class GalleryCard(BaseModel):
+class GalleryCard(AnswerBody):
     """A scenario of the library, its figure, and its run if there has been one with this version of the code."""
 
     id: str
@@ -63,13 +56,13 @@ class GalleryCard(BaseModel):
     summary: str
     claim: str
     verdict: Verdict | None
-    demo: bool = Field(description="Made for first visits and lectures")
-    topics: list[str] = Field(description="Device, controllers, diagnosers and faults it is about")
+    demo: bool = Field(description="Whether the scenario is for first visits and lectures")
+    topics: list[str] = Field(description="Titles of its device, controllers, diagnosers and faults")
     figure: str | None = Field(description="Key of its figure at /gallery/{id}/figure; null until it is made")
-    problem: str = Field(description="Why it has no figure, if it cannot be made")
+    problem: str = Field(description="Why the figure cannot be made; empty otherwise")
     study: str | None = Field(description="Kind of the study; null for a scenario that runs on a bench")
-    run: str | None = Field(description="Its run: trace, report, thumbnail and script are at /runs/{id}/...")
-    state: str = Field(description="new until it has been requested, then the state of a run")
+    run: str | None = Field(description="Id of its run; trace, report, thumbnail and script are at /runs/{id}/...")
+    state: str = Field(description="new before the first request, then the state of the run")
     progress: float
     elapsed_s: float | None
     digest: str
@@ -77,13 +70,13 @@ class GalleryCard(BaseModel):
     expectations: list[Expected]
 
 
-class FigureProgress(BaseModel):
+class FigureProgress(AnswerBody):
     """Number of finished figures."""
 
     made: int
     total: int
     is_making: bool
-    problem: str = Field(description="What went wrong last, in one line")
+    problem: str = Field(description="Last error, in one line; empty without an error")
 
 
 class Gallery(BaseModel):
@@ -96,7 +89,7 @@ class Gallery(BaseModel):
 class Chosen(Body):
     """The scenarios to run."""
 
-    only: str = Field("*", max_length=200, description="Ids that match, such as ch5-*")
+    only: str = Field("*", max_length=200, description="Pattern of ids, such as ch5-*")
 
 
 @router.get("")
@@ -111,9 +104,7 @@ async def get_gallery(
     runs = await service.jobs.some(list(run_ids.values()))
     return Gallery(
         cards=[_card(scenario, runs.get(run_ids[scenario.id]), figures) for scenario in library()],
-        figures=FigureProgress(
-            made=len(figures.made), total=figures.total, is_making=figures.is_making, problem=figures.problem
-        ),
+        figures=FigureProgress.of(figures, made=len(figures.made)),
     )
 
 
@@ -140,60 +131,30 @@ async def run_gallery(body: Chosen, service: ServiceDep) -> Gallery:
     return await get_gallery(service)
 
 
-@cache
-def _topics(scenario: Scenario) -> list[str]:
-    """Return the topics of a scenario, in the words of the catalogue."""
-    controllers, faults = blocks("control"), blocks("faults")
-    specs: list[Spec] = [scenario.spec, *scenario.twins.values()]
-    topics = [str(scenario.document.get("device", {}).get("id", ""))]
-    driving = [name for spec in specs for name in spec.driving.values()]
-    commands = [command for event in scenario.events for command in event]
-    driving += [command.switch for command in commands if isinstance(command, Switch)]
-    topics += [controllers[name].title if name in controllers else name for name in driving]
-    for spec in specs:
-        found = [*spec.diagnosers.values(), *spec.identifiers.values(), *spec.readouts.values()]
-        topics += [section.block.title for section in found]
-        topics.append(spec.sensors[spec.measuring].block.title)
-    injected = [command.fault for command in commands if isinstance(command, Inject)]
-    topics += [faults[name].title if name in faults else name for name in injected]
-    return list(dict.fromkeys(topic for topic in topics if topic))
-
-
-def _card(scenario: Scenario, run: Run | None, figures: Figures) -> GalleryCard:
+def _card(scenario: Scenario, run: Run | None, figures: ScenarioFigures) -> GalleryCard:
     """Return the card of a scenario; a run and a figure have measured the same."""
     head = scenario.head
-    figure: Figure | None = figures.made.get(scenario.id)
+    figure: ScenarioFigure | None = figures.made.get(scenario.id)
     summary = (run.summary if run is not None else None) or (figure.summary if figure is not None else {})
     measured = summary.get("expectations") or [{}] * len(head.expect)
     rows = [
-        Expected(
-            metric=entry.metric,
-            published=entry.published,
-            published_value=entry.published_value,
+        Expected.of(
+            entry,
             expected=entry.text(),
             expected_words=entry.words(),
             verdict=measurement["verdict"] if measurement else entry.promised(),
-            fitted=entry.fitted,
-            reason=entry.reason,
-            note=entry.note,
-            measured=measurement.get("measured"),
-            open_loop=measurement.get("open_loop"),
-            pid=measurement.get("pid"),
             comparator=head.compared_with(entry),
             pid_too=measurement.get("pid_too", entry.pid_too),
-            ok=measurement.get("ok"),
+            **{name: measurement.get(name) for name in ("measured", "open_loop", "pid", "ok")},
         )
         for entry, measurement in zip(head.expect, measured, strict=True)
     ]
-    return GalleryCard(
+    return GalleryCard.of(
+        head,
         id=scenario.id,
-        title=head.title,
-        source=head.source,
-        summary=head.summary,
-        claim=head.claim,
         verdict=overall(row.verdict for row in rows),
         demo=is_demo(scenario.id),
-        topics=_topics(scenario),
+        topics=topics(scenario),
         figure=figure.key if figure is not None else None,
         problem=figures.failed.get(scenario.id, ""),
         study=str(head.study["kind"]) if head.study is not None else None,

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import Path, Query
+from fastapi import Depends, Path, Query
 from pydantic import BaseModel, Field
 
 from core.cards import EquationCard, ParameterCard, equation_card, parameter_cards
 from scenarios.games import GAMES
 from scenarios.games.game import MOST
-from server.api.bodies import Body
+from server.api.bodies import AnswerBody, Body
 from server.api.deps import PersonDep, RateLimited, ServiceDep
 from server.api.router import Router
 from server.classroom.games import ClassGame, Play
@@ -20,21 +20,31 @@ from server.security.person import Person
 router = Router(tags=["games"])
 
 GameId = Annotated[str, Path(max_length=40)]
-Seed = Annotated[int, Query(ge=0, le=MOST, description="Each student of a class has a game of their own at it")]
+Seed = Annotated[int, Query(ge=0, le=MOST, description="Seed of the game, which differs from student to student")]
 
 
-class GameCard(BaseModel):
+def get_player(person: PersonDep) -> Person:
+    """Return the caller; refuse a watcher, because watchers have no bench of a game."""
+    if person.role == "watcher":
+        raise ApiError(409, "conflict", "a person who watches a bench plays no game")
+    return person
+
+
+PlayerDep = Annotated[Person, Depends(get_player)]
+
+
+class GameCard(AnswerBody):
     """A game in a list."""
 
     id: str
     title: str
     summary: str
     task: str
-    rule: str = Field(description="How points are counted")
+    rule: str = Field(description="Rule of the points, in words")
     equations: list[EquationCard]
-    attempts: int = Field(description="How often one person may hand in at one seed")
-    hand_in: list[ParameterCard] = Field(description="The values of the answer")
-    live: list[str] = Field(description="What of it can be set on the bench while it runs")
+    attempts: int = Field(description="Number of answers that one person may hand in at one seed")
+    hand_in: list[ParameterCard] = Field(description="Fields of the answer")
+    live: list[str] = Field(description="Fields that can be set on the live bench")
 
 
 class GameList(BaseModel):
@@ -47,14 +57,16 @@ class Begin(Body):
     """A bench of a game to begin."""
 
     seed: int = Field(ge=0, le=MOST)
-    hand_in: dict[str, float | str] = Field({}, max_length=20, description="How the bank is set; empty: as by default")
+    hand_in: dict[str, float | str] = Field(
+        {}, max_length=20, description="Settings of the bank; left out: the defaults"
+    )
 
 
 class HandIn(Body):
     """Values of an answer."""
 
     seed: int = Field(ge=0, le=MOST)
-    hand_in: dict[str, float | str] = Field(max_length=20, description="Missing fields have their defaults")
+    hand_in: dict[str, float | str] = Field(max_length=20, description="Fields of the answer; left out: the defaults")
 
 
 class Look(Body):
@@ -68,14 +80,9 @@ async def list_games() -> GameList:
     """List the games with their rules."""
     return GameList(
         games=[
-            GameCard(
-                id=game.id,
-                title=game.title,
-                summary=game.summary,
-                task=game.task,
-                rule=game.rule,
+            GameCard.of(
+                game,
                 equations=[equation_card(equation) for equation in game.equations],
-                attempts=game.attempts,
                 hand_in=parameter_cards(game.form),
                 live=list(game.turned),
             )
@@ -85,16 +92,14 @@ async def list_games() -> GameList:
 
 
 @router.get("/games/{game_id}")
-async def get_game(game_id: GameId, service: ServiceDep, person: PersonDep, seed: Seed = 1) -> Play:
+async def get_game(game_id: GameId, service: ServiceDep, person: PlayerDep, seed: Seed = 1) -> Play:
     """Show a game at a seed: own attempts, the table, and the hidden values once the game is over."""
-    _must_play(person)
     return await service.games.view(person, game_id, seed)
 
 
 @router.post("/games/{game_id}/begin", status_code=201, dependencies=[RateLimited])
-async def begin_game(game_id: GameId, body: Begin, service: ServiceDep, person: PersonDep) -> Play:
-    """Begin the bench of a game, in place of the bench before; it hides the values of the game."""
-    _must_play(person)
+async def begin_game(game_id: GameId, body: Begin, service: ServiceDep, person: PlayerDep) -> Play:
+    """Begin the bench of a game, which replaces the earlier bench and hides the values of the game."""
     if person.role == "student":
         service.driving.check(service.people.bench_of(person), person)  # the bench before is closed with it
     begun = await service.games.begin(person, game_id, body.seed, body.hand_in)
@@ -103,9 +108,8 @@ async def begin_game(game_id: GameId, body: Begin, service: ServiceDep, person: 
 
 
 @router.post("/games/{game_id}/attempts", status_code=201, dependencies=[RateLimited])
-async def hand_in(game_id: GameId, body: HandIn, service: ServiceDep, person: PersonDep) -> Play:
+async def hand_in(game_id: GameId, body: HandIn, service: ServiceDep, person: PlayerDep) -> Play:
     """Hand in: the server judges it by the rule, and the last attempt of the answer has the points."""
-    _must_play(person)
     judged = await service.games.hand_in(person, game_id, body.seed, body.hand_in)
     points = judged.attempts[-1].outcome.points
     service.audit.add(person.name, "game", f"{game_id}, seed {body.seed}: {points:.1f} points", person.class_id)
@@ -113,9 +117,8 @@ async def hand_in(game_id: GameId, body: HandIn, service: ServiceDep, person: Pe
 
 
 @router.post("/games/{game_id}/reveal", dependencies=[RateLimited])
-async def reveal_game(game_id: GameId, body: Look, service: ServiceDep, person: PersonDep) -> Play:
+async def reveal_game(game_id: GameId, body: Look, service: ServiceDep, person: PlayerDep) -> Play:
     """Show the hidden values of a seed; the caller cannot hand in at it any more."""
-    _must_play(person)
     return await service.games.look(person, game_id, body.seed)
 
 
@@ -126,9 +129,3 @@ async def get_class_game(
     """Show the table of a class with all settings handed in, and the hidden facts of each student."""
     await service.classes.row(class_id)
     return await service.games.of_class(person, class_id, game_id, seed)
-
-
-def _must_play(person: Person) -> None:
-    """Refuse a watcher, because watchers have no bench of a game."""
-    if person.role == "watcher":
-        raise ApiError(409, "conflict", "who watches a bench plays no game")

@@ -5,9 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import html
-import time
 from collections import Counter
-from collections.abc import Awaitable, Callable
 from urllib.parse import urlencode
 
 from starlette.requests import HTTPConnection, Request
@@ -16,18 +14,17 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
 from core.own.admission import Terms, admit
-from server.bench.blind import HINT, REFUSAL
 from server.classroom.access import SOCKET, Need, need_of, serves_blind
-from server.classroom.driving import Driving
-from server.classroom.people import People
+from server.classroom.hiding import HINT, REFUSAL
 from server.computing.asker import asks
-from server.errors import SHARD, ApiError, ErrorBody, reply
+from server.errors import ApiError, ErrorBody, reply
 from server.security.frames import TICKET, Frames
 from server.security.identity import Identity, bearer_of
 from server.security.limits import Buckets
 from server.security.origin import OriginPolicy
 from server.security.person import TEACHER, Person
-from server.security.visitor import ELSEWHERE, STYLE, visitor_page
+from server.security.visitor import ELSEWHERE, page, visitor_page
+from server.service import Service
 
 CLOSE_ORIGIN, CLOSE_AUTH, CLOSE_ROLE, CLOSE_FULL = 4003, 4401, 4403, 1013
 REQUESTS_PER_S, REQUESTS_AT_ONCE = 40.0, 400
@@ -55,51 +52,26 @@ class Gate:
         The application to guard.
     identity : Identity
         Knows the teacher.
-    people : People
-        Holds all other persons, and their rights.
-    driving : Driving
-        Knows who drives each bench.
     origin : OriginPolicy
         Checks the host and the origin.
-    come_back : callable
-        Revives the bench in the path, or the bench of a student, after a restart: a hidden fault stays hidden from
-        the first request on.
-    is_blind : callable
-        Whether a fault is hidden from a person, on the bench in the path or on the bench of a student.
-    open_paths : frozenset of str
-        Further paths that need no session.
-    prefix : str
-        The prefix a proxy takes off every path.
+    service : Service
+        Holds all other persons and their rights, the drivers and hidden faults of benches, and the settings. A request
+        revives its bench after a restart, so that a hidden fault stays hidden from the first request on.
     frames : Frames, optional
         The doors of learning platforms, if there are any.
-    units : str
-        Persons whose scenarios may carry their own units: none (``off``), the teacher, or all known persons
-        (``everyone``).
-    student_events : int
-        Events that a scenario of a student may have.
     """
 
     def __init__(
         self,
         app: ASGIApp,
         identity: Identity,
-        people: People,
-        driving: Driving,
         origin: OriginPolicy,
-        come_back: Callable[[Person, str], Awaitable[None]],
-        is_blind: Callable[[Person, str], bool],
-        open_paths: frozenset[str] = frozenset(),
-        prefix: str = "",
+        service: Service,
         frames: Frames | None = None,
-        units: str = "teacher",
-        student_events: int = 1000,
-        clock: Callable[[], float] = time.perf_counter,
     ) -> None:
-        self._app, self._identity, self._people, self._driving = app, identity, people, driving
-        self._origin, self._come_back, self._is_blind = origin, come_back, is_blind
-        self._open, self._prefix, self._frames, self._units = open_paths, prefix, frames, units
-        self._student_events = student_events
-        self._requests = Buckets(REQUESTS_PER_S, REQUESTS_AT_ONCE, clock=clock)
+        self._app, self._identity, self._origin, self._service, self._frames = app, identity, origin, service, frames
+        self._people, self._settings, self._prefix = service.people, service.settings, service.public.prefix
+        self._requests = Buckets(REQUESTS_PER_S, REQUESTS_AT_ONCE, clock=service.clock)
         self._sockets: Counter[str] = Counter()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -117,9 +89,8 @@ class Gate:
             await self._refuse(scope, receive, send, 403, CLOSE_ORIGIN, "forbidden_origin", refusal)
             return
         if scope["type"] == "http" and scope["method"] == "GET":
-            has_token = self._identity.has_token_in_address(connection)
-            if has_token or self._identity.is_meant(connection):
-                await self._welcome(Request(scope), has_token)(scope, receive, send)
+            if self._identity.has_token_in_address(connection):
+                await self._welcome(Request(scope))(scope, receive, send)
                 return
             link = connection.query_params.get("link")
             if link and scope["path"] == "/" and (person is None or person.role == "watcher"):
@@ -130,13 +101,14 @@ class Gate:
         need, bench_id = need_of(method, scope["path"])
         if self._is_open(scope) or self._people.may(person, need, bench_id):
             if person is not None and need is not Need.NOTHING:
-                await self._come_back(person, bench_id)
-            if person is not None and self._is_blind(person, bench_id) and not serves_blind(method, scope["path"]):
+                await self._service.come_back(person, bench_id)
+            is_blind = person is not None and self._service.views.is_blind(person, bench_id)
+            if is_blind and not serves_blind(method, scope["path"]):
                 await self._refuse(scope, receive, send, 403, CLOSE_ROLE, "blind", REFUSAL, HINT)
                 return
             try:
                 if need is Need.DRIVE and person is not None:
-                    self._driving.check(bench_id, person)
+                    self._service.driving.check(bench_id, person)
             except ApiError as error:
                 await reply(error.status_code, error.body)(scope, receive, send)
             else:
@@ -160,20 +132,21 @@ class Gate:
     def _terms(self, person: Person | None) -> Terms:
         """Return the terms on which scenarios of this person are read."""
         is_teacher = person is not None and person.is_teacher
-        return Terms(self._units_refused(person), None if is_teacher else self._student_events)
+        return Terms(self._units_refused(person), None if is_teacher else self._settings.student_events)
 
     def _units_refused(self, person: Person | None) -> str:
         """Return why this person may not bring units of their own; nothing where they may."""
-        if self._units == "off":
+        if self._settings.units == "off":
             return "this server takes no user units"
-        if self._units == "everyone" and person is not None:
+        if person is not None and (person.is_teacher or self._settings.units == "everyone"):
             return ""
-        return "" if person is not None and person.is_teacher else "only the teacher may bring units of their own"
+        return "only the teacher may bring units of their own"
 
     def _is_open(self, scope: Scope) -> bool:
         """Whether a path needs no session; in a frame browsers send none with the files of the page."""
         is_file = scope["path"].startswith(("/assets/", "/comb.svg")) and scope.get("method") in ("GET", "HEAD")
-        return scope["path"] in self._open or (self._frames is not None and is_file)
+        is_metrics = self._settings.metrics_open and scope["path"] == "/metrics"
+        return is_metrics or (self._frames is not None and is_file)
 
     def _has_bearer(self, connection: HTTPConnection) -> bool:
         """Whether a secret that is known came as a bearer."""
@@ -218,17 +191,15 @@ class Gate:
             self._sockets[person.id] -= 1
             self._sockets += Counter()  # forgets those at 0
 
-    def _welcome(self, request: Request, has_token: bool) -> Response:
-        """Exchange token and process in the address for cookies, and take them out of the address."""
+    def _welcome(self, request: Request) -> Response:
+        """Exchange the token in the address for a cookie, and take it out of the address."""
         given = request.query_params.multi_items()
-        rest = [(name, value) for name, value in given if name not in ("token", SHARD)]
+        rest = [(name, value) for name, value in given if name != "token"]
         # Leading slashes are folded: "//evil.example" would be an address of another host.
         path = request.url.path.lstrip("/\\")
         target = f"/{path}" + ("?" + urlencode(rest) if rest else "")
         response = lead_on(request, target, self._prefix)
-        if has_token:
-            self._identity.give_cookie(response)
-        self._identity.give_shard(response)
+        self._identity.give_cookie(response)
         response.headers["Cache-Control"] = "no-store"
         return response
 
@@ -257,7 +228,7 @@ class Gate:
         response: Response
         if wants_page(connection) and not scope["path"].startswith("/api/"):
             query = connection.query_params.multi_items()
-            text = page(status, message, "")
+            text = plain_page(status, message, "")
             if status == 401:
                 text = visitor_page(query, may_use_token, f"{self._prefix}/join")
             response = HTMLResponse(text, status, {"Cache-Control": "no-store"})
@@ -282,14 +253,9 @@ def lead_on(request: Request, target: str, prefix: str) -> Response:
     return HTMLResponse(f'<meta http-equiv="refresh" content="0;url={html.escape(prefix + target)}">')
 
 
-def page(status: int, title: str, text: str) -> str:
+def plain_page(status: int, title: str, text: str) -> str:
     """Build a plain page for a person: a title and one line."""
-    return (
-        "<!doctype html><html lang='en'><meta charset='utf-8'>"
-        f"<meta name='viewport' content='width=device-width'><title>CombBench</title>{STYLE}"
-        f"<main><h1>{html.escape(title[:1].upper() + title[1:])}</h1>"
-        f"<p>{html.escape(text)}</p><p><small>{status}</small></p></main>"
-    )
+    return page(title[:1].upper() + title[1:], f"<p>{html.escape(text)}</p><p><small>{status}</small></p>")
 
 
 def _length(scope: Scope) -> int:

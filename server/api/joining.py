@@ -9,10 +9,9 @@ from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from server.api.deps import IdentityDep, ServiceDep
-from server.api.gate import lead_on, page, wants_page
-from server.classroom.code import shard_of
+from server.api.gate import lead_on, plain_page, wants_page
 from server.classroom.joining import join_page
-from server.errors import SHARD, ApiError, Elsewhere, reply
+from server.errors import ApiError, reply
 from server.security.identity import Identity
 from server.security.person import TEACHER, Person
 from server.security.visitor import visitor_page
@@ -45,9 +44,6 @@ async def join(request: Request, service: ServiceDep) -> Response:
     """Let a student in, and lead to the page."""
     form = dict(parse_qsl((await request.body())[:LONGEST_FORM].decode("utf-8", "replace")))
     code, name = form.get("code", "")[:40], form.get("name", "")[:200]
-    here, meant = service.settings.shard, shard_of(code)
-    if here and meant not in ("", here, request.query_params.get(SHARD)):
-        raise Elsewhere(meant)
     try:
         person, secret = await service.joining.join(address_of(request), code, name)
     except ApiError as error:
@@ -90,7 +86,7 @@ def _let_watch(request: Request, service: Service, identity: Identity, secret: s
     status, said, headers = refusal.status_code, refusal.body, {"Cache-Control": "no-store", **(refusal.headers or {})}
     if not wants_page(request):
         return reply(status, said, headers)
-    text = page(status, said.message, f"{said.hint.capitalize()}.")
+    text = plain_page(status, said.message, f"{said.hint.capitalize()}.")
     if refusal is NO_WATCHING and "link" in request.query_params:  # the token opens it all the same
         given, join = request.query_params.multi_items(), f"{service.public.prefix}/join"
         why = f"{said.message.capitalize()}. {said.hint.capitalize()}."
@@ -111,6 +107,5 @@ def address_of(request: Request) -> str:
 
 
 def _action(service: ServiceDep) -> str:
-    """Return the path of the form, with the prefix that a proxy takes off; it leads back to this process."""
-    here = f"?{SHARD}={service.settings.shard}" if service.settings.shard else ""
-    return f"{service.public.prefix}/join{here}"
+    """Return the path of the form, with the prefix that a proxy takes off."""
+    return f"{service.public.prefix}/join"

@@ -6,9 +6,9 @@ import asyncio
 
 from pydantic import BaseModel, Field
 
-from scenarios.lecture import Cue, Lecture, Question, State
+from scenarios.lecture import Lecture, Question
 from scenarios.lectures import lecture, lecture_ids
-from server.api.bodies import Body
+from server.api.bodies import AnswerBody, Body
 from server.api.deps import CallerDep, PersonDep, RateLimited, ServiceDep
 from server.api.router import Router
 from server.bench.status import Bench
@@ -17,14 +17,14 @@ from server.errors import ApiError, not_found
 router = Router(prefix="/lectures", tags=["lectures"])
 
 
-class LectureCard(BaseModel):
+class LectureCard(AnswerBody):
     """A lecture among others."""
 
     id: str
     title: str
     chapter: int
     summary: str
-    minutes: float = Field(description="Planned")
+    minutes: float = Field(description="Planned length in minutes")
     cues: int
 
 
@@ -34,7 +34,7 @@ class LectureList(BaseModel):
     lectures: list[LectureCard]
 
 
-class CueDetail(BaseModel):
+class CueDetail(AnswerBody):
     """A cue: the notes of the speaker, and the panels of the bench."""
 
     title: str
@@ -60,7 +60,7 @@ class LectureDetail(LectureCard):
 class OnBench(Body):
     """The bench that is put into the state of a cue, if it has the same signals."""
 
-    bench: str | None = Field(None, description="Without one, a fresh bench is made")
+    bench: str | None = Field(None, description="Id of a bench; null: a new bench is made")
 
 
 class Staged(BaseModel):
@@ -68,21 +68,25 @@ class Staged(BaseModel):
 
     bench: Bench
     tick: int
-    digest: str = Field(description="Of the bits up to this tick; the same each time")
+    digest: str = Field(description="Digest of the bits up to this tick, equal each time")
 
 
 @router.get("")
 async def list_lectures() -> LectureList:
     """List the lectures."""
-    return LectureList(lectures=[_card(one) for one in await asyncio.to_thread(_all)])
+    found = await asyncio.to_thread(lambda: [lecture(name) for name in lecture_ids()])
+    return LectureList(lectures=[LectureCard.of(one.head, one, cues=len(one.head.cues)) for one in found])
 
 
 @router.get("/{lecture_id}")
 async def get_lecture(lecture_id: str) -> LectureDetail:
     """Return a lecture: its cues with the notes of the speaker."""
     found = await _get(lecture_id)
-    pairs = zip(found.head.cues, found.states, strict=True)
-    return LectureDetail(**_card(found).model_dump(), script=[_detail(cue, state) for cue, state in pairs])
+    script = []
+    for cue, state in zip(found.head.cues, found.states, strict=True):
+        dt_ms = state.scenario.spec.dt_ms
+        script.append(CueDetail.of(cue, from_ms=state.from_tick * dt_ms, until_ms=state.until_tick * dt_ms))
+    return LectureDetail.of(found.head, found, cues=len(script), script=script)
 
 
 @router.post("/{lecture_id}/cues/{number}", dependencies=[RateLimited])
@@ -95,7 +99,7 @@ async def put_cue(
         raise ApiError(404, "not_found", f"there is no cue {number}: {lecture_id} has {len(found.head.cues)}", "number")
     cue, state = found.head.cues[number - 1], found.states[number - 1]
     session = service.benches.get(body.bench) if body.bench is not None else None
-    if session is not None and (session.class_id or session.replay_of or session.hiding.blind is not None):
+    if session is not None and (session.class_id or session.replay_of or session.view is not None):
         text = "a student's bench, a recording or a bench with a hidden fault is no stage of a lecture"
         raise ApiError(409, "conflict", text, "bench")
     pace = None if cue.pace_ms_per_s is None else cue.pace_ms_per_s / 1e3
@@ -110,29 +114,3 @@ async def _get(lecture_id: str) -> Lecture:
     if lecture_id not in lecture_ids():
         raise not_found("lecture", lecture_id, f"there are: {', '.join(lecture_ids())}", known=lecture_ids())
     return await asyncio.to_thread(lecture, lecture_id)
-
-
-def _all() -> list[Lecture]:
-    return [lecture(name) for name in lecture_ids()]
-
-
-def _card(one: Lecture) -> LectureCard:
-    head = one.head
-    return LectureCard(
-        id=one.id,
-        title=head.title,
-        chapter=head.chapter,
-        summary=head.summary,
-        minutes=one.minutes,
-        cues=len(head.cues),
-    )
-
-
-def _detail(cue: Cue, state: State) -> CueDetail:
-    dt_ms = state.scenario.spec.dt_ms
-    return CueDetail(
-        **cue.model_dump(include={"title", "minutes", "say", "ask", "see", "layout", "panels", "signals", "window_ms"}),
-        from_ms=state.from_tick * dt_ms,
-        until_ms=state.until_tick * dt_ms,
-        vote=cue.vote,
-    )

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from server.api.bodies import Body
-from server.api.classes import Outcomes
+from server.api.bodies import Body, MemberIds
 from server.api.deps import PersonDep, RateLimited, ServiceDep
 from server.api.router import Router
-from server.api.students import student_of, students_of
+from server.api.students import Outcomes, student_of, students_of
 from server.bench.recording import Layout
-from server.classroom.lesson import GivenLayout
-from server.classroom.together import start_together
+from server.classroom.lesson import GivenLayout, start_together
 from server.errors import ApiError, not_found
 
 router = Router(tags=["classes"])
@@ -20,25 +18,25 @@ router = Router(tags=["classes"])
 class Shown(Body):
     """The bench that all are to see."""
 
-    bench: str = Field(max_length=64)
+    bench: str = Field(max_length=64, description="Id of a live bench")
 
 
 class NewLayout(Body):
     """A layout for all."""
 
     name: str = Field(min_length=1, max_length=60)
-    layout: Layout = Field(None, description="As the page writes it; null: the built-in one of this name")
+    layout: Layout = Field(None, description="Layout as the page writes it; null: the built-in layout of this name")
 
 
 class Some(Body):
-    """Whose benches it concerns."""
+    """The students whose benches start."""
 
-    members: list[str] | None = Field(None, max_length=500, description="Ids of students; null: all of them")
+    members: MemberIds = None
 
 
 @router.put("/classes/{class_id}/shown", status_code=204, dependencies=[RateLimited])
 async def show_bench(class_id: str, body: Shown, service: ServiceDep) -> None:
-    """Show a bench to all students of a class; they see it, change nothing, and keep their own benches."""
+    """Show a bench to all students of a class; they cannot change it, and they keep their own benches."""
     await service.classes.row(class_id)
     if (session := service.benches.find(body.bench)) is None:
         raise ApiError(422, "invalid", f"there is no bench '{body.bench}'", "bench")
@@ -83,6 +81,6 @@ async def start_all(class_id: str, body: Some, service: ServiceDep) -> Outcomes:
     """
     students = await students_of(service, class_id, body.members)
     sessions = [service.student_benches.find(person) for person in students]
-    why = await start_together(service.benches, service.engine, sessions, "teacher")
-    failed = [f"{person.name}: {text}" for person, text in zip(students, why, strict=True) if text is not None]
-    return Outcomes(done=len(students) - len(failed), failed=failed)
+    reasons = await start_together(service.benches, service.engine, sessions, "teacher")
+    pairs = zip(students, reasons, strict=True)
+    return Outcomes.of([reason and f"{person.name}: {reason}" for person, reason in pairs])

@@ -12,7 +12,7 @@ from server.api.bodies import Body
 from server.api.deps import IdentityDep, PersonDep, RateLimited, ServiceDep
 from server.api.router import Router
 from server.bench.build import prepare
-from server.bench.experiment import beginning_of, experiment_of
+from server.bench.description import beginning_of, experiment_of
 from server.bench.pacing import usual_scale
 from server.bench.recording import Layout
 from server.bench.status import Bench
@@ -27,18 +27,18 @@ LONGEST_TITLE, LONGEST_NOTE = 200, 2000
 class NewLink(Body):
     """The target of a link: a bench as it is now, a scenario, or a layout of the page alone."""
 
-    bench: str | None = Field(None, description="Id of a live bench; the commands to it are kept")
+    bench: str | None = Field(None, description="Id of a live bench, whose commands are kept")
     scenario: str | dict[str, Any] | None = Field(None, description="Library id, TOML text, or document")
-    layout: Layout = Field(None, description="Layout of the page, its cursors in it")
-    title: str = Field("", max_length=LONGEST_TITLE, description="The scenario's title unless given")
-    note: str = Field("", max_length=LONGEST_NOTE)
+    layout: Layout = Field(None, description="Layout of the page, with its cursors")
+    title: str = Field("", max_length=LONGEST_TITLE, description="Title of the link; empty: the title of the scenario")
+    note: str = Field("", max_length=LONGEST_NOTE, description="Note for readers")
 
 
 class Words(Body):
     """The editable fields of a link."""
 
-    title: str | None = Field(None, min_length=1, max_length=LONGEST_TITLE)
-    note: str | None = Field(None, max_length=LONGEST_NOTE)
+    title: str | None = Field(None, min_length=1, max_length=LONGEST_TITLE, description="Null: as before")
+    note: str | None = Field(None, max_length=LONGEST_NOTE, description="Null: as before")
 
 
 class LinkList(BaseModel):
@@ -91,7 +91,7 @@ async def change_link(link_id: str, body: Words, service: ServiceDep) -> LinkDet
 
 @router.delete("/{link_id}", status_code=204, dependencies=[RateLimited])
 async def delete_link(link_id: str, service: ServiceDep, identity: IdentityDep) -> None:
-    """Delete a link; benches opened by it stay, people who watch by it are gone."""
+    """Delete a link; benches that it opened stay, and persons who watch by it are disconnected."""
     await service.links.get(link_id)
     await service.people.close(identity.secret_of_link(link_id))
     await service.links.delete(link_id)
@@ -103,6 +103,6 @@ async def open_link(link_id: str, service: ServiceDep, person: PersonDep, respon
 
     `opened` says whether its bits equal the original bits.
     """
-    session = await service.reopening.open_link(await service.links.get(link_id))
+    session = await service.idling.open_link(await service.links.get(link_id))
     response.headers["Location"] = f"/api/v1/benches/{session.id}"
     return await service.views.opened(session, person)

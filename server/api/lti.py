@@ -10,25 +10,23 @@ from urllib.parse import parse_qsl, urlencode, urlsplit
 from fastapi import APIRouter, Depends, FastAPI, Request, Response
 from fastapi.responses import HTMLResponse, JSONResponse, RedirectResponse
 from pydantic import BaseModel, Field
-from pylti1p3.deep_link_resource import DeepLinkResource
-from pylti1p3.lineitem import LineItem
 
 from core.errors import InputError
-from scenarios import library
 from server.api.bodies import Body, StrictRoute
 from server.api.deps import PersonDep, ServiceDep
 from server.api.joining import address_of, give_session
-from server.api.lti_members import Members
 from server.api.page import Page
 from server.classroom.access import LTI
+from server.classroom.lti.exercises import choices, configuration, resource
 from server.classroom.lti.keys import KeySets
 from server.classroom.lti.launch import Launch
+from server.classroom.lti.members import LaunchMembers
 from server.classroom.lti.messages import Login, Messages
 from server.classroom.lti.pages import answer_page, choice_page, instructor_page, login_page, refusal_page
-from server.classroom.lti.scores import Scores
+from server.classroom.lti.scores import LtiScores
 from server.classroom.lti.tool import Tool
 from server.classroom.sheet_work import brief
-from server.errors import ApiError, body_of, not_found
+from server.errors import ApiError, body_of
 from server.security.frames import Frames, Ticket
 from server.security.limits import Buckets
 from server.security.once import Once
@@ -48,8 +46,8 @@ class Lti:
     service: Service
     tool: Tool
     messages: Messages
-    members: Members
-    scores: Scores
+    members: LaunchMembers
+    scores: LtiScores
     key_sets: KeySets
     frames: Frames
     launches: Once[tuple[Launch, Login]]
@@ -69,13 +67,13 @@ def install(app: FastAPI, service: Service) -> Frames:
     origins = sorted({origin for platform in settings.lti for origin in platform.frames})
     frames = Frames(LTI, " ".join(origins), frozenset({f"{LTI}/login", f"{LTI}/launch"}))
     key_sets = KeySets(service.clock)
-    scores = Scores(tool, service.audit, lambda work: brief(work, service.sheets.get(work.sheet_id)))
+    scores = LtiScores(tool, service.audit, lambda work: brief(work, service.sheets.get(work.sheet_id)))
     service.sheets.on_kept = scores.changed
     app.state.lti = Lti(
         service,
         tool,
         Messages(tool, key_sets),
-        Members(service, tool),
+        LaunchMembers(service.database, service.classes, service.people, service.sheets, tool),
         scores,
         key_sets,
         frames,
@@ -190,10 +188,10 @@ async def choose(request: Request, lti: LtiDep) -> Response:
         if launch is None:
             raise ApiError(403, "lti_refused", "this choice has been made, or was begun too long ago")
         kind, _, name = given.get("choice", "").partition(":")
-        resource = _resource(kind, name, f"{_base(request, lti.service)}{LTI}/launch", lti.service)
+        address = f"{_base(request, lti.service)}{LTI}/launch"
+        return answer_page(*lti.messages.link(launch, resource(kind, name, address, lti.service.sheets)))
     except ApiError as error:
         return refusal_page(error.status_code, error.body)
-    return answer_page(*lti.messages.link(launch, resource))
 
 
 @pages.get("/jwks")
@@ -205,32 +203,7 @@ async def get_keys(lti: LtiDep) -> JSONResponse:
 @pages.get("/configuration")
 async def get_configuration(request: Request, service: ServiceDep) -> JSONResponse:
     """Return the configuration for a platform, in the form that Canvas reads; others need the same addresses."""
-    base = _base(request, service)
-    launch = f"{base}{LTI}/launch"
-    placement = {"placement": "link_selection", "message_type": "LtiDeepLinkingRequest", "target_link_uri": launch}
-    canvas = {
-        "platform": "canvas.instructure.com",
-        "privacy_level": "name_only",
-        "settings": {
-            "platform": "canvas.instructure.com",
-            "text": "CombBench",
-            "placements": [placement, {**placement, "placement": "assignment_selection"}],
-        },
-    }
-    return JSONResponse(
-        {
-            "title": "CombBench",
-            "description": "A live lab for tiny comb resonators: benches and lab sheets with points.",
-            "target_link_uri": launch,
-            "oidc_initiation_url": f"{base}{LTI}/login",
-            "redirect_uris": [launch],
-            "public_jwk_url": f"{base}{LTI}/jwks",
-            "scopes": ["https://purl.imsglobal.org/spec/lti-ags/scope/score"],
-            "claims": ["sub", "iss", "name", "given_name", "family_name"],
-            "custom_fields": {},
-            "extensions": [canvas],
-        }
-    )
+    return JSONResponse(configuration(f"{_base(request, service)}{LTI}"))
 
 
 async def _ask_for_choice(launch: Launch, lti: Lti) -> HTMLResponse:
@@ -240,23 +213,8 @@ async def _ask_for_choice(launch: Launch, lti: Lti) -> HTMLResponse:
     back = urlsplit(launch.return_address)
     if back.scheme not in ("http", "https") or not back.hostname:
         raise ApiError(403, "lti_refused", "the platform does not say where the choice goes")
-    sheets = [(sheet.id, f"{sheet.head.title} ({sheet.points:g} points)") for sheet in lti.service.sheets.all()]
-    benches = [(name, library.get(name).head.title) for name in library.ids()]
     action = f"{lti.service.public.prefix}{LTI}/link"
-    return choice_page(action, lti.choices.put(launch), sheets, benches)
-
-
-def _resource(kind: str, name: str, address: str, service: Service) -> DeepLinkResource:
-    """Describe the link to an exercise; the link of a lab sheet has a column of points."""
-    if kind == "sheet":
-        sheet = service.sheets.get(name)
-        column = LineItem().set_label(sheet.head.title).set_score_maximum(sheet.points).set_resource_id(sheet.id)
-        resource = DeepLinkResource().set_title(sheet.head.title).set_lineitem(column)
-    elif kind == "scenario" and name in library.ids():
-        resource = DeepLinkResource().set_title(library.get(name).head.title)
-    else:
-        raise not_found("exercise", name)
-    return resource.set_url(address).set_custom_params({kind: name})
+    return choice_page(action, lti.choices.put(launch), *choices(lti.service.sheets))
 
 
 async def _parameters(request: Request, lti: Lti) -> dict[str, str]:

@@ -17,23 +17,23 @@ router = Router(prefix="/me", tags=["classes"])
 class Me(BaseModel):
     """The user of the request."""
 
-    id: str = Field(description="As the company of a bench names people")
+    id: str = Field(description="Id of the user, as in the company of a bench")
     role: Role
     name: str
-    bench: str | None = Field(description="The bench of a student or a watcher; the teacher has all of them")
-    class_id: str | None = Field(None, description="The class of a student")
+    bench: str | None = Field(description="Id of the bench of a student or a watcher; null for the teacher")
+    class_id: str | None = Field(None, description="Id of the class of a student")
     class_name: str | None = None
     hand: bool = Field(False, description="Whether a student has raised a hand")
-    shown: str | None = Field(None, description="A bench that the teacher shows to all; a student sees it")
-    lent: str | None = Field(None, description="A bench of the teacher that a student was handed, and drives")
-    layout: str | None = Field(None, description="Id of the layout given to all last; /me/layout has it")
+    shown: str | None = Field(None, description="Id of the bench that the teacher shows to the class of a student")
+    lent: str | None = Field(None, description="Id of the bench of the teacher that a student drives")
+    layout: str | None = Field(None, description="Id of the last layout given to the class; /me/layout returns it")
     vote: OpenVote | None = Field(None, description="The open question to the class of a student")
 
 
 class Hand(Body):
-    """Whether a hand is up."""
+    """The hand of a student."""
 
-    raised: bool
+    raised: bool = Field(description="Whether the hand is raised")
 
 
 @router.get("")

@@ -13,8 +13,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
 from starlette.websockets import WebSocket
 
-from server.api.compression import takes_gzip
-from server.api.gate import page, wants_page
+from server.api.gate import plain_page, wants_page
 
 DIST = Path(__file__).resolve().parents[2] / "web" / "dist"
 OURS = ("/api/", "/health/", "/benches/", "/assets/", "/lti")
@@ -56,7 +55,7 @@ class Page:
         """
         index = self._folder / "index.html"
         if not index.is_file():
-            return HTMLResponse(page(503, "The page is not built", NOT_BUILT), 503)
+            return HTMLResponse(plain_page(503, "The page is not built", NOT_BUILT), 503)
         nonce = f'<meta name="nonce" content="{scope.get("nonce", "")}"></head>'
         text = index.read_text("utf-8").replace("</head>", nonce, 1)
         text = text.replace('<base href="/"', f'<base href="{self._prefix}/"', 1)
@@ -92,3 +91,12 @@ class Page:
         is_hashed = path.startswith("/assets/")
         response.headers["Cache-Control"] = "public, max-age=31536000, immutable" if is_hashed else "no-cache"
         return response
+
+
+def takes_gzip(headers: Headers) -> bool:
+    """Return whether a caller names gzip among the encodings it takes, and not with the weight 0 (RFC 9110, 12.5.3)."""
+    for offer in headers.get("accept-encoding", "").lower().split(","):
+        name, _, weight = offer.replace(" ", "").partition(";q=")
+        if name == "gzip":
+            return weight.strip("0.") != "" if weight else True
+    return False

@@ -23,7 +23,7 @@ router = Router(tags=["parameter sets"])
 class SetName(Body):
     """The name of a set."""
 
-    name: str = Field(min_length=1, max_length=100)
+    name: str = Field(min_length=1, max_length=100, description="Name, which no other set may have")
 
 
 class ParameterSetList(BaseModel):
@@ -33,7 +33,7 @@ class ParameterSetList(BaseModel):
 
 
 class Differs(BaseModel):
-    """A parameter whose value is not the same in two sets; null: it is not in one of them, or left to its block."""
+    """A parameter with different values in two sets; null: the set has no value, or leaves it to the block."""
 
     path: str
     first: Any
@@ -50,7 +50,7 @@ class Difference(BaseModel):
 class Applied(BaseModel):
     """The changes of a bench by a set."""
 
-    result: CommandResult | None = Field(description="Null: the bench had these values already")
+    result: CommandResult | None = Field(description="The command that set the values; null: none was needed")
     left_out: list[str] = Field(description="Paths of the set that this bench does not have")
 
 
@@ -96,7 +96,7 @@ async def compare_parameter_sets(
     service: ServiceDep,
     person: PersonDep,
     other: Annotated[str | None, Query(description="Id of another set")] = None,
-    bench: Annotated[str | None, Query(description="Id of a bench, whose values of now are compared")] = None,
+    bench: Annotated[str | None, Query(description="Id of a bench, whose present values are compared")] = None,
 ) -> Difference:
     """Say where a set differs from another set or from a bench."""
     first = (await service.parameter_sets.get(set_id)).values

@@ -27,8 +27,8 @@ router = Router(tags=["recordings"])
 class Replay(Body):
     """The speed of a replay."""
 
-    speed: float = Field(1.0, ge=0.01, le=10.0, description="Multiple of the pace it was recorded at")
-    paused: bool = False
+    speed: float = Field(1.0, ge=0.01, le=10.0, description="Speed as a multiple of the recorded pace")
+    paused: bool = Field(False, description="Start paused")
 
 
 class CompareWith(Body):
@@ -36,9 +36,9 @@ class CompareWith(Body):
 
     other: str = Field(description="Id of another recording")
     absolute: float = Field(0.0, ge=0.0, description="Tolerance of every signal, in its unit")
-    relative: float = Field(0.0, ge=0.0, description="And that share of its largest value in the first")
-    tolerances: dict[str, float] = Field({}, description="Tolerance of some signals instead")
-    align: Literal["tick", "start"] = Field("tick", description="Equal ticks, or first upon first")
+    relative: float = Field(0.0, ge=0.0, description="Further tolerance, as a share of the peak in the first")
+    tolerances: dict[str, float] = Field({}, description="Tolerances of single signals in place of both")
+    align: Literal["tick", "start"] = Field("tick", description="Compare equal ticks, or ticks from the start")
 
 
 class RecordingList(BaseModel):
@@ -51,7 +51,7 @@ class RecordingList(BaseModel):
 async def start_recording(
     session: SessionDep, service: ServiceDep, caller: CallerDep, body: Wanted | None = None
 ) -> Recording:
-    """Begin to record: now, or when a condition holds, with some of the past; `ticks: 0` keeps the past alone."""
+    """Begin to record now, or when a condition holds, with some of the past; `ticks: 0` keeps only the past."""
     return await service.records.begin(session, body or Wanted(), caller, await service.keeping.room())
 
 
@@ -92,7 +92,7 @@ async def delete_recording(recording_id: str, service: ServiceDep) -> None:
 async def replay_recording(
     recording_id: str, body: Replay, service: ServiceDep, person: PersonDep, response: Response
 ) -> Bench:
-    """Play a recording on a bench of its own: the same streams; commands start, pause, step, seek, loop, time_scale."""
+    """Play a recording on a new bench, which takes the commands start, pause, step, seek, loop and time_scale."""
     recording, path = await service.recordings.finished(recording_id)
     session = await service.benches.replay(recording, path, body.speed, body.paused)
     response.headers["Location"] = f"/api/v1/benches/{session.id}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import Query, Response
 from fastapi.responses import FileResponse
@@ -12,7 +12,7 @@ from pydantic import BaseModel, Field
 from core.board.spec import MOST_SEED
 from core.errors import InputError
 from scenarios.seeds import parse_seeds
-from server.api.bodies import Body
+from server.api.bodies import Body, Source, Values
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import FORMAT_RESPONSES, HTML, PYTHON, SVG, CutDep, file_name, report_response, stored_trace
 from server.api.router import Router
@@ -24,43 +24,42 @@ from server.store.traces import Format
 router = Router(prefix="/runs", tags=["runs"])
 
 FilterDep = Annotated[RunFilter, Query()]
-Ids = Annotated[list[str], Query(min_length=2, max_length=MOST, description="Runs, the one to compare with first")]
+Ids = Annotated[list[str], Query(min_length=2, max_length=MOST, description="Ids of runs; the first is the reference")]
 
 
 class NewRun(Body):
     """A scenario to run."""
 
-    scenario: str | dict[str, Any] = Field(description="Library id, TOML text, or document")
-    set: dict[str, Any] = Field({}, description="Values by dotted path, written over the scenario")
-    seed: int | None = Field(None, ge=0, le=2**53)
+    scenario: Source
+    set: Values = Field({})
+    seed: int | None = Field(None, ge=0, le=2**53, description="Null: the seed of the scenario")
     label: str = Field("", max_length=1000, description="Name for the run, at most 120 characters")
     all: bool = Field(
         False,
-        description="Also run the controllers that never drive, and keep all signals, also of sensors that are never "
+        description="Also run controllers that never drive, and keep all signals, even of sensors that are never "
         "in use; no figure and no digest depends on it",
     )
     seeds: str | Annotated[list[int], Field(min_length=2, max_length=2)] | None = Field(
         None,
         max_length=100,
-        description='"A:B", both included; earlier scripts send a list of the first seed and the one behind the last, '
-        "which is read too",
+        description='"A:B", both included; earlier scripts send a list of the first seed and the seed after the last',
     )
 
 
 class NewLabel(Body):
     """A name for a run or a campaign."""
 
-    label: str = Field(max_length=1000, description="At most 120 characters; empty takes the name away")
+    label: str = Field(max_length=1000, description="Name of at most 120 characters; empty removes the name")
 
 
 class Ended(Body):
     """Runs or campaigns that have ended."""
 
-    ids: list[str] | None = Field(None, min_length=1, max_length=1000, description="All that have ended when left out")
+    ids: list[str] | None = Field(None, min_length=1, max_length=1000, description="Null: all that have ended")
 
 
 class Removed(BaseModel):
-    """How many were removed."""
+    """The number of removed runs or campaigns."""
 
     removed: int
 
@@ -122,7 +121,7 @@ async def remove_runs(body: Ended, service: ServiceDep) -> Removed:
 
 @router.get("/compare")
 async def compare_finished_runs(service: ServiceDep, ids: Ids) -> RunComparison:
-    """Put finished runs side by side: figures, differences from the first run, and the signals that all have."""
+    """Compare finished runs: their figures, the differences from the first run, and their common signals."""
     runs, paths = await service.jobs.traces(ids)
     return await asyncio.to_thread(compare_runs, runs, paths)
 
@@ -131,7 +130,7 @@ async def compare_finished_runs(service: ServiceDep, ids: Ids) -> RunComparison:
 async def compare_traces(
     service: ServiceDep, ids: Ids, signal: str, columns: Annotated[int, Query(ge=10, le=4000)] = 400
 ) -> RunTraces:
-    """Return one signal of several finished runs, to be laid over each other."""
+    """Return one signal of several finished runs, for one plot."""
     runs, paths = await service.jobs.traces(ids)
     async with service.file_turn:
         return await asyncio.to_thread(traces, runs, paths, signal, columns)
@@ -139,7 +138,7 @@ async def compare_traces(
 
 @router.get("/{run_id}")
 async def get_run(run_id: str, service: ServiceDep) -> Run:
-    """Return how far a run is, and its summary once it is done."""
+    """Return the progress of a run, and its summary once it is done."""
     return await service.jobs.get(run_id)
 
 

@@ -13,8 +13,8 @@ from scenarios.claims import check_marks
 from scenarios.expectation import Verdict
 from scenarios.library import get, ids, library
 from scenarios.schema import Scenario
-from server.api.bodies import Body
-from server.api.deps import ComputingDep
+from server.api.bodies import AnswerBody, Body, Source
+from server.api.deps import ServiceDep
 from server.api.router import Router
 from server.bench.build import prepare
 from server.classroom.blind_class import check as check_hidden
@@ -23,7 +23,7 @@ from server.errors import not_found
 router = Router(prefix="/scenarios", tags=["scenarios"])
 
 
-class ScenarioCard(BaseModel):
+class ScenarioCard(AnswerBody):
     """A scenario of the library in a few words."""
 
     id: str
@@ -31,7 +31,7 @@ class ScenarioCard(BaseModel):
     source: str
     summary: str
     claim: str
-    verdict: Verdict | None = Field(description="If all expectations hold; it follows from the rows")
+    verdict: Verdict | None = Field(description="Verdict if all expectations hold; it follows from the rows")
     samples: int | None
     plant: str | None = Field(description="Plant of the bench; null for a study")
     study: str | None = Field(description="Kind of the study; null for a scenario that runs on a bench")
@@ -44,31 +44,26 @@ class ScenarioList(BaseModel):
     scenarios: list[ScenarioCard]
 
 
-class ScenarioText(BaseModel):
+class ScenarioText(AnswerBody):
     """A scenario in full."""
 
     document: dict[str, Any]
     toml: str
-    warnings: list[str] = Field(description="What of its claims is not read, or cannot be judged")
+    warnings: list[str] = Field(description="Parts of its claims that are not read or cannot be judged")
 
 
 class ScenarioSource(Body):
     """A scenario to check."""
 
-    scenario: str | dict[str, Any] = Field(description="Library id, TOML text, or document")
+    scenario: Source
 
 
 def card(scenario: Scenario) -> ScenarioCard:
     """Describe a scenario in a few words."""
     head = scenario.head
-    return ScenarioCard(
-        id=scenario.id,
-        title=head.title,
-        source=head.source,
-        summary=head.summary,
-        claim=head.claim,
-        verdict=scenario.verdict,
-        samples=scenario.samples,
+    return ScenarioCard.of(
+        scenario,
+        head,
         plant=plant_of(scenario.document).name if head.study is None else None,
         study=str(head.study["kind"]) if head.study is not None else None,
         can_hide=_can_hide(scenario),
@@ -95,13 +90,13 @@ def get_scenario(scenario_id: str) -> ScenarioText:
     if scenario_id not in ids():
         raise not_found("scenario", scenario_id, "list them at /api/v1/scenarios", known=ids())
     scenario = get(scenario_id)
-    return ScenarioText(document=scenario.document, toml=scenario.toml(), warnings=scenario.warnings)
+    return ScenarioText.of(scenario, toml=scenario.toml())
 
 
 @router.post("/check", response_model=ScenarioText)
-async def check_scenario(body: ScenarioSource, computing: ComputingDep) -> Response:
+async def check_scenario(body: ScenarioSource, service: ServiceDep) -> Response:
     """Check a scenario without running it; the answer 422 lists its errors."""
-    return Response(await computing.call(_checked, body.scenario), media_type="application/json")
+    return Response(await service.computing.call(_checked, body.scenario), media_type="application/json")
 
 
 def _checked(source: str | dict[str, Any]) -> str:
@@ -109,7 +104,7 @@ def _checked(source: str | dict[str, Any]) -> str:
     scenario, board = prepare(source, {}, None, compiled=False)
     check_marks(scenario, board.signals)
     try:
-        found = ScenarioText(document=scenario.document, toml=scenario.toml(), warnings=scenario.warnings)
+        found = ScenarioText.of(scenario, toml=scenario.toml())
     except (TypeError, ValueError) as error:
         raise InputError(f"cannot be written as TOML: {error}", "scenario") from None
     return found.model_dump_json()

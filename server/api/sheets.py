@@ -2,33 +2,40 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import Annotated, Literal
 
-from fastapi import Path, Query, Response
+from fastapi import Depends, Path, Query, Response
 from pydantic import BaseModel, Field
 
-from core.format import format_short
-from scenarios.sheets.sheet import Sheet
-from server.api.bodies import Body
-from server.api.classes import Outcomes
+from server.api.bodies import AnswerBody, Body, MemberIds
 from server.api.deps import PersonDep, RateLimited, ServiceDep
+from server.api.files import HTML
 from server.api.router import Router
-from server.api.students import student_of, students_of
+from server.api.students import Outcomes, refusal, student_of, students_of
 from server.classroom.grades import Grade, grades_csv, grades_of
+from server.classroom.sheet_report import sheet_report
 from server.classroom.sheet_view import SheetView
 from server.classroom.sheet_work import SheetBrief, brief
-from server.errors import REFUSED, ApiError, not_found, why
+from server.errors import ApiError, not_found
 from server.security.person import Person
 from server.service import Service
-from server.store.recordings import Recording
 
 router = Router(tags=["sheets"])
 
 Id = Annotated[str, Path(max_length=80)]
 
 
-class SheetCard(BaseModel):
+def get_worker(person: PersonDep) -> Person:
+    """Return the caller; refuse a watcher, because watchers have no bench for a sheet."""
+    if person.role == "watcher":
+        raise ApiError(409, "conflict", "a person who watches a bench has no sheet")
+    return person
+
+
+WorkerDep = Annotated[Person, Depends(get_worker)]
+
+
+class SheetCard(AnswerBody):
     """A sheet in a list."""
 
     id: str
@@ -37,8 +44,8 @@ class SheetCard(BaseModel):
     minutes: int
     points: float
     steps: int
-    own: bool = Field(description="A user opened it; the others belong to the library")
-    work: SheetBrief | None = Field(description="How far the caller has come")
+    own: bool = Field(description="Whether a user opened the sheet; all others belong to the library")
+    work: SheetBrief | None = Field(description="Progress of the caller; null: not begun")
 
 
 class SheetList(BaseModel):
@@ -51,20 +58,20 @@ class SheetList(BaseModel):
 class NewSheet(Body):
     """A sheet as Markdown."""
 
-    text: str = Field(min_length=1, max_length=200_000)
+    text: str = Field(min_length=1, max_length=200_000, description="Markdown text with a TOML head")
 
 
 class StepAnswer(Body):
     """An answer: a number with its unit, or the id of an option."""
 
-    answer: str = Field(min_length=1, max_length=200)
+    answer: str = Field(min_length=1, max_length=200, description="Number with its unit, or id of an option")
 
 
 class SheetForAll(Body):
     """A sheet for the students of a class."""
 
-    sheet: str
-    members: list[str] | None = Field(None, max_length=500, description="Ids of students; null: all of them")
+    sheet: str = Field(description="Id of a sheet")
+    members: MemberIds = None
 
 
 class Grades(BaseModel):
@@ -76,17 +83,13 @@ class Grades(BaseModel):
 @router.get("/sheets")
 async def list_sheets(person: PersonDep, service: ServiceDep) -> SheetList:
     """List the sheets."""
-    await service.sheets.shelf.refresh()
     works = {work.sheet_id: work for work in service.sheets.works(person.id)}
     current = service.sheets.current(person)
     return SheetList(
         sheets=[
-            SheetCard(
-                id=sheet.id,
-                title=sheet.head.title,
-                summary=sheet.head.summary,
-                minutes=sheet.head.minutes,
-                points=sheet.points,
+            SheetCard.of(
+                sheet,
+                sheet.head,
                 steps=len(sheet.steps),
                 own=service.sheets.shelf.is_own(sheet.id),
                 work=brief(works[sheet.id], sheet) if sheet.id in works else None,
@@ -107,7 +110,7 @@ async def open_sheet(body: NewSheet, person: PersonDep, service: ServiceDep, res
 
 @router.get("/sheets/{sheet_id}")
 async def get_sheet(sheet_id: Id, person: PersonDep, service: ServiceDep) -> SheetView:
-    """Show a sheet as far as the caller has come."""
+    """Return a sheet up to the step that is open for the caller."""
     return await service.sheets.view(person, sheet_id)
 
 
@@ -118,9 +121,8 @@ async def delete_sheet(sheet_id: Id, service: ServiceDep) -> None:
 
 
 @router.post("/sheets/{sheet_id}/begin", dependencies=[RateLimited])
-async def begin_sheet(sheet_id: Id, person: PersonDep, service: ServiceDep) -> SheetView:
+async def begin_sheet(sheet_id: Id, person: WorkerDep, service: ServiceDep) -> SheetView:
     """Begin a sheet, or continue it on a new bench; answers stay."""
-    _must_work(person)
     await service.sheets.begin(person, sheet_id)
     return await service.sheets.view(person, sheet_id)
 
@@ -132,9 +134,8 @@ async def start_over(sheet_id: Id, person: PersonDep, service: ServiceDep) -> No
 
 
 @router.post("/sheets/{sheet_id}/steps/{step_id}/answer", dependencies=[RateLimited])
-async def answer_step(sheet_id: Id, step_id: Id, body: StepAnswer, person: PersonDep, service: ServiceDep) -> SheetView:
+async def answer_step(sheet_id: Id, step_id: Id, body: StepAnswer, person: WorkerDep, service: ServiceDep) -> SheetView:
     """Answer the step that is open."""
-    _must_work(person)
     await service.sheets.change(
         person, sheet_id, lambda progress, sheet, tick: progress.answer(sheet, step_id, body.answer, tick)
     )
@@ -142,9 +143,8 @@ async def answer_step(sheet_id: Id, step_id: Id, body: StepAnswer, person: Perso
 
 
 @router.post("/sheets/{sheet_id}/steps/{step_id}/hide", status_code=201, dependencies=[RateLimited])
-async def hide_in_step(sheet_id: Id, step_id: Id, person: PersonDep, service: ServiceDep) -> SheetView:
+async def hide_in_step(sheet_id: Id, step_id: Id, person: WorkerDep, service: ServiceDep) -> SheetView:
     """Hide the fault of the step that is open, on a new bench of the sheet; the answer to it closes the step."""
-    _must_work(person)
     if person.role == "student":
         service.driving.check(service.people.bench_of(person), person)  # the bench before is closed with it
     await service.sheets.hide(person, sheet_id, step_id)
@@ -153,25 +153,22 @@ async def hide_in_step(sheet_id: Id, step_id: Id, person: PersonDep, service: Se
 
 
 @router.post("/sheets/{sheet_id}/steps/{step_id}/hint", dependencies=[RateLimited])
-async def take_hint(sheet_id: Id, step_id: Id, person: PersonDep, service: ServiceDep) -> SheetView:
+async def take_hint(sheet_id: Id, step_id: Id, person: WorkerDep, service: ServiceDep) -> SheetView:
     """Take the next hint, for the points that it costs."""
-    _must_work(person)
     await service.sheets.change(person, sheet_id, lambda progress, sheet, _: progress.take_hint(sheet, step_id))
     return await service.sheets.view(person, sheet_id)
 
 
 @router.post("/sheets/{sheet_id}/steps/{step_id}/close", dependencies=[RateLimited])
-async def close_step(sheet_id: Id, step_id: Id, person: PersonDep, service: ServiceDep) -> SheetView:
+async def close_step(sheet_id: Id, step_id: Id, person: WorkerDep, service: ServiceDep) -> SheetView:
     """Close the open step with its points; the reply has the right answer."""
-    _must_work(person)
     await service.sheets.change(person, sheet_id, lambda progress, sheet, tick: progress.go_on(sheet, step_id, tick))
     return await service.sheets.view(person, sheet_id)
 
 
 @router.put("/sheets/{sheet_id}/recordings/{recording_id}", dependencies=[RateLimited])
-async def add_recording(sheet_id: Id, recording_id: Id, person: PersonDep, service: ServiceDep) -> SheetView:
+async def add_recording(sheet_id: Id, recording_id: Id, person: WorkerDep, service: ServiceDep) -> SheetView:
     """Hand in one of the student's recordings with the sheet."""
-    _must_work(person)
     recording = await service.recordings.get(recording_id)
     if not service.people.may_see_recordings(person, recording.bench_id):
         raise not_found("recording", recording_id)
@@ -179,10 +176,10 @@ async def add_recording(sheet_id: Id, recording_id: Id, person: PersonDep, servi
     return await service.sheets.view(person, sheet_id)
 
 
-@router.get("/sheets/{sheet_id}/report", response_class=Response, responses={200: {"content": {"text/html": {}}}})
+@router.get("/sheets/{sheet_id}/report", response_class=Response, responses={200: {"content": {HTML: {}}}})
 async def get_report(sheet_id: Id, person: PersonDep, service: ServiceDep) -> Response:
     """Return the sheet to hand in: text, answers, points and reasons in one HTML file."""
-    return await _report(service, person, service.sheets.get(sheet_id))
+    return await _shown(service, person, sheet_id)
 
 
 @router.post("/classes/{class_id}/sheet", dependencies=[RateLimited])
@@ -192,17 +189,9 @@ async def begin_for_all(class_id: Id, body: SheetForAll, service: ServiceDep) ->
     chosen = await students_of(service, class_id, body.members)
     if body.members is None:
         await service.classes.keep_sheet(class_id, body.sheet)
-
-    async def one(person: Person) -> str | None:
-        try:
-            await service.sheets.begin(person, body.sheet)
-        except REFUSED as error:
-            return f"{person.name}: {why(error)}"
-        return None
-
-    failed = [said for person in chosen if (said := await one(person)) is not None]
+    refusals = [await refusal(person, service.sheets.begin(person, body.sheet)) for person in chosen]
     service.audit.add("teacher", "sheet", f"began the sheet {body.sheet} on all benches", class_id)
-    return Outcomes(done=len(chosen) - len(failed), failed=failed)
+    return Outcomes.of(refusals)
 
 
 @router.get("/classes/{class_id}/grades", responses={200: {"content": {"text/csv": {}}}})
@@ -221,39 +210,15 @@ async def get_grades(
 @router.get(
     "/classes/{class_id}/sheets/{sheet_id}/{member_id}/report",
     response_class=Response,
-    responses={200: {"content": {"text/html": {}}}},
+    responses={200: {"content": {HTML: {}}}},
 )
 async def get_report_of(class_id: Id, sheet_id: Id, member_id: Id, service: ServiceDep) -> Response:
     """Return the sheet of a student."""
     person = await student_of(service, class_id, member_id)
-    return await _report(service, person, service.sheets.get(sheet_id))
+    return await _shown(service, person, sheet_id)
 
 
-async def _report(service: Service, person: Person, sheet: Sheet) -> Response:
-    from scenarios.report.sheet import sheet_html  # loads Markdown, mathematics and templates
-
-    work = next((work for work in service.sheets.works(person.id) if work.sheet_id == sheet.id), None)
-    if work is None:
-        raise ApiError(409, "conflict", "the sheet has not been begun", "sheet", "begin it first")
-    view = await service.sheets.view(person, sheet.id)
-    traces = {name: step.trace for name, step in work.progress.steps.items() if step.trace}
-    name = person.name if person.role == "student" else ""
-    kept = {one.id: one for one in await service.recordings.all()} if view.recordings else {}
-    recordings = [_recording(kept.get(recording_id), recording_id) for recording_id in view.recordings]
-    html = await asyncio.to_thread(sheet_html, view.model_dump(), traces, recordings, name, work.begun)
-    headers = {"Content-Disposition": f'inline; filename="{sheet.id}.html"'}
-    return Response(html, media_type="text/html", headers=headers)
-
-
-def _recording(recording: Recording | None, recording_id: str) -> str:
-    """Say which recording was handed in."""
-    if recording is None:
-        return f"{recording_id}, which has been deleted"
-    length, start = (format_short(ticks * recording.dt_ms, "ms") for ticks in (recording.ticks, recording.start_tick))
-    return f"{recording.name}: {length} from {start} ({recording.id})"
-
-
-def _must_work(person: Person) -> None:
-    """Refuse a watcher, because watchers have no bench for a sheet."""
-    if person.role == "watcher":
-        raise ApiError(409, "conflict", "who watches a bench has no sheet")
+async def _shown(service: Service, person: Person, sheet_id: str) -> Response:
+    """Return the sheet of a person, to be shown in the browser."""
+    html = await sheet_report(service.sheets, service.recordings, person, sheet_id)
+    return Response(html, media_type=HTML, headers={"Content-Disposition": f'inline; filename="{sheet_id}.html"'})

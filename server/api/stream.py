@@ -14,7 +14,7 @@ from pydantic import BaseModel, ValidationError
 from core.errors import InputError
 from core.format import format_short
 from server.api.bodies import strict_json
-from server.api.deps import SocketServiceDep, rate_limited
+from server.api.deps import ServiceDep, rate_limited
 from server.api.router import Router
 from server.bench.bench import LiveBench, Seen
 from server.bench.events import Event
@@ -26,7 +26,7 @@ from server.service import Service
 from server.stream.behind import Behind
 from server.stream.client import CLOSE_FAILED, Client
 from server.stream.hub import CLOSE_FULL, CLOSE_NO_BENCH
-from server.stream.line import Line
+from server.stream.line import WebSocketLine
 from server.stream.panel import Panel
 from server.stream.wire import (
     CLIENT_MESSAGE,
@@ -62,7 +62,7 @@ FLOOD_RATE, FLOOD_BURST = 500.0, 2000
 
 
 @router.websocket("/benches/{bench_id}/stream")
-async def stream(socket: WebSocket, bench_id: str, service: SocketServiceDep) -> None:
+async def stream(socket: WebSocket, bench_id: str, service: ServiceDep) -> None:
     """Let a page watch and command a bench."""
     offered = socket.scope["subprotocols"]
     session = service.benches.find(bench_id)
@@ -83,7 +83,7 @@ async def stream(socket: WebSocket, bench_id: str, service: SocketServiceDep) ->
     await socket.accept(subprotocol=SUBPROTOCOL)
     person: Person = socket.scope["person"]
     seen, bench = service.views.seen(session, person), service.views.of(session, person)
-    hub, line = service.hub, Line.of(socket)
+    hub, line = service.hub, WebSocketLine.of(socket)
     room = hub.room(seen)
     client = Client(line, seen, service.metrics.sent, room.news, room.cuts, bench.last_event, person, hub.clock)
     conversation = Conversation(client, session, service, person)

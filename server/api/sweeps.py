@@ -58,11 +58,11 @@ class SweepPoints(BaseModel):
 
     sweep: SweepRun
     points: list[PointTally]
-    found: int = Field(description="Points that have runs, on all pages")
-    runs: int = Field(description="Runs in these results; until the campaign has ended, `sweep.done` may be ahead")
-    figures: list[str] = Field(description="Figures that a run has")
-    quantities: list[str] = Field(description="Possible axes of a count of runs: numeric axes, seed, figures")
-    words: dict[str, str] = Field(description="Diagnosers by their titles and hypotheses in words, by their names")
+    found: int = Field(description="Number of points with runs, on all pages")
+    runs: int = Field(description="Runs in these results; `sweep.done` may be larger until the campaign ends")
+    figures: list[str] = Field(description="Names of the figures of a run")
+    quantities: list[str] = Field(description="Quantities to count runs over: numeric axes, the seed and figures")
+    words: dict[str, str] = Field(description="Titles of diagnosers and hypotheses in words, by their names")
 
 
 @router.post(
@@ -96,7 +96,7 @@ async def remove_sweeps(body: Ended, service: ServiceDep) -> Removed:
 
 @router.get("/{sweep_id}")
 async def get_sweep(sweep_id: str, service: ServiceDep) -> SweepRun:
-    """Return how far a campaign is."""
+    """Return the progress of a campaign."""
     return await service.sweeps.get(sweep_id)
 
 
@@ -116,11 +116,11 @@ async def cancel_sweep(sweep_id: str, service: ServiceDep) -> SweepRun:
 async def get_sweep_points(
     sweep_id: str,
     service: ServiceDep,
-    offset: Annotated[int, Query(ge=0, description="Points to pass over")] = 0,
+    offset: Annotated[int, Query(ge=0, description="Number of points to skip")] = 0,
     limit: Annotated[
-        int | None, Query(ge=1, le=MOST_POINTS, description="Points at most, of the points with runs. All if left out")
+        int | None, Query(ge=1, le=MOST_POINTS, description="Largest number of points; left out: all")
     ] = None,
-    sort: Annotated[str, Query(max_length=200, description="An axis, a figure, runs, ok or tripped")] = "",
+    sort: Annotated[str, Query(max_length=200, description="Order: an axis, a figure, runs, ok or tripped")] = "",
     descending: bool = False,
 ) -> SweepPoints:
     """Return figures, confusion, delays and receiver operating characteristics of the runs done so far."""
@@ -144,8 +144,8 @@ async def get_sweep_points(
 async def get_sweep_distribution(
     sweep_id: str,
     service: ServiceDep,
-    x: Annotated[str, Query(max_length=200, description="An axis that is a number, the seed, or a figure")],
-    y: Annotated[str, Query(max_length=200, description="Another one; none for a histogram")] = "",
+    x: Annotated[str, Query(max_length=200, description="A numeric axis, the seed, or a figure")],
+    y: Annotated[str, Query(max_length=200, description="A second quantity; empty for a histogram")] = "",
 ) -> Distribution:
     """Count the runs done so far over one quantity or two; few runs are listed as well."""
     return await service.sweeps.read(sweep_id, lambda survey: survey.distribution(x, y))
@@ -155,8 +155,8 @@ async def get_sweep_distribution(
 async def get_sweep_picture(
     sweep_id: str,
     service: ServiceDep,
-    figure: Annotated[str, Query(max_length=200, description="A figure; none for the figure that varies most")] = "",
-    across: Annotated[str, Query(max_length=200, description="A number that varies, for the axis across")] = "",
+    figure: Annotated[str, Query(max_length=200, description="A figure; empty: the figure that varies most")] = "",
+    across: Annotated[str, Query(max_length=200, description="The varied number on the horizontal axis")] = "",
 ) -> CampaignPicture:
     """Return a figure over the varied quantities, and its drawing: rows, lines, a map, or a ranking with dots."""
     return await service.sweeps.read(sweep_id, lambda survey: surveyed_picture(survey, figure, across))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import fields
 from typing import Any, Literal
 
 import numpy as np
@@ -11,19 +12,17 @@ from pydantic import BaseModel, Field
 from core.diagnose.aliases import AliasMap, alias_map, hidden_um
 from core.diagnose.hypothesis import Hypothesis
 from core.errors import InputError
-from core.theory.definite import definiteness
+from core.theory.definite import DefinitenessReport, definiteness
 from core.theory.gain_adaptation import RULES, GainLoop, critical_gain, instability_map
+from core.theory.nyquist import PositiveRealReport, positive_real_report
 from core.theory.persistency import excitation, gram_of_tones
-from core.theory.positive_real import nyquist, polynomial, positive_real
 from scenarios.design import designed
-from server.api.bodies import Body
-from server.api.deps import ComputingDep
+from server.api.bodies import AnswerBody, Body
+from server.api.deps import ServiceDep
 from server.api.router import Router
 
 router = Router(prefix="/theory", tags=["theory"])
 
-POINTS = 400
-DECADES = 3.0
 MOST_CELLS = 10_000
 
 
@@ -34,36 +33,10 @@ class TransferFunctionSource(Body):
     denominator: list[float] = Field(min_length=1, max_length=21)
 
 
-class PositiveRealReport(BaseModel):
-    """Whether a transfer function is positive real, why not, and its Nyquist curve."""
-
-    strictly_positive_real: bool
-    positive_real: bool
-    hurwitz: bool
-    minimum_phase: bool
-    relative_degree: int
-    least_real: float | None = Field(description="Smallest real part on the imaginary axis")
-    at: float | None = Field(description="Frequency where it is; null: at infinity")
-    reasons: list[str]
-    frequency: list[float]
-    real: list[float | None]
-    imaginary: list[float | None]
-
-
 class MatrixSource(Body):
     """A square matrix."""
 
     matrix: list[list[float]] = Field(min_length=1, max_length=50)
-
-
-class DefinitenessReport(BaseModel):
-    """Whether x'Ax is positive for every x."""
-
-    positive_definite: bool
-    semidefinite: bool
-    symmetric: bool
-    eigenvalues: list[float] = Field(description="Of the symmetric part, smallest first")
-    minors: list[float] = Field(description="Leading principal minors of the symmetric part")
 
 
 class Line(Body):
@@ -83,13 +56,13 @@ class ExcitationSource(Body):
     filter_pole: float = Field(1.0, gt=1e-3, le=1e3)
 
 
-class ExcitationReport(BaseModel):
+class ExcitationReport(AnswerBody):
     """How well the input excites the regressor [u, -y', -y]/(s + pole)^2."""
 
     eigenvalues: list[float]
     smallest: float
     relative: float = Field(description="Smallest eigenvalue with every component scaled to a unit mean square")
-    condition: float | None = Field(description="Null: infinite")
+    condition: float | None = Field(description="Largest over smallest eigenvalue; null: infinite")
     exciting: bool
 
 
@@ -118,68 +91,34 @@ class InstabilityMap(BaseModel):
     frequency: list[float]
     gain: list[float]
     growth: list[list[float]]
-    critical_gain_constant: float | None = Field(description="Limit under a constant; null: none on the map")
+    critical_gain_constant: float | None = Field(description="Limit of the gain under a constant; null: beyond the map")
 
 
 class HypothesesSource(Body):
     """A device, its possible faults, and the tones that drive it."""
 
-    device: dict[str, Any] = Field({}, description="Catalogue id, and values written over it")
+    device: dict[str, Any] = Field({}, description="Id of the catalogue, and values that replace its values")
     hypotheses: list[Hypothesis] = Field(min_length=2, max_length=16, description="Factors on the device")
-    tones: list[Line] = Field(min_length=1, max_length=100, description="V and Hz")
-    noise_um: float = Field(0.0, ge=0, le=100, description="Noise that could hide a difference")
+    tones: list[Line] = Field(min_length=1, max_length=100, description="Amplitudes in V, frequencies in Hz")
+    noise_um: float = Field(0.0, ge=0, le=100, description="Noise that can hide a difference")
 
 
 @router.post("/positive-real")
-async def judge_positive_real(body: TransferFunctionSource, computing: ComputingDep) -> PositiveRealReport:
+async def judge_positive_real(body: TransferFunctionSource, service: ServiceDep) -> PositiveRealReport:
     """Judge a transfer function, and return its Nyquist curve over the frequencies that matter."""
-    return await computing.call(_positive_real, body)
-
-
-def _positive_real(body: TransferFunctionSource) -> PositiveRealReport:
-    verdict = positive_real(body.numerator, body.denominator)
-    roots = np.concatenate([np.roots(polynomial(body.numerator, "")), np.roots(polynomial(body.denominator, ""))])
-    sizes = [float(size) for size in np.abs(roots) if size > 0.0] or [1.0]
-    low, high = math.log10(min(sizes)) - DECADES / 2, math.log10(max(sizes)) + DECADES / 2
-    w = np.logspace(low, high, POINTS)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        real, imaginary = nyquist(body.numerator, body.denominator, w)
-    return PositiveRealReport(
-        strictly_positive_real=verdict.strictly_positive_real,
-        positive_real=verdict.positive_real,
-        hurwitz=verdict.hurwitz,
-        minimum_phase=verdict.minimum_phase,
-        relative_degree=verdict.relative_degree,
-        least_real=_finite(verdict.least_real),
-        at=_finite(verdict.at),
-        reasons=list(verdict.reasons),
-        frequency=[float(value) for value in w],
-        real=[_finite(float(value)) for value in real],
-        imaginary=[_finite(float(value)) for value in imaginary],
-    )
+    return await service.computing.call(positive_real_report, body.numerator, body.denominator)
 
 
 @router.post("/positive-definite")
-async def judge_positive_definite(body: MatrixSource, computing: ComputingDep) -> DefinitenessReport:
+async def judge_positive_definite(body: MatrixSource, service: ServiceDep) -> DefinitenessReport:
     """Judge a matrix."""
-    return await computing.call(_positive_definite, body)
-
-
-def _positive_definite(body: MatrixSource) -> DefinitenessReport:
-    verdict = definiteness(body.matrix)
-    return DefinitenessReport(
-        positive_definite=verdict.positive_definite,
-        semidefinite=verdict.semidefinite,
-        symmetric=verdict.symmetric,
-        eigenvalues=list(verdict.eigenvalues),
-        minors=list(verdict.minors),
-    )
+    return await service.computing.call(definiteness, body.matrix)
 
 
 @router.post("/persistency")
-async def judge_persistency(body: ExcitationSource, computing: ComputingDep) -> ExcitationReport:
+async def judge_persistency(body: ExcitationSource, service: ServiceDep) -> ExcitationReport:
     """Judge an input in its steady state."""
-    return await computing.call(_persistency, body)
+    return await service.computing.call(_persistency, body)
 
 
 def _persistency(body: ExcitationSource) -> ExcitationReport:
@@ -187,19 +126,15 @@ def _persistency(body: ExcitationSource) -> ExcitationReport:
         raise InputError("two tones have the same frequency", "tones")
     lines = [(tone.amplitude, tone.frequency) for tone in body.tones]
     judged = excitation(gram_of_tones(lines, (body.gain, body.a1, body.a2), body.filter_pole))
-    return ExcitationReport(
-        eigenvalues=[float(value) for value in judged.eigenvalues],
-        smallest=judged.smallest,
-        relative=judged.relative,
-        condition=_finite(judged.condition),
-        exciting=judged.relative > 0.0,
-    )
+    condition = judged.condition if math.isfinite(judged.condition) else None
+    eigenvalues, exciting = judged.eigenvalues.tolist(), judged.relative > 0.0
+    return ExcitationReport.of(judged, eigenvalues=eigenvalues, condition=condition, exciting=exciting)
 
 
 @router.post("/aliases")
-async def map_aliases(body: HypothesesSource, computing: ComputingDep) -> AliasMap:
+async def map_aliases(body: HypothesesSource, service: ServiceDep) -> AliasMap:
     """Map the responses of hypotheses to tones, and name those with the same response."""
-    return await computing.call(_aliases, body)
+    return await service.computing.call(_aliases, body)
 
 
 def _aliases(body: HypothesesSource) -> AliasMap:
@@ -213,18 +148,17 @@ def _aliases(body: HypothesesSource) -> AliasMap:
 
 
 @router.post("/instability-map")
-async def map_instability(body: MapSource, computing: ComputingDep) -> InstabilityMap:
+async def map_instability(body: MapSource, service: ServiceDep) -> InstabilityMap:
     """Map the region where a rule of appendix B is unstable under a sine."""
     if body.lowest_frequency >= body.highest_frequency:
         raise InputError("must be below highest_frequency", "lowest_frequency")
     if body.frequencies * body.gains > MOST_CELLS:
         raise InputError(f"frequencies times gains must be {MOST_CELLS} or less", "frequencies")
-    return await computing.call(_map, body)
+    return await service.computing.call(_map, body)
 
 
 def _map(body: MapSource) -> InstabilityMap:
-    names = ("b1", "b2", "gain", "model_gain", "amplitude", "error_weight", "proportional", "filter_time")
-    loop = GainLoop(**{name: getattr(body, name) for name in names})
+    loop = GainLoop(**{field.name: getattr(body, field.name) for field in fields(GainLoop)})
     frequency = np.linspace(body.lowest_frequency, body.highest_frequency, body.frequencies)
     gain = np.linspace(body.highest_gain / body.gains, body.highest_gain, body.gains)
     rule = RULES[body.rule]
@@ -235,7 +169,3 @@ def _map(body: MapSource) -> InstabilityMap:
         growth=instability_map(loop, rule, gain, frequency).tolist(),
         critical_gain_constant=limit if limit < body.highest_gain else None,
     )
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

@@ -19,10 +19,10 @@ router = Router(prefix="/thresholds", tags=["thresholds"])
 
 
 class NewThreshold(Body, ThresholdGoal):
-    """The scenario, the claim and the number that are looked at."""
+    """A scenario, a claim, and the number whose threshold is searched."""
 
     scenario: str | dict[str, Any] | None = Field(None, description="Library id, TOML text, or document")
-    bench: str = Field("", max_length=100, description="Instead: a live bench, whose scenario it is, as it began")
+    bench: str = Field("", max_length=100, description="Id of a live bench with the scenario, in place of it")
 
     @model_validator(mode="after")
     def _has_one_scenario(self) -> Self:
@@ -40,7 +40,7 @@ class NewThreshold(Body, ThresholdGoal):
 async def find_threshold(
     body: NewThreshold, service: ServiceDep, person: PersonDep, response: Response
 ) -> ThresholdRun:
-    """Look headless where a claim begins to hold; it does not disturb the live benches."""
+    """Search by headless runs where a claim begins to hold; live benches are not disturbed."""
     if body.scenario is None:
         scenario = service.views.whole(body.bench, person).scenario
     else:

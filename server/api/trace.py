@@ -16,7 +16,7 @@ from server.api.router import Router
 from server.bench.bench import Seen
 from server.errors import ApiError
 from server.store.traces import MEDIA_TYPES, Format, asked, schema_of, table_of
-from server.stream.view import Span
+from server.stream.view import TickSpan
 from server.stream.wire import MAX_COLUMNS
 from server.version import VERSION
 
@@ -51,9 +51,11 @@ async def get_trace(
     start_tick: Tick = None,
     end_tick: Tick = None,
     columns: Annotated[int, Query(ge=1, le=MAX_COLUMNS)] = 800,
-    kind: Annotated[Format | None, Query(alias="format", description="A file with every sample")] = None,
+    kind: Annotated[
+        Format | None, Query(alias="format", description="File with every sample; left out: columns")
+    ] = None,
 ) -> Response | Trace:
-    """Return a span of the past; the board does not stop for it."""
+    """Return a span of the past; the bench keeps running."""
     known = [signal.name for signal in session.signals]
     names = list(asked(signals, set(known))) or known
     indices = session.indices(names)
@@ -64,7 +66,7 @@ async def get_trace(
     if end <= start:
         raise InputError(f"the span from {start} to {end} is empty", "end_tick")
     if kind is None:
-        span = Span.between(start, end, columns)
+        span = TickSpan.between(start, end, columns)
         cut = await asyncio.to_thread(history.columns, indices, span.start, span.end, span.columns)
         session.captures.fold(cut, indices, span.start, span.end)
         return Trace(

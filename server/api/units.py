@@ -19,16 +19,17 @@ from core.own.unit import Unit, unit
 from scenarios.own import copies
 from scenarios.starters import starters
 from server.api.bodies import Body
-from server.api.deps import ComputingDep, RateLimited, ServiceDep
+from server.api.deps import RateLimited, ServiceDep
 from server.api.router import Router
 from server.bench.build import prepare
 from server.errors import not_found
+from server.service import Service
 
 router = Router(prefix="/units", tags=["units"])
 
 USUAL = "first-look"
 Origin = Literal["starter", "library", "folder", "command line"]
-Name = Annotated[str, Field(pattern=IDENTIFIER.pattern, description="Small letters, digits and _, a letter first")]
+Name = Annotated[str, Field(pattern=IDENTIFIER.pattern, description="Small letters, digits and _, first a letter")]
 NamePath = Annotated[str, Path(pattern=IDENTIFIER.pattern, description="Name of a unit")]
 
 
@@ -38,9 +39,7 @@ class UnitEntry(BaseModel):
     family: str
     name: str
     title: str
-    origin: Origin = Field(
-        description="A text to begin with, the library, the folder of this server, or a file it was started with"
-    )
+    origin: Origin = Field(description="Starter text, library, folder of this server, or file given at its start")
     hash: str = Field(description="SHA-256 of its text")
 
 
@@ -48,7 +47,7 @@ class UnitList(BaseModel):
     """Units to begin with: of this server, then the starters, then the library."""
 
     units: list[UnitEntry]
-    refusal: str = Field(description="Why this person may not bring units of their own; empty: they may")
+    refusal: str = Field(description="Why the caller may not use own units; empty: allowed")
 
 
 class UnitText(UnitEntry):
@@ -73,8 +72,8 @@ class UnitSource(Body):
 class CheckedUnit(BaseModel):
     """A unit that can be used."""
 
-    card: BlockCard = Field(description="As the catalogue would have it")
-    operations: int = Field(description="Most operations of a sample")
+    card: BlockCard = Field(description="Card of the unit, as in the catalogue")
+    operations: int = Field(description="Largest number of operations for one sample")
     hash: str = Field(description="SHA-256 of its text")
 
 
@@ -96,28 +95,23 @@ class UnitCheck(BaseModel):
 @router.get("")
 def list_units(service: ServiceDep) -> UnitList:
     """List the units to begin with, and whether this person may bring any."""
-    own = [_entry(one, "folder" if service.units.is_kept(one.name) else "command line") for one in service.units.all()]
-    return UnitList(units=[*own, *(_entry(one, origin) for one, origin in _offered())], refusal=refusal())
+    return UnitList(units=[_entry(one, origin) for one, origin in _readable(service)], refusal=refusal())
 
 
 @router.get("/{name}")
 def get_unit(name: NamePath, service: ServiceDep) -> UnitText:
     """Return the text of a unit."""
-    one = service.units.find(name)
-    if one is not None:
-        return _text(one, "folder" if service.units.is_kept(name) else "command line")
-    for one, origin in _offered():
+    for one, origin in _readable(service):
         if one.name == name:
-            return _text(one, origin)
-    known = (one.name for one in (*service.units.all(), *(one for one, _ in _offered())))
-    raise not_found("unit", name, "list them at /api/v1/units", known=known)
+            return UnitText(**dict(_entry(one, origin)), source=one.source)
+    raise not_found("unit", name, "list them at /api/v1/units", known=(one.name for one, _ in _readable(service)))
 
 
 @router.post("", dependencies=[RateLimited])
-async def check_unit(body: UnitDraft, computing: ComputingDep) -> UnitCheck:
+async def check_unit(body: UnitDraft, service: ServiceDep) -> UnitCheck:
     """Check the text of a unit; nothing is compiled and nothing is kept."""
     check_admitted({"units": {body.name: body.source}})
-    return await computing.call(_checked, body.name, body.source)
+    return await service.computing.call(_checked, body.name, body.source)
 
 
 def _checked(name: str, source: str) -> UnitCheck:
@@ -161,15 +155,13 @@ def delete_unit(name: NamePath, service: ServiceDep) -> None:
     service.units.remove(name)
 
 
-def _offered() -> Iterator[tuple[Unit, Origin]]:
-    """Return the texts that come with CombBench."""
+def _readable(service: Service) -> Iterator[tuple[Unit, Origin]]:
+    """Return the units of this server, then the units that come with CombBench, each with its origin."""
+    for one in service.units.all():
+        yield one, "folder" if service.units.is_kept(one.name) else "command line"
     yield from ((one, "starter") for one in starters())
     yield from ((one, "library") for one in copies())
 
 
 def _entry(one: Unit, origin: Origin) -> UnitEntry:
     return UnitEntry(family=one.family, name=one.name, title=one.block.title, origin=origin, hash=one.hash)
-
-
-def _text(one: Unit, origin: Origin) -> UnitText:
-    return UnitText(**dict(_entry(one, origin)), source=one.source)

@@ -21,12 +21,12 @@ MOST_WORDS, MOST_LANES = 6, 12
 class NewVote(Body):
     """A question: two to six answers in words, or the hypotheses of a diagnoser, at most twelve."""
 
-    class_id: str | None = Field(None, max_length=32, description="Without one, hands are raised in the room")
+    class_id: str | None = Field(None, max_length=32, description="Id of the class; null: by raised hands")
     text: str = Field(min_length=1, max_length=300)
     answers: list[Annotated[str, Field(min_length=1, max_length=100)]] = Field(min_length=2, max_length=MOST_LANES)
-    diagnoser: str = Field("", max_length=64, description="Whose lanes the answers are, by the names of hypotheses")
-    when: Span | None = Field(None, description="Within which a moment is guessed, too")
-    right: str = Field("", max_length=100, description="One of the answers, shown with the votes")
+    diagnoser: str = Field("", max_length=64, description="Id of a diagnoser, whose hypotheses are the answers")
+    when: Span | None = Field(None, description="Span of device time in which a moment is guessed; null: no guess")
+    right: str = Field("", max_length=100, description="The right answer, which is shown with the counts; empty: none")
 
 
 class Hands(Body):
@@ -39,8 +39,8 @@ class NewBallot(Body):
     """The answer of a student."""
 
     vote: str = Field(max_length=32)
-    answer: int = Field(ge=0, lt=MOST_LANES, description="Position among the answers")
-    at_ms: float | None = Field(None, description="The moment guessed, where one is asked for")
+    answer: int = Field(ge=0, lt=MOST_LANES, description="Position of the answer in the list, from 0")
+    at_ms: float | None = Field(None, description="Guessed moment of device time, ms; null: no guess")
 
 
 class VoteList(BaseModel):
@@ -78,7 +78,7 @@ async def get_vote(vote_id: str, service: ServiceDep) -> Vote:
 
 @router.post("/votes/{vote_id}/close", dependencies=[RateLimited])
 async def close_vote(vote_id: str, service: ServiceDep) -> Vote:
-    """Take no more answers."""
+    """Close a vote, which then takes no more answers."""
     return await service.votes.move(vote_id, "closed")
 
 
@@ -90,7 +90,7 @@ async def reveal_vote(vote_id: str, service: ServiceDep) -> Vote:
 
 @router.put("/votes/{vote_id}/hands", dependencies=[RateLimited])
 async def count_hands(vote_id: str, body: Hands, service: ServiceDep) -> Vote:
-    """Take the hands that were counted in the room."""
+    """Store the numbers of hands that were counted in the room."""
     return await service.votes.count_hands(vote_id, body.counts)
 
 

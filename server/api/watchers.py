@@ -13,7 +13,7 @@ from pydantic import BaseModel, Field
 from server.api.bodies import Body
 from server.api.deps import IdentityDep, RateLimited, ServiceDep, SessionDep
 from server.api.router import Router
-from server.errors import SHARD, ApiError, not_found
+from server.errors import ApiError, not_found
 from server.store.base import now
 
 router = Router(prefix="/benches/{bench_id}/watchers", tags=["classes"])
@@ -24,8 +24,8 @@ MOST = 20
 class NewWatcher(Body):
     """How long a link lasts."""
 
-    hours: float = Field(4.0, gt=0, le=24 * 14)
-    link: str | None = Field(None, description="Id of a link to an experiment by which people watch without the token")
+    hours: float = Field(4.0, gt=0, le=24 * 14, description="Hours until the link ends")
+    link: str | None = Field(None, description="Id of a shared link by which people may watch without the token")
 
 
 class Watcher(BaseModel):
@@ -33,7 +33,7 @@ class Watcher(BaseModel):
 
     id: str
     until: datetime
-    path: str | None = Field(None, description="Path of the address; only its hash is kept")
+    path: str | None = Field(None, description="Path of the address, shown once; the server keeps only a hash")
 
 
 class WatcherList(BaseModel):
@@ -56,8 +56,9 @@ async def make_watcher(body: NewWatcher, session: SessionDep, service: ServiceDe
         given = identity.secret_of_link(link.id)
     person, secret = await service.people.add("watcher", "watcher", until, bench_id=session.id, secret=given)
     service.audit.add("teacher", "watcher", "made a link to watch", session.class_id, session.id)
-    query = {"link": body.link, **({SHARD: service.settings.shard} if service.settings.shard else {})}
-    return Watcher(id=person.id, until=until, path=f"/?{urlencode(query)}" if given else f"/watch/{secret}")
+    return Watcher(
+        id=person.id, until=until, path=f"/?{urlencode({'link': body.link})}" if given else f"/watch/{secret}"
+    )
 
 
 @router.get("")

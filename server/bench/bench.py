@@ -10,51 +10,53 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from dataclasses import replace
 from datetime import UTC, datetime
-from typing import Any, get_args
+from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 from core.board.board import Board
-from core.board.commands import MakeSafe
 from core.board.document import Document
 from core.board.history import History
 from core.board.rows import Rows
 from core.board.track import Deed, Track
-from core.errors import InputError
 from core.signals import Signal
 from scenarios.schema import Scenario
 from server.bench import commands
 from server.bench.captures import Captures
 from server.bench.description import bench_of, document_now, status_of
 from server.bench.events import Event, EventLog
-from server.bench.hiding import BlindView, Hiding
-from server.bench.journal import Branches, Journal
+from server.bench.journal import Branches, Journal, Snapshots
 from server.bench.measuring import Measuring
 from server.bench.narration import Narration
 from server.bench.recorder import Recorder
 from server.bench.recording import ActiveRecordings
-from server.bench.snapshots import Snapshots
 from server.bench.status import Bench, Opened, Origin, Travel
-from server.bench.tape import TickSource
 from server.bench.time import DeviceTime
 from server.bench.undo import Changes
-from server.bench.watch import Watch
+from server.bench.view import View, Watch
 from server.errors import not_found
 from server.metrics import Metrics
 
-PAST_TICKS = 20_000
-"""Samples before its end that a journal of the bench has."""
-TRACK_BYTES = 8_000_000
-"""Memory of the keyframes from which the past is computed again; it is subtracted from the memory of the history."""
-CAPTURE_BYTES = 2_500_000
-"""Memory of the captures of users who see all of the bench, and the same again for users from whom a fault is hidden;
-it is subtracted from the memory of the history."""
-STUDENT_PAST_TICKS = 2000
-STUDENT_TRACK_BYTES = 1_500_000
-STUDENT_CAPTURE_BYTES = 500_000
-"""The same limits on the bench of a student."""
+if TYPE_CHECKING:
+    from server.bench.replay import TickSource
+
 SLICE_S = 0.005
 """Longest slice, by the time of a tick; other benches and commands wait for it."""
 MOST_SLOWER = 4.0
 """Most by which the estimated time of a tick grows at once: a longer tick has waited for a processor."""
+
+
+class BenchMemory(NamedTuple):
+    """Memory of a bench; the bytes are subtracted from the memory of its history."""
+
+    past_ticks: int
+    """Samples before its end that a journal of the bench has."""
+    track_bytes: int
+    """Keyframes from which the past is computed again."""
+    capture_bytes: int
+    """Captures of users who see all of the bench, and the same again for users who have a view of it."""
+
+
+USUAL = BenchMemory(20_000, 8_000_000, 2_500_000)
+OF_STUDENT = BenchMemory(2000, 1_500_000, 500_000)
 
 
 class LiveBench:
@@ -74,6 +76,8 @@ class LiveBench:
         Where ticks and overruns are counted.
     clock : callable
         The engine's clock.
+    memory : Memory
+        Memory in addition to the history.
     """
 
     id = ""
@@ -100,10 +104,10 @@ class LiveBench:
     """The class whose student has it."""
     witness: Callable[[LiveBench, Event], None] | None = None
     """Called with every event."""
+    view: View | None = None
+    """The part of it that people see for now, if rules hide the rest."""
     watch: Watch | None = None
     """Looks at the bench for a step of a lab sheet."""
-    past_ticks = PAST_TICKS
-    track_bytes = TRACK_BYTES
 
     def __init__(
         self,
@@ -113,8 +117,9 @@ class LiveBench:
         history_ticks: int,
         metrics: Metrics,
         clock: Callable[[], float],
+        memory: BenchMemory = USUAL,
     ) -> None:
-        self.scenario, self.board = scenario, board
+        self.scenario, self.board, self.memory = scenario, board, memory
         self._history_ticks, self._metrics, self.clock = history_ticks, metrics, clock
         self.created = datetime.now(UTC)
         self._tick_s = SLICE_S / board.chunk
@@ -122,11 +127,11 @@ class LiveBench:
         self.branches = Branches()
         self.column_of = {signal.name: signal.index for signal in board.signals}
         """Column of each signal in the history."""
-        self.track = Track(board, self.track_bytes) if isinstance(board, Board) else None
-        self.captures = Captures(self, CAPTURE_BYTES)
+        self.track = Track(board, memory.track_bytes) if isinstance(board, Board) else None
+        self.captures = Captures(self, memory.capture_bytes)
         self.time: DeviceTime = DeviceTime(self, time_scale, scenario.samples, metrics)
         self.changes, self.snapshots = Changes(self), Snapshots(self)
-        self.recordings, self.hiding, self.measuring = ActiveRecordings(self), Hiding(self), Measuring()
+        self.recordings, self.measuring = ActiveRecordings(self), Measuring()
         self.narration = Narration(board.spec, board.signals, board.signals.outputs)
         self._remember()
         self.events = EventLog(self._happened)
@@ -193,16 +198,6 @@ class LiveBench:
         """Whether a board has the signals of this one, and could take its place."""
         return [signal.name for signal in board.signals] == list(self.column_of)
 
-    def limit(self, class_id: str, most_ticks_per_s: float) -> None:
-        """Apply the limits of a student's bench: never unloaded, limited in pace, with less memory."""
-        self.class_id, self.keep = class_id, True
-        self.past_ticks, self.track_bytes = STUDENT_PAST_TICKS, STUDENT_TRACK_BYTES
-        self.captures.most_bytes = STUDENT_CAPTURE_BYTES
-        if isinstance(self.board, Board):
-            self.track = Track(self.board, self.track_bytes)
-            self._remember()
-        self.time.limit(most_ticks_per_s * self.dt_ms * 1e-3)
-
     def begin(self, start: bool) -> None:
         """Begin, running or paused."""
         self.time.begin(start)
@@ -224,28 +219,23 @@ class LiveBench:
             event = self.time.carry_out(command, actor)
             if isinstance(event, Future):  # its end refreshes the status
                 return event
-        elif isinstance(command, commands.Undo | commands.Redo):
-            event = self.changes.back(actor) if isinstance(command, commands.Undo) else self.changes.again(actor)
         else:
-            if len(self.board.pending) >= commands.MAX_PENDING and not isinstance(command, MakeSafe):
-                raise InputError(f"{commands.MAX_PENDING} commands wait for their moment already", code="limit")
-            event = self.changes.apply(command, actor)
-            self.narration.tell()
-            self.time.fast_forward.end()
-            self.time.stop_if_tripped()
+            event = self.changes.carry_out(command, actor)
         self.refresh_status()
         return event
 
     def advance(self, ticks: int) -> int:
         """Run ticks, at most one slice; keep them, record them, note the events; return their number."""
-        watch = self.watch if self.hiding.blind is None else None  # a condition would reveal hidden values
+        view = self.view
+        watch = self.watch if view is None else None  # a condition would reveal hidden values
         rows = self._advance(ticks if watch is None else watch.room(self.board.tick, ticks))
         self.narration.look(rows)
         self._remember()
         if rows.count:
             self._metrics.ticks.inc(rows.count)
             self.recordings.take(rows)
-            self.hiding.look(rows)
+            if view is not None:
+                view.narration.look(rows)
             if watch is not None:
                 watch.look(self)
         if self.board.trip is not None and self.is_started and not self._has_due():
@@ -288,9 +278,12 @@ class LiveBench:
             return journal
         return replace(journal, track=self.track.copy(), past=self.history_before(journal.tick))
 
-    def stand(self, journal: Journal, actor: str, kind: str, text: str) -> Event:
-        """Stand at the end of a journal: the only way of a bench to a tick that does not follow; return its event."""
-        board, tick = journal.board(), journal.tick
+    def stand(self, journal: Journal, actor: str, kind: str, text: str, board: Board | None = None) -> Event:
+        """Stand at the end of a journal: the only way of a bench to a tick that does not follow; return its event.
+
+        The board is restored from the journal, unless there is one at its end that nothing else advances.
+        """
+        board, tick = board or journal.board(), journal.tick
         is_own = self.branches.share(journal.branch, tick)
         self.scenario, self.board = journal.scenario, board
         self.track = (self.track if is_own and self.track is not None else journal.track).until(board)
@@ -310,10 +303,10 @@ class LiveBench:
 
     def history_before(self, tick: int) -> History | None:
         """Return copies of the last samples before a tick, as far as the history has them."""
-        first = max(self.history.first_tick, tick - self.past_ticks)
+        first = max(self.history.first_tick, tick - self.memory.past_ticks)
         if not first < tick <= self.history.end_tick:
             return None
-        past = self.empty_history(self.past_ticks)
+        past = self.empty_history(self.memory.past_ticks)
         past.adopt(self.history, first, tick)
         return past
 
@@ -365,7 +358,9 @@ class LiveBench:
 
     def _happened(self, event: Event) -> None:
         """Count an event, report it, and write it into the active recordings."""
-        if not self.hiding.hear(event):
+        if (view := self.view) is not None:
+            view.hear(event)
+        else:
             self._metrics.events.labels(event.kind).inc()
         self.narration.hear(event)
         self.recordings.record(event)
@@ -390,5 +385,5 @@ class LiveBench:
         return self.recordings.close()
 
 
-Seen = LiveBench | BlindView
+Seen = LiveBench | View
 """A bench as a user sees it."""

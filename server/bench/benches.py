@@ -21,20 +21,15 @@ from core.kernel import renew
 from core.own.admission import kept_with
 from scenarios.schema import Scenario
 from server.bench.bench import LiveBench
-from server.bench.blind import Blind
-from server.bench.build import Builder, check, is_id, prepare
+from server.bench.build import Builder, check, is_id, prepare, rebuilt
 from server.bench.checkpoints import Kept
 from server.bench.commands import Reset, Seek
 from server.bench.engine import Engine
 from server.bench.events import Event
-from server.bench.experiment import rebuilt, repeat
-from server.bench.hiding import STOPPED
 from server.bench.pacing import usual_scale
 from server.bench.recorder import Recorder
 from server.bench.status import Opened
-from server.bench.tape import REFUSAL, Tape
-from server.bench.travel import Travels, reset
-from server.bench.watch import KeptWatch
+from server.bench.travel import Travels, repeat, reset
 from server.computing.computing import Computing
 from server.errors import ApiError, not_found
 from server.metrics import Metrics
@@ -42,47 +37,6 @@ from server.settings import Settings
 from server.store.earlier import as_written
 from server.store.experiment import Experiment
 from server.store.recordings import RecordingDetail
-
-
-class Quota:
-    """Counts the live benches and the benches that are being made.
-
-    Parameters
-    ----------
-    settings : Settings
-        Limits.
-    live : callable
-        Counts the benches that are live.
-    """
-
-    def __init__(self, settings: Settings, live: Callable[[], int]) -> None:
-        self._settings, self._live = settings, live
-        self._coming = 0
-
-    @contextmanager
-    def taken(self) -> Iterator[None]:
-        """Take the room of one bench until it is live.
-
-        Raises
-        ------
-        ApiError
-            If there is none.
-        """
-        self._check()
-        self._coming += 1
-        try:
-            yield
-        finally:
-            self._coming -= 1
-
-    def _check(self) -> None:
-        most, minutes = self._settings.max_benches, self._settings.idle_minutes
-        if self._live() + self._coming < most:
-            return
-        after = format_count(math.ceil(minutes), "minute")
-        wait = f"; a bench without watchers is closed after {after}" if minutes else ""
-        text = f"the server is full: {most} of {most} benches are live (max_benches)"
-        raise ApiError(409, "too_many_benches", text, hint=f"use a running bench, or close one{wait}")
 
 
 class Benches:
@@ -115,7 +69,7 @@ class Benches:
         self.builder = Builder(settings, metrics, engine.clock)
         self._sessions: dict[str, LiveBench] = {}
         self.travels = Travels(self, engine, settings.max_run_ticks)
-        self._quota = Quota(settings, lambda: sum(not session.class_id for session in self.all()))
+        self._coming = 0
 
     def __len__(self) -> int:
         return len(self._sessions)
@@ -154,13 +108,12 @@ class Benches:
         own_scale: bool = False,
         quiet_lead: bool = False,
         class_id: str = "",
-        hide: Callable[[Board], Blind] | None = None,
+        before: Callable[[LiveBench], None] = lambda _: None,
     ) -> LiveBench:
         """Make a bench from a library id, a TOML text or a document; with ``own_scale`` at the pace of its device.
 
         With ``quiet_lead`` it begins as fast as possible, to shortly before the first command of the scenario. The
-        bench of a student of a class has less room for its history. ``hide`` chooses a fault that is hidden from the
-        first tick.
+        bench of a student of a class has less room for its history. ``before`` gets the bench before it begins.
 
         Raises
         ------
@@ -175,9 +128,7 @@ class Benches:
             scale = usual_scale(board) if own_scale else time_scale
             session = self.builder.around(scenario, board, scale, class_id)
             session.time.fast_forward.leads = quiet_lead
-            if hide is not None:
-                session.hiding.begin(hide(board))
-                session.hiding.inject("teacher")
+            before(session)
             return session
 
         return await self.admit(asyncio.to_thread(made), not paused, is_counted=not class_id)
@@ -220,7 +171,7 @@ class Benches:
 
         return await self.admit(asyncio.to_thread(made), experiment.running)
 
-    async def revive(self, kept: Kept, before: Callable[[LiveBench, KeptWatch | None], None]) -> LiveBench:
+    async def revive(self, kept: Kept, before: Callable[[LiveBench, Kept], None]) -> LiveBench:
         """Make a bench that continues from a checkpoint, under the same id; ``before`` is called before it continues.
 
         Raises
@@ -237,27 +188,40 @@ class Benches:
 
         async def coming() -> LiveBench:
             session = await asyncio.to_thread(made)
-            before(session, kept.watch)
+            before(session, kept)
             return session
 
         class_id = kept.head.class_id
         return await self.admit(coming(), kept.head.running, is_counted=not class_id)
 
-    async def admit(self, coming: Coroutine[Any, Any, LiveBench], start: bool, *, is_counted: bool = True) -> LiveBench:
-        """Take in a bench that is being made, if there is room; the number of students' benches is limited."""
+    async def admit(
+        self, coming: LiveBench | Coroutine[Any, Any, LiveBench], start: bool, *, is_counted: bool = True
+    ) -> LiveBench:
+        """Take in a bench, also while it is being made, if there is room; classes limit the benches of students."""
         try:
-            with self._quota.taken() if is_counted else nullcontext():
-                return await self._enter(await coming, start)
+            with self._room() if is_counted else nullcontext():
+                return await self._enter(coming if isinstance(coming, LiveBench) else await coming, start)
         finally:
-            coming.close()  # without room it was never awaited
+            if not isinstance(coming, LiveBench):
+                coming.close()  # without room it was never awaited
 
-    async def take_in(self, session: LiveBench, start: bool) -> LiveBench:
-        """Take in a bench that is made already, if there is room."""
-        with self._quota.taken():
-            return await self._enter(session, start)
+    @contextmanager
+    def _room(self) -> Iterator[None]:
+        """Take the room of one bench until it is live, or refuse."""
+        most, minutes = self._settings.max_benches, self._settings.idle_minutes
+        if sum(not session.class_id for session in self.all()) + self._coming >= most:
+            after = format_count(math.ceil(minutes), "minute")
+            wait = f"; a bench without watchers is closed after {after}" if minutes else ""
+            text = f"the server is full: {most} of {most} benches are live (max_benches)"
+            raise ApiError(409, "too_many_benches", text, hint=f"use a running bench, or close one{wait}")
+        self._coming += 1
+        try:
+            yield
+        finally:
+            self._coming -= 1
 
     async def _enter(self, session: LiveBench, start: bool) -> LiveBench:
-        session.id = session.id or f"{self._settings.shard}{secrets.token_hex(6)}"
+        session.id = session.id or secrets.token_hex(6)
         session.witness = self._witness
         await self._engine.call(self._open, session, start and session.board.trip is None)
         self._sessions[session.id] = session
@@ -290,36 +254,33 @@ class Benches:
         """Carry out a command at the next tick edge; for a step, return a future that holds its event at its end."""
         kind = command.kind
         event: Event | Future[Event]
-        if (blind := session.hiding.blind) is not None:
-            blind.check(command)
+        rules = view.rules if (view := session.view) is not None else None
+        if rules is not None:
+            rules.check(command)
         try:
-            if isinstance(command, Reset) and isinstance(session.board, Tape):
-                if command.values:
-                    raise InputError(REFUSAL, "values", "run its scenario to change something", "conflict")
-                tick = session.board.first if command.before_tick is None else command.before_tick
-                event = await self._engine.call(session.execute, Seek(tick=tick), actor)
-            elif isinstance(command, Seek) and session.origin is not None:
+            if isinstance(command, Seek) and session.origin is not None:
                 event = await self.travels.seek(session, command.tick, actor)
-            elif isinstance(command, Reset):
-                seed = session.board.spec.seed
-                values = {"seed": seed, **command.values}
-                self._computing.check_budget()
-                with kept_with(command.values):
-                    if command.values:
-                        await self.check(session.scenario.document, values)
-                    scenario, board = await asyncio.to_thread(self._prepared, session.scenario.document, values)
-                event = await self._engine.call(reset, session, scenario, board, actor, command.before_tick)
+            elif isinstance(command, Reset) and not session.replay_of:
+                event = await self._reset(session, command, actor)
             else:
                 event = await self._engine.call(session.execute, command, actor)
         except (InputError, ApiError) as error:
             self._metrics.commands.labels(kind, "refused").inc()
             if isinstance(error, InputError):
-                if blind is not None and error.code == "tripped":
-                    error = InputError(STOPPED, hint=error.hint, code=error.code)
-                raise as_written(error, type(command)) from None
+                raise as_written(error if rules is None else rules.refusal(error), type(command)) from None
             raise
         self._metrics.commands.labels(kind, "done").inc()
         return event
+
+    async def _reset(self, session: LiveBench, command: Reset, actor: str) -> Event:
+        """Begin the scenario of a bench again, with other values if some are given."""
+        values = {"seed": session.board.spec.seed, **command.values}
+        self._computing.check_budget()
+        with kept_with(command.values):
+            if command.values:
+                await self.check(session.scenario.document, values)
+            scenario, board = await asyncio.to_thread(self._prepared, session.scenario.document, values)
+        return await self._engine.call(reset, session, scenario, board, actor, command.before_tick)
 
     async def renew(self) -> None:
         """Give all benches the code for this very processor, each at its next tick edge."""

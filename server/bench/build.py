@@ -10,6 +10,7 @@ from typing import Any, TypeGuard
 from core.board.board import Board
 from core.board.document import Document
 from core.board.history import History
+from core.errors import InputError
 from core.nesting import read_toml
 from core.own.admission import check_admitted, kept_with
 from scenarios.edit import with_values
@@ -17,12 +18,13 @@ from scenarios.library import get
 from scenarios.own import beside
 from scenarios.run import build
 from scenarios.schema import Scenario
-from server.bench.bench import CAPTURE_BYTES, STUDENT_CAPTURE_BYTES, STUDENT_TRACK_BYTES, TRACK_BYTES, LiveBench
+from server.bench.bench import OF_STUDENT, USUAL, BenchMemory, LiveBench
 from server.bench.commands import MAX_SCALE, MIN_SCALE
-from server.bench.replay import Replay, narrated, played
-from server.bench.tape import TickSource
+from server.bench.replay import TickSource, play, played
+from server.errors import ApiError
 from server.metrics import Metrics
 from server.settings import Settings
+from server.store.experiment import Experiment
 from server.store.recordings import RecordingDetail
 from server.store.units import FOLDER, Units
 
@@ -47,13 +49,12 @@ class Builder:
 
     def around(self, scenario: Scenario, board: Board, time_scale: float | None, class_id: str = "") -> LiveBench:
         """Put a bench around a board; one for a student of a class has less room for its history."""
+        settings, memory = self._settings, OF_STUDENT if class_id else USUAL
+        kept = self._kept(board, settings.student_history_mb if class_id else settings.history_mb, memory)
+        session = LiveBench(scenario, board, time_scale, kept, self._metrics, self._clock, memory)
         if class_id:
-            kept = self._kept(board, self._settings.student_history_mb, STUDENT_TRACK_BYTES + 2 * STUDENT_CAPTURE_BYTES)
-        else:
-            kept = self._kept(board, self._settings.history_mb, TRACK_BYTES + 2 * CAPTURE_BYTES)
-        session = LiveBench(scenario, board, time_scale, kept, self._metrics, self._clock)
-        if class_id:
-            session.limit(class_id, self._settings.student_ticks_per_s)
+            session.class_id, session.keep = class_id, True
+            session.time.limit(settings.student_ticks_per_s * board.dt_ms * 1e-3)
         return session
 
     def replay(self, recording: RecordingDetail, path: Path, speed: float) -> LiveBench:
@@ -66,17 +67,16 @@ class Builder:
         """
         scenario, tape, recorded = played(recording, path)
         pace = min(max(recorded * speed, MIN_SCALE), MAX_SCALE)
-        kept = self._kept(tape, self._settings.history_mb, 2 * CAPTURE_BYTES)
-        said = narrated(tape, path, recording.events or [])
-        session = Replay(recording, scenario, tape, pace, kept, self._metrics, self._clock, said)
+        kept = self._kept(tape, self._settings.history_mb, USUAL._replace(track_bytes=0))
+        session = LiveBench(scenario, tape, pace, kept, self._metrics, self._clock)
+        play(session, tape, recording, path, self._metrics)
         session.recorded_scale = recorded
         return session
 
-    def _kept(self, board: TickSource, megabytes: int, beside_bytes: int) -> int:
+    def _kept(self, board: TickSource, megabytes: int, memory: BenchMemory) -> int:
         """Return for how many ticks the signals of a board are kept, in addition to the other memory of its past."""
-        affordable = History.ticks_within(
-            megabytes - beside_bytes * 1e-6, board.signals.outputs, len(board.signals.taps)
-        )
+        left = megabytes - (memory.track_bytes + 2 * memory.capture_bytes) * 1e-6
+        affordable = History.ticks_within(left, board.signals.outputs, len(board.signals.taps))
         return min(self._settings.history_ticks, affordable)
 
 
@@ -99,6 +99,33 @@ def prepare(
             return scenario, build(scenario, seed, compiled=compiled)
     scenario = with_values(read_scenario(source), values)
     return scenario, build(scenario, seed, compiled=compiled)
+
+
+def rebuilt(experiment: Experiment, most_ticks: int, values: dict[str, Any] | None = None) -> tuple[Scenario, Board]:
+    """Return the scenario of an experiment, and its board at tick 0 with all that was done waiting.
+
+    ``values`` are written over the scenario.
+
+    Raises
+    ------
+    InputError
+        If the values do not fit the scenario or the commands.
+    ApiError
+        If it is longer than may be repeated, or this version cannot read it.
+    """
+    if experiment.tick > most_ticks:
+        text = f"it has run for {experiment.tick} ticks; at most {most_ticks} are repeated (max_run_ticks)"
+        raise ApiError(409, "too_long", text, hint="open its scenario instead, from tick 0")
+    values = values or {}
+    try:
+        with kept_with(values):
+            scenario = with_values(Scenario.load(experiment.scenario), values)
+            return scenario, build(Scenario.load({**scenario.document, "events": experiment.events}))
+    except InputError as error:
+        if values:
+            raise
+        text = f"this version cannot repeat it: {error}"
+        raise ApiError(409, "conflict", text, hint=f"it was made with {experiment.version}") from None
 
 
 def check(source: str | dict[str, Any], values: dict[str, Any], units: Document) -> None:

@@ -45,7 +45,7 @@ class Captured(NamedTuple):
     """Ticks of the window before the crossing."""
 
 
-class Crossing(NamedTuple):
+class TriggerCrossing(NamedTuple):
     """A crossing of a trigger: its tick, its place between ticks, and its branch of time."""
 
     tick: int
@@ -57,7 +57,7 @@ class Crossing(NamedTuple):
 class Capture:
     """Every sample of the window around a crossing, shape (signals, ticks)."""
 
-    crossing: Crossing
+    crossing: TriggerCrossing
     start: int
     samples: Float32Array
     copied: int = 0
@@ -83,7 +83,7 @@ class CaptureSet:
         self.what, self.columns = what, list(columns)
         self.captures: list[Capture] = []
         self.coming: Capture | None = None
-        self.waiting: deque[Crossing] = deque(maxlen=MOST)
+        self.waiting: deque[TriggerCrossing] = deque(maxlen=MOST)
         self.views: WeakSet[Finder] = WeakSet()
         """Views that show it now."""
         self.edition = 0
@@ -172,7 +172,7 @@ class Captures:
 
     def found(self, kept: CaptureSet, tick: int, at: float) -> None:
         """Note a crossing whose window is complete; its samples are copied by `gather`."""
-        kept.waiting.append(Crossing(tick, at, self._branch))
+        kept.waiting.append(TriggerCrossing(tick, at, self._branch))
 
     def gather(self) -> bool:
         """Copy the samples of crossings that wait, some at a time; return whether crossings still wait."""

@@ -10,7 +10,8 @@ import asyncio
 import json
 import logging
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -20,22 +21,23 @@ import numpy as np
 from pydantic import BaseModel
 
 from core.board.board import Board
+from core.board.document import Document
 from core.board.stored import Stored, revived, stored
 from core.errors import InputError
 from core.own.admission import kept
 from scenarios.schema import Scenario
 from server.bench.bench import LiveBench
-from server.bench.blind import Blind
 from server.bench.engine import Engine
 from server.bench.events import KEPT, Event
-from server.bench.watch import KeptWatch
+from server.bench.view import KeptWatch
 from server.clock import Clock
 from server.errors import ApiError
 from server.store.experiment import THIS_VERSION
 
 log = logging.getLogger(__name__)
 
-EVERY_S = 0.7
+EVERY_S, AT_ONCE = 0.7, 16
+"""Time between two writings, and benches that are taken between two slices of the engine."""
 BOARD, EVENTS, PART, HUNG, DOCUMENT, WATCH = ".npz", ".events", ".part", ".hung", "document", "watch"
 
 
@@ -53,8 +55,8 @@ class Head(BaseModel):
     tick: int
     last_event: int
     version: str
-    blind: Blind | None = None
-    hidden_since: int = 0
+    rules: Document | None = None
+    rules_since: int = 0
 
 
 class State(NamedTuple):
@@ -67,14 +69,19 @@ class State(NamedTuple):
     keep: bool
 
     @classmethod
-    def of(cls, head: Head) -> State:
+    def of(cls, bench: LiveBench) -> State:
+        """Return the state of a bench."""
+        return cls(bench.board.tick, bench.events.last, bench.is_started, bench.name, bench.keep)
+
+    @classmethod
+    def written(cls, head: Head) -> State:
         """Return the state in a checkpoint."""
-        return cls(head.tick, head.last_event, head.running, head.name, head.keep)
+        return cls(*(getattr(head, field) for field in cls._fields))
 
 
 @dataclass
 class Kept:
-    """A bench as its files have it."""
+    """A bench as its files have it, or with the events that are to be added to them."""
 
     head: Head
     stored: Stored
@@ -99,8 +106,6 @@ class Kept:
         session.id, session.created, session.name = self.head.id, self.head.created, self.head.name
         session.keep = session.keep or self.head.keep
         session.events.go_on(self.events)
-        if (blind := self.head.blind) is not None:
-            session.hiding.begin(blind, [event for event in self.events if event.seq >= self.head.hidden_since])
 
 
 class Checkpoints:
@@ -127,25 +132,12 @@ class Checkpoints:
             await self.write()
 
     async def write(self) -> None:
-        """Write the benches that have changed since the last time."""
+        """Write the benches that have changed since the last time, several at once: a change of threads is dear."""
         async with self._turn:
-            for session in self._benches():
-                before = self._written.get(session.id)
-                if before == State(
-                    session.board.tick, session.events.last, session.is_started, session.name, session.keep
-                ):
-                    continue
-                try:
-                    kept = await self._engine.call(_taken, session)
-                    head = kept.head
-                    events = session.events.after(before.last_event if before is not None else 0)[1]
-                    events = [event for event in events if event.seq <= head.last_event]
-                    await asyncio.to_thread(self._save, kept, events)
-                    self._written[session.id] = State.of(head)
-                except ApiError:
-                    continue  # it has been closed meanwhile
-                except Exception:
-                    log.exception("bench %s could not be kept; it is tried again", session.id)
+            changed = [one for one in self._benches() if self._written.get(one.id) != State.of(one)]
+            for at in range(0, len(changed), AT_ONCE):
+                taken = await self._engine.call(self._take, changed[at : at + AT_ONCE])
+                await asyncio.to_thread(self._save_all, taken)
 
     async def load(self, bench_id: str) -> Kept | None:
         """Return a bench that was kept; nothing if there is none that can be read."""
@@ -186,16 +178,32 @@ class Checkpoints:
     def _path(self, bench_id: str, suffix: str) -> Path:
         return self._folder / f"{bench_id}{suffix}"
 
-    def _save(self, kept: Kept, events: list[Event]) -> None:
+    def _take(self, benches: Sequence[LiveBench]) -> list[Kept]:
+        """Return the present state of some benches, with the events that are not written yet (a job of the engine)."""
+        found = []
+        for bench in benches:
+            with _tried(bench.id):
+                written = self._written.get(bench.id)
+                found.append(_taken(bench, written.last_event if written is not None else 0))
+        return found
+
+    def _save_all(self, some: Sequence[Kept]) -> None:
+        """Write the state of some benches."""
+        for one in some:
+            with _tried(one.head.id):
+                self._save(one)
+                self._written[one.head.id] = State.written(one.head)
+
+    def _save(self, kept: Kept) -> None:
         """Write the events first: those beyond the board are left out when they are read.
 
         An engine that gives the state of a bench does not hang in it any more.
         """
         head = kept.head
         self._folder.mkdir(parents=True, exist_ok=True)
-        if events:
+        if kept.events:
             with self._path(head.id, EVENTS).open("a", encoding="utf-8") as file:
-                file.write("".join(f"{event.model_dump_json()}\n" for event in events))
+                file.write("".join(f"{event.model_dump_json()}\n" for event in kept.events))
         watch = kept.watch.document if kept.watch is not None else None
         document = {**head.model_dump(), "board": kept.stored.document, WATCH: watch}
         text = json.dumps(document, default=str).encode()
@@ -227,28 +235,36 @@ class Checkpoints:
                 known[event.seq] = event
         events = [known[seq] for seq in sorted(known)]
         path.write_text("".join(f"{event.model_dump_json()}\n" for event in events), "utf-8")
-        self._written[bench_id] = State.of(head)
+        self._written[bench_id] = State.written(head)
         watch = KeptWatch(seen, samples) if seen is not None and samples is not None else None
         return Kept(head, Stored(board, arrays), events[-KEPT:], watch)
 
 
-def _taken(session: LiveBench) -> Kept:
-    """Return the present state of a bench, without its events (a job of the engine)."""
+@contextmanager
+def _tried(bench_id: str) -> Iterator[None]:
+    """Try to keep a bench: the others are kept although it fails."""
+    try:
+        yield
+    except ApiError:
+        pass  # it has been closed meanwhile
+    except Exception:
+        log.exception("bench %s could not be kept; it is tried again", bench_id)
+
+
+def _taken(session: LiveBench, after: int) -> Kept:
+    """Return the present state of a bench, with its events after one (a job of the engine)."""
     session.must_be_open()
     watch = session.watch.kept(session) if session.watch is not None else None
+    view = session.view
     head = Head(
         id=session.id,
         class_id=session.class_id,
-        name=session.name,
-        keep=session.keep,
+        **State.of(session)._asdict(),
         scenario=session.scenario.document,
         created=session.created,
         time_scale=session.time.pacer.scale,
-        running=session.is_started,
-        tick=session.board.tick,
-        last_event=session.events.last,
         version=THIS_VERSION,
-        blind=session.hiding.blind,
-        hidden_since=session.hiding.since,
+        rules=view.rules.model_dump() if view is not None else None,
+        rules_since=view.since if view is not None else 0,
     )
-    return Kept(head, stored(session.board), [], watch)  # type: ignore[arg-type]
+    return Kept(head, stored(session.board), session.events.after(after)[1], watch)  # type: ignore[arg-type]

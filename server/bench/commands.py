@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
@@ -108,22 +108,13 @@ class Loop(RunCommand):
     end_tick: int | None = Field(None, ge=0, le=2**53)
 
 
-RunsTime = Start | Pause | Step | StepPeriod | TimeScale | FastForward | Seek | Loop
-"""Commands to the time of a bench."""
+RunsTime = Start | Pause | Step | StepPeriod | Reset | TimeScale | FastForward | Seek | Loop
+"""Commands to the time of a bench; only a recording that is played takes the last two, and a reset, in this way."""
 
-RUN_KINDS: dict[str, type[RunCommand]] = {
-    "start": Start,
-    "pause": Pause,
-    "step": Step,
-    "step_period": StepPeriod,
-    "reset": Reset,
-    "undo": Undo,
-    "redo": Redo,
-    "time_scale": TimeScale,
-    "fast_forward": FastForward,
-    "seek": Seek,
-    "loop": Loop,
-}
+Runs = Start | Pause | Step | StepPeriod | Reset | Undo | Redo | TimeScale | FastForward | Seek | Loop
+"""All commands that run a bench."""
+
+RUN_KINDS: dict[str, type[RunCommand]] = {run.model_fields["kind"].default: run for run in get_args(Runs)}
 
 
 def parse(document: Any) -> Any:
@@ -153,23 +144,7 @@ def parse(document: Any) -> Any:
 
 
 Command = Annotated[
-    Start
-    | Pause
-    | Step
-    | StepPeriod
-    | Reset
-    | Undo
-    | Redo
-    | TimeScale
-    | FastForward
-    | Seek
-    | Loop
-    | Inject
-    | Heal
-    | Set
-    | Switch
-    | MakeSafe
-    | ResetTrip,
+    Runs | Inject | Heal | Set | Switch | MakeSafe | ResetTrip,
     BeforeValidator(parse),
 ]
 """For models and routes: `parse` reads it, the union describes it."""

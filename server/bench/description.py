@@ -1,25 +1,24 @@
-"""Descriptions of a live bench: its status, its full description, its scenario."""
+"""Descriptions of a live bench: its status, its full description, its scenario, its experiment."""
 
 from __future__ import annotations
 
+import json
 import math
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
+from core.board.board import Board
+from core.board.packages import TABLE, carried
 from core.board.spec import Section
 from core.board.words import describe
 from core.cards import card
 from core.device.two_axis import TwoAxis
 from core.faults.fault import FaultParams
+from scenarios.schema import Scenario
 from server.bench.commands import MAX_PENDING
-from server.bench.status import (
-    ActiveFault,
-    Bench,
-    BenchStatus,
-    DiagnoserInfo,
-    Pending,
-    State,
-)
+from server.bench.status import ActiveFault, Bench, BenchStatus, DiagnoserInfo, Pending, State
+from server.errors import ApiError
+from server.store.experiment import THIS_VERSION, Experiment
 
 if TYPE_CHECKING:
     from server.bench.bench import LiveBench
@@ -168,3 +167,42 @@ def document_now(bench: LiveBench) -> dict[str, Any]:
 def design_of(bench: LiveBench) -> dict[str, Any]:
     """Return the scenario of a bench as it is set now, from tick 0: with live changes, without events."""
     return {**bench.scenario.document, **document_now(bench)}
+
+
+def experiment_of(bench: LiveBench) -> Experiment:
+    """Return the experiment of a bench (a job of the engine).
+
+    Raises
+    ------
+    ApiError
+        For a recording that is played: it is kept already.
+    """
+    if bench.replay_of:
+        raise ApiError(409, "conflict", "a recording that is played is no experiment", hint="share the bench it is of")
+    board = bench.board
+    document = {**bench.scenario.document, **board.base}
+    events = board.save()["events"]
+    if named := carried({**document, "events": events}).get(TABLE):  # commands may name other packages
+        document[TABLE] = named
+    plain = json.loads(json.dumps({"scenario": document, "events": events}, default=str))
+    return Experiment(
+        **plain,
+        tick=board.tick,
+        digest=board.digest(),
+        version=THIS_VERSION,
+        running=bench.is_started,
+        time_scale=bench.time.pacer.scale,
+    )
+
+
+def beginning_of(scenario: Scenario, board: Board, time_scale: float | None) -> Experiment:
+    """Return the experiment that a scenario is before anything has been done."""
+    return Experiment(
+        scenario=json.loads(json.dumps(scenario.document, default=str)),
+        events=board.save()["events"],
+        tick=0,
+        digest=board.digest(),
+        version=THIS_VERSION,
+        running=True,
+        time_scale=time_scale,
+    )

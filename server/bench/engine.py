@@ -16,11 +16,14 @@ from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
 from queue import SimpleQueue
-from typing import Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from server.clock import Clock
 from server.lag import Lateness
 from server.metrics import Metrics
+
+if TYPE_CHECKING:
+    from server.bench.bench import LiveBench
 
 log = logging.getLogger(__name__)
 T = TypeVar("T")
@@ -37,40 +40,6 @@ SPARE_S = 0.001
 
 PROCESSORS = os.cpu_count() or 1
 """How many benches are advanced side by side."""
-
-
-class Turns(Protocol):
-    """The time of a live bench, as the engine uses it."""
-
-    @property
-    def is_running(self) -> bool:
-        """Whether it wants to advance."""
-
-    @property
-    def is_hurried(self) -> bool:
-        """Whether it advances to a tick as fast as possible, so that no time needs to pass."""
-
-    def target(self, now: float) -> int | None:
-        """Return the tick to reach in this round; none means no limit."""
-
-    def slice(self, target: int | None) -> bool:
-        """Advance by one slice of at most 5 ms; true while the target is not reached."""
-
-    def finish_round(self, target: int | None, now: float) -> None:
-        """Account for the round."""
-
-
-class Workload(Protocol):
-    """The part of a live bench that the engine uses."""
-
-    id: str
-
-    @property
-    def time(self) -> Turns:
-        """Its time."""
-
-    def fail(self, error: Exception) -> None:
-        """Stop after an unexpected error."""
 
 
 class Job:
@@ -168,14 +137,14 @@ class Engine:
     ) -> None:
         self._metrics, self._on_round, self.clock = metrics, on_round, clock or Clock()
         self.lateness = Lateness(metrics.wake_lateness)
-        self._work: dict[str, Workload] = {}
+        self._work: dict[str, LiveBench] = {}
         self._jobs: deque[Job] = deque()
         self._urgent: deque[Callable[[], None]] = deque()
         self._wake = threading.Condition()
         self._stopping = False
         self._main = threading.Thread(target=self._run, name="combbench-engine", daemon=True)
         self._helpers = Helpers(PROCESSORS - 1)
-        self._in_hand: dict[int, Workload] = {}
+        self._in_hand: dict[int, LiveBench] = {}
         self._settled: list[Future[None]] = []
         self._beat, self._due = self.clock(), 0.0
         self._silent_until = 0.0
@@ -209,7 +178,7 @@ class Engine:
         return [thread for thread in (self._main, *self._helpers.threads) if thread.is_alive()]
 
     @property
-    def held(self) -> list[Workload]:
+    def held(self) -> list[LiveBench]:
         """The benches in whose slices the threads are."""
         return list(self._in_hand.copy().values())
 
@@ -219,7 +188,7 @@ class Engine:
         return max(self._beat, self._due)
 
     @property
-    def running(self) -> list[Workload]:
+    def running(self) -> list[LiveBench]:
         """The benches whose time runs."""
         return [work for work in list(self._work.values()) if work.time.is_running]
 
@@ -257,13 +226,13 @@ class Engine:
         with self._wake:
             self._wake.notify()
 
-    def add(self, workload: Workload) -> None:
+    def add(self, bench: LiveBench) -> None:
         """Add a bench (a job)."""
-        self._work[workload.id] = workload
+        self._work[bench.id] = bench
 
-    def remove(self, workload_id: str) -> None:
+    def remove(self, bench_id: str) -> None:
         """Remove a bench (a job)."""
-        self._work.pop(workload_id, None)
+        self._work.pop(bench_id, None)
 
     def _run(self) -> None:
         """Turn until the end."""
@@ -345,7 +314,7 @@ class Engine:
         self._metrics.round_seconds.observe(done - now)
         return True
 
-    def _turns(self, pairs: list[tuple[Workload, int | None]], end: float) -> bool:
+    def _turns(self, pairs: list[tuple[LiveBench, int | None]], end: float) -> bool:
         """Give each bench one slice in turn until all are at their targets or the round is over; false after a job.
 
         Every processor takes the next bench that is waiting: handing a bench to a thread costs more than a slice.
@@ -366,7 +335,7 @@ class Engine:
         self._helpers.together(share, max(0, min(len(pairs), PROCESSORS) - 1))
         return not self._run_jobs()
 
-    def _slice(self, work: Workload, target: int | None) -> bool:
+    def _slice(self, work: LiveBench, target: int | None) -> bool:
         """Advance one bench; an unexpected error stops that bench alone."""
         if self._urgent or not work.time.is_running:
             return False

@@ -7,13 +7,15 @@ from collections import deque
 from collections.abc import Callable
 from datetime import UTC, datetime
 from itertools import islice
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from pydantic import Field
 
 from core.board.document import Document
 from core.board.log import Log, LogEntry
-from server.bench.tape import TickSource
+
+if TYPE_CHECKING:
+    from server.bench.replay import TickSource
 
 KEPT = 4000
 

@@ -23,7 +23,7 @@ AT_ONCE = 200_000
 
 
 @dataclass(frozen=True)
-class Run:
+class RunSoFar:
     """How far the present run of a bench is (a job of the engine).
 
     Parameters
@@ -50,7 +50,7 @@ class Run:
     is_stopped: bool
 
     @classmethod
-    def of(cls, bench: LiveBench) -> Run:
+    def of(cls, bench: LiveBench) -> RunSoFar:
         """Look at a bench."""
         board, jumps = bench.board, bench.narration.mark.jumps
         stopped = board.trip is not None and not bench.is_running
@@ -64,7 +64,7 @@ class Run:
 
 
 @dataclass(frozen=True)
-class Figures:
+class RunFigures:
     """Figures of the first ticks of a run; ``reason`` explains missing figures."""
 
     tick: int = 0
@@ -78,36 +78,36 @@ class Measuring:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._run: Run | None = None
+        self._run: RunSoFar | None = None
         self._board: Board | None = None
         self._samples: Samples | None = None
         self._kept: tuple[list[str], list[int]] = [], []
-        self._figures = Figures()
+        self._figures = RunFigures()
 
-    def figures(self, run: Run) -> Figures:
+    def figures(self, run: RunSoFar) -> RunFigures:
         """Return the figures of the run, at most a number of ticks further than at the last call (in a thread)."""
         with self._lock:
             if run.track is None:
-                return Figures(reason="a recording that is played is measured by the run it is of")
+                return RunFigures(reason="a recording that is played is measured by the run it is of")
             if run.track.first_tick > 0:
-                return Figures(reason="the beginning of this run is not kept")
+                return RunFigures(reason="the beginning of this run is not kept")
             if run.ends_at > MOST_TICKS:
-                return Figures(reason=f"this run is longer than {MOST_TICKS} ticks; run it headless")
+                return RunFigures(reason=f"this run is longer than {MOST_TICKS} ticks; run it headless")
             known = self._run
             if known is None or known.jumps != run.jumps or known.scenario is not run.scenario:
                 self._begin(run, run.track)
             self._run = run
             return self._follow(run, run.track)
 
-    def _begin(self, run: Run, track: Track) -> None:
+    def _begin(self, run: RunSoFar, track: Track) -> None:
         """Begin at the first tick of a run."""
         board = Board.restore(track.to(0, is_before=True).checkpoint)
         kept = traced(board, figures_only=True)
         self._board, self._samples = board, Samples(len(kept), run.ends_at)
         self._kept = [one.name for one in kept], [one.index for one in kept]
-        self._figures = Figures()
+        self._figures = RunFigures()
 
-    def _follow(self, run: Run, track: Track) -> Figures:
+    def _follow(self, run: RunSoFar, track: Track) -> RunFigures:
         """Go on to where the bench is, or to the end of the run."""
         board, samples = self._board, self._samples
         assert board is not None
@@ -120,14 +120,14 @@ class Measuring:
         for rows in track.onward(board, end).walk(board):
             samples.add(rows.outputs[:, places])
         if not self._is_same(run, track, board):
-            return Figures(reason="a change of this bench was no command, so its run cannot be repeated")
+            return RunFigures(reason="a change of this bench was no command, so its run cannot be repeated")
         if end:
             columns = dict(zip(names, samples.columns(), strict=True))
-            self._figures = Figures(end, all_figures(board, columns, run.scenario), is_over)
+            self._figures = RunFigures(end, all_figures(board, columns, run.scenario), is_over)
         return self._figures
 
     @staticmethod
-    def _is_same(run: Run, track: Track, board: Board) -> bool:
+    def _is_same(run: RunSoFar, track: Track, board: Board) -> bool:
         """Whether a board has the same outputs as the bench by then, as far as they can be compared."""
         if board.tick == run.tick:
             return board.digest() == run.digest

@@ -50,7 +50,7 @@ class Told:
 
 
 @dataclass(frozen=True)
-class Mark:
+class NarrationPlace:
     """How far a narration is: how often the bench has jumped, and the number of the last sentence since it began."""
 
     jumps: int = -1
@@ -76,7 +76,7 @@ class Narration:
         self._sentences: deque[Sentence] = deque(maxlen=KEPT)
         self._narrator = Narrator(spec, self._signals, outputs)
         self._earlier: dict[int, tuple[Narrator, int]] = {}
-        self.mark = Mark(0, 0)
+        self.mark = NarrationPlace(0, 0)
 
     def hear(self, event: Event) -> None:
         """Take an event of the bench."""
@@ -84,24 +84,22 @@ class Narration:
 
     def look(self, rows: Rows) -> None:
         """Write the sentences after some more rows."""
-        if said := self._narrator.look(rows):
-            self.say(said)
+        self.say(self._narrator.look(rows))
 
     def follow(self, log: Log, rows: Rows | None = None) -> None:
         """Write the sentences after some more rows of a board that is computed again, which has a log of its own."""
-        if said := self._narrator.follow(log, rows):
-            self.say(said)
+        self.say(self._narrator.follow(log, rows))
 
     def tell(self) -> None:
         """Write sentences at once that wait for no row, for example that the board was stopped."""
-        if said := self._narrator.tell():
-            self.say(said)
+        self.say(self._narrator.tell())
 
     def say(self, sentences: Sequence[Sentence]) -> None:
         """Add sentences."""
-        with self._lock:
-            self._sentences.extend(sentences)
-            self.mark = Mark(self.mark.jumps, self.mark.last + len(sentences))
+        if sentences:
+            with self._lock:
+                self._sentences.extend(sentences)
+                self.mark = NarrationPlace(self.mark.jumps, self.mark.last + len(sentences))
 
     def remember(self, tick: int, kept: Collection[int]) -> None:
         """Remember the sentences at a tick; of the ticks before, only the kept ticks."""
@@ -124,9 +122,9 @@ class Narration:
             self._narrator = told.narrator
             self._sentences = deque(told.sentences, maxlen=KEPT)
             self._earlier = told.earlier
-            self.mark = Mark(self.mark.jumps + 1, told.last)
+            self.mark = NarrationPlace(self.mark.jumps + 1, told.last)
 
-    def after(self, known: Mark) -> tuple[Mark, int, list[Sentence]]:
+    def after(self, known: NarrationPlace) -> tuple[NarrationPlace, int, list[Sentence]]:
         """Return how far the narration is, the number before the first sentence returned, and those not known yet.
 
         Parameters

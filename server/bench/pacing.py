@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from typing import TYPE_CHECKING
 
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE
-from server.bench.tape import TickSource
+
+if TYPE_CHECKING:
+    from server.bench.replay import TickSource
 
 AXES_SCALE = 0.1
 """Device seconds per wall second of a plant with axes."""
@@ -40,29 +43,21 @@ class Pacer:
 
     def __init__(self, dt_s: float, scale: float | None) -> None:
         self.dt_s = dt_s
-        self._scale = scale
+        self.scale = scale
+        """Device seconds per wall second; none is as fast as possible. `rescale` changes it."""
         self._wall = 0.0
         self._tick = 0
         self._due = 0
         self._seen: deque[tuple[float, int, int]] = deque()
         self._lags_since: float | None = None
-        self._fast_to: int | None = None
+        self.fast_to: int | None = None
+        """The tick up to which it runs as fast as possible, whatever its time scale; none: at its time scale."""
         self.given_up_s = 0.0
         self.overruns = 0
 
-    @property
-    def scale(self) -> float | None:
-        """Device seconds per wall second; none is as fast as possible."""
-        return self._scale
-
-    @property
-    def fast_to(self) -> int | None:
-        """The tick up to which it runs as fast as possible, whatever its time scale; none: at its time scale."""
-        return self._fast_to
-
     def hurry(self, fast_to: int | None, tick: int, now: float) -> None:
         """Run as fast as possible to a tick, or no longer; from there on the time scale counts."""
-        self._fast_to = fast_to if fast_to is not None and fast_to > tick else None
+        self.fast_to = fast_to if fast_to is not None and fast_to > tick else None
         self.anchor(tick, now)
 
     def anchor(self, tick: int, now: float) -> None:
@@ -74,12 +69,12 @@ class Pacer:
 
     def rescale(self, scale: float | None, tick: int, now: float, is_running: bool) -> None:
         """Change the time scale from now on; ticks due at the old one stay due."""
-        if self._fast_to is not None:
+        if self.fast_to is not None:
             self.hurry(None, tick, now)
-        if scale == self._scale:
+        if scale == self.scale:
             return
         due = self.target(tick, now) if is_running else None
-        self._scale = scale
+        self.scale = scale
         self.anchor(tick if due is None else max(due, tick), now)
 
     def target(self, tick: int, now: float) -> int | None:
@@ -92,13 +87,13 @@ class Pacer:
         now : float
             Wall clock in seconds.
         """
-        if self._fast_to is not None:
-            if tick < self._fast_to:
-                return self._fast_to
+        if self.fast_to is not None:
+            if tick < self.fast_to:
+                return self.fast_to
             self.hurry(None, tick, now)
-        if self._scale is None:
+        if self.scale is None:
             return None
-        rate = self._scale / self.dt_s
+        rate = self.scale / self.dt_s
         target = self._tick + int((now - self._wall) * rate)
         excess = target - tick - max(1, int(CATCH_UP_S * rate))
         if excess > 0:
@@ -110,13 +105,13 @@ class Pacer:
 
     def due(self, tick: int) -> float:
         """Return the time at which a tick becomes the target, s; infinite where time sets no target."""
-        if self._scale is None or self._fast_to is not None:
+        if self.scale is None or self.fast_to is not None:
             return math.inf
-        return self._wall + (tick - self._tick + 1e-3) * self.dt_s / self._scale
+        return self._wall + (tick - self._tick + 1e-3) * self.dt_s / self.scale
 
     def record(self, tick: int, target: int | None, now: float) -> None:
         """Note the tick that a round of work reached."""
-        if self._fast_to is not None:
+        if self.fast_to is not None:
             target = None
         if target is not None and tick < target:
             self.overruns += 1
@@ -124,7 +119,7 @@ class Pacer:
         self._seen.append((now, tick, due))
         while len(self._seen) > 2 and now - self._seen[1][0] >= WINDOW_S:
             self._seen.popleft()
-        if self._scale is None or self._fast_to is not None or self.achieved >= CAPPED_BELOW * self._scale:
+        if self.scale is None or self.fast_to is not None or self.achieved >= CAPPED_BELOW * self.scale:
             self._lags_since = None
         elif self._lags_since is None:
             self._lags_since = now
@@ -133,13 +128,13 @@ class Pacer:
     def achieved(self) -> float:
         """Device seconds per wall second over the last second."""
         if len(self._seen) < 2:
-            return self._scale or 0.0
+            return self.scale or 0.0
         (wall_0, tick_0, due_0), (wall_1, tick_1, due_1) = self._seen[0], self._seen[-1]
-        if self._scale is None or self._fast_to is not None:
+        if self.scale is None or self.fast_to is not None:
             elapsed = wall_1 - wall_0
             return (tick_1 - tick_0) * self.dt_s / elapsed if elapsed > 0 else 0.0
         # The ticks due are the measure, not the clock: at 1 us/s a second holds less than one tick.
-        return self._scale * (tick_1 - tick_0) / (due_1 - due_0) if due_1 > due_0 else self._scale
+        return self.scale * (tick_1 - tick_0) / (due_1 - due_0) if due_1 > due_0 else self.scale
 
     @property
     def capped(self) -> bool:

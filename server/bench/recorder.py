@@ -39,7 +39,7 @@ Samples = NDArray[np.float32]
 
 
 @dataclass(frozen=True)
-class Past:
+class PastSpan:
     """A span of the history that the writer thread reads when its turn comes."""
 
     read: Callable[[int, int], Samples]
@@ -79,7 +79,7 @@ class Recorder:
         self._file, self._schema, self._dt_ms = file, schema, dt_ms
         self._left, self._on_end = max_ticks, on_end
         self._full = FULL
-        self._queue: queue.SimpleQueue[tuple[int, Samples] | Past | str | None] = queue.SimpleQueue()
+        self._queue: queue.SimpleQueue[tuple[int, Samples] | PastSpan | str | None] = queue.SimpleQueue()
         self._bytes = 0
         self._lock = threading.Lock()
         self.reason = ""
@@ -93,13 +93,13 @@ class Recorder:
         """Whether it still takes rows."""
         return not self.reason
 
-    def begin(self, past: Past, ticks: int | None) -> None:
+    def begin(self, past: PastSpan, ticks: int | None) -> None:
         """Take a span of the past; end the recording a number of ticks after it."""
         length = past.end - past.first
         if ticks is not None and length + ticks <= self._left:
             self._left, self._full = length + ticks, COMPLETE
         if length > self._left:
-            past, length = Past(past.read, past.end - self._left, past.end), self._left
+            past, length = PastSpan(past.read, past.end - self._left, past.end), self._left
         self._end_tick = past.end + self._left - length
         if length:
             self._queue.put(past)
@@ -150,7 +150,7 @@ class Recorder:
                     item = self._queue.get(timeout=FLUSH_S)
                 except queue.Empty:
                     item = ""
-                if isinstance(item, Past):
+                if isinstance(item, PastSpan):
                     self._write_past(item)
                 elif isinstance(item, str):
                     if item:
@@ -171,7 +171,7 @@ class Recorder:
             self.reason = f"the disk failed: {error.strerror or error}"
             self._end(self._file.salvage())
 
-    def _write_past(self, past: Past) -> None:
+    def _write_past(self, past: PastSpan) -> None:
         """Copy a span of the history; ticks overwritten meanwhile are missing at its old end."""
         for start in range(past.first, past.end, BATCH_TICKS):
             end = min(start + BATCH_TICKS, past.end)

@@ -17,7 +17,7 @@ from core.board.rows import Rows
 from server.bench.description import document_of
 from server.bench.engine import Engine
 from server.bench.events import Event
-from server.bench.recorder import CLOSED, STOPPED, WANTED, Past, Recorder
+from server.bench.recorder import CLOSED, STOPPED, WANTED, PastSpan, Recorder
 from server.errors import ApiError, not_found
 from server.store.recordings import About, Recording, Recordings
 from server.store.traces import schema_of
@@ -184,7 +184,7 @@ class ActiveRecordings:
         after = None if ticks is None else max(0, ticks - (end - at))
         for event in _concerning(bench.events.after(0)[1], first):
             recorder.note(event.tick, event.model_dump_json())
-        recorder.begin(Past(lambda start, stop: history.read(columns, start, stop), first, end), after)
+        recorder.begin(PastSpan(lambda start, stop: history.read(columns, start, stop), first, end), after)
         self.under_way[recorder.id] = recorder
         if not recorder.is_open:
             self.stop(recorder.id)
@@ -213,7 +213,7 @@ class ActiveRecordings:
                 self._begin(waiting.recorder, at, waiting.past, waiting.ticks)
 
 
-class Records:
+class RecordingControl:
     """Begins and ends the recordings of benches.
 
     Parameters
@@ -234,7 +234,7 @@ class Records:
 
         Parameters
         ----------
-        session : Session
+        session : LiveBench
             The bench.
         wanted : Wanted
             The recording to make.

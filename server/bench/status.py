@@ -12,7 +12,6 @@ from core.board.document import Document
 from core.cards import BlockCard
 from core.loop.score import Scores
 from core.signals import Signal
-from server.bench.blind import HiddenQuestion
 
 State = Literal["running", "paused", "tripped"]
 
@@ -136,6 +135,25 @@ class Opened(BaseModel):
     version: str = Field(description="Version of the program and hash of the code the experiment was made with")
     version_now: str
     same_bits: bool = Field(description="Whether repeating it has given the bits it had then")
+
+
+class Played(BaseModel):
+    """The game that is played on a bench."""
+
+    game: str
+    seed: int
+
+
+class HiddenQuestion(BaseModel):
+    """The words people get about a hidden fault, or about the game that is played."""
+
+    id: str
+    game: Played | None = Field(None, description="Of a game, which has no answers; null for a hidden fault")
+    answers: list[str] = Field(description="One of these is true, each as likely as the others")
+    factors: list[dict[str, float]] = Field(description="How each differs from the nominal device")
+    shows: list[str] = Field(description="Diagnosers that may be looked at; none unless the exercise is about trust")
+    began_tick: int
+    by_tick: int = Field(description="The fault has come by then, if there is one")
 
 
 class DiagnoserInfo(BaseModel):

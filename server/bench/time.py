@@ -323,7 +323,7 @@ class DeviceTime:
             If the command cannot be carried out; nothing has changed then.
         """
         document, trip = command.model_dump(), self._bench.board.trip
-        if isinstance(command, commands.Seek | commands.Loop):
+        if isinstance(command, commands.Seek | commands.Loop | commands.Reset):
             raise InputError("only a recording that is played can do that", "kind", code="conflict")
         if isinstance(command, commands.TimeScale):
             return self._rescale(command, actor)

@@ -17,16 +17,16 @@ from scenarios.lecture import State
 from scenarios.run import build
 from scenarios.schema import Scenario
 from server.bench.bench import LiveBench
-from server.bench.build import Builder
-from server.bench.description import design_of
+from server.bench.build import Builder, rebuilt
+from server.bench.description import design_of, experiment_of
 from server.bench.engine import Engine
 from server.bench.events import Event
-from server.bench.experiment import experiment_of, forward, rebuilt, repeat
 from server.bench.journal import Journal
 from server.bench.narration import Narration, Told
 from server.bench.pacing import usual_scale
 from server.bench.status import Origin, Travel
 from server.bench.time import STATUS_S
+from server.store.experiment import Experiment
 
 if TYPE_CHECKING:
     from server.bench.benches import Benches
@@ -161,11 +161,12 @@ class Travels:
         past = await self._engine.call(partial(Past.take, bench, tick, window_ticks, is_before=is_before))
 
         def made(journal: Journal) -> LiveBench:
-            twin = self._benches.builder.around(journal.scenario, journal.board(), bench.time.pacer.scale)
+            board = journal.board()
+            twin = self._benches.builder.around(journal.scenario, board, bench.time.pacer.scale)
             twin.events.go_on(bench.events.after(0)[1])
             twin.taken_over = twin.events.last
             twin.origin = Origin(bench=bench.id, tick=tick, window_ticks=window_ticks)
-            show(twin, journal, "api", is_before=is_before)
+            show(twin, journal, "api", is_before=is_before, board=board)
             return twin
 
         return await self._benches.admit(self._computed(past, bench, made), bench.is_started and not paused)
@@ -294,9 +295,25 @@ class Travels:
         fresh = await asyncio.to_thread(made)
         start, digest = state.until_tick > state.from_tick, fresh.board.digest()
         if bench is None or not bench.has_signals_of(fresh.board):
-            return await self._benches.take_in(fresh, start), digest
+            return await self._benches.admit(fresh, start), digest
         await self._engine.call(_be_at_cue, bench, fresh, start, actor, text)
         return bench, digest
+
+
+def forward(bench: LiveBench, tick: int) -> bool:
+    """Bring a new bench to a tick, and carry out the commands that wait for it; return whether it came there."""
+    board = bench.board
+    while board.tick < tick and bench.advance(tick - board.tick):
+        pass
+    if isinstance(board, Board) and board.tick == tick:
+        board.apply_due()
+        bench.done_otherwise()
+    return board.tick == tick
+
+
+def repeat(bench: LiveBench, experiment: Experiment) -> bool:
+    """Bring a new bench to the tick of an experiment; return whether its bits equal the original bits."""
+    return forward(bench, experiment.tick) and bench.board.digest() == experiment.digest
 
 
 def reset(bench: LiveBench, scenario: Scenario, board: Board, actor: str, before_tick: int | None = None) -> Event:
@@ -304,8 +321,8 @@ def reset(bench: LiveBench, scenario: Scenario, board: Board, actor: str, before
     if not bench.has_signals_of(board):
         text = "these values give the bench other signals"
         raise InputError(text, "values", "make a new bench for them", "conflict")
-    journal = Journal.beginning(scenario, board, bench.track_bytes)
-    event = bench.changes.stand(journal, actor, "reset", "reset to tick 0")
+    journal = Journal.beginning(scenario, board, bench.memory.track_bytes)
+    event = bench.changes.stand(journal, actor, "reset", "reset to tick 0", board)
     bench.time.is_started = bench.time.is_started or before_tick is not None
     bench.time.fast_forward.begin(before_tick)
     bench.refresh_status()
@@ -318,24 +335,28 @@ def forked(bench: LiveBench, snapshot_id: str | None, builder: Builder) -> LiveB
         journal = bench.recalled(bench.snapshots.get(snapshot_id).journal).for_another()
     else:
         journal = bench.journal(with_past=True).for_another()
-    twin = builder.around(journal.scenario, journal.board(), bench.time.pacer.scale)
-    twin.stand(journal, "api", "forked", f"forked from bench {bench.id}")
+    board = journal.board()
+    twin = builder.around(journal.scenario, board, bench.time.pacer.scale)
+    twin.stand(journal, "api", "forked", f"forked from bench {bench.id}", board)
     return twin
 
 
-def show(bench: LiveBench, journal: Journal, actor: str, *, is_before: bool = False) -> Event:
+def show(
+    bench: LiveBench, journal: Journal, actor: str, *, is_before: bool = False, board: Board | None = None
+) -> Event:
     """Show the end of a journal of the past, or the moment before its commands; later events do not belong to it."""
     end = journal.tick if is_before else journal.tick + 1
     events = bench.events.after(0)[1]
     led = [event.seq for event in events if event.seq <= bench.taken_over and event.tick < end]
     journal = replace(journal, last_event=max(led, default=0))
-    return bench.stand(journal, actor, "restored", f"shows tick {journal.tick} as it was")
+    return bench.stand(journal, actor, "restored", f"shows tick {journal.tick} as it was", board)
 
 
 def _be_at_cue(bench: LiveBench, fresh: LiveBench, start: bool, actor: str, text: str) -> None:
     """Stand where a fresh bench does, with its pace (a job)."""
+    assert isinstance(fresh.board, Board)
     journal = replace(fresh.journal(), past=fresh.history).for_another()
-    bench.changes.stand(journal, actor, "reset", text)
+    bench.changes.stand(journal, actor, "reset", text, fresh.board)
     bench.time.pace(fresh.time.pacer.scale)
     bench.time.is_started = start and bench.board.trip is None
     bench.refresh_status()

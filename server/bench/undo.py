@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from core.board.commands import Command, ResetTrip, Set
+from core.board.board import Board
+from core.board.commands import Command, MakeSafe, ResetTrip, Set
 from core.board.inverse import inverse
 from core.board.pending import PendingCommand
 from core.board.track import Deed
 from core.errors import InputError
+from server.bench.commands import MAX_PENDING, Redo, Undo
 from server.bench.events import Event
 from server.bench.journal import Journal
 from server.bench.status import Undoable
@@ -28,7 +30,7 @@ Way = list[Command | PendingCommand] | Journal
 
 
 @dataclass(frozen=True)
-class Change:
+class UndoableChange:
     """A change of a bench, and the way back from it."""
 
     shown: Undoable
@@ -48,8 +50,8 @@ class Changes:
 
     def __init__(self, bench: LiveBench) -> None:
         self._bench = bench
-        self._done: list[Change] = []
-        self._undone: list[Change] = []
+        self._done: list[UndoableChange] = []
+        self._undone: list[UndoableChange] = []
 
     @property
     def last_done(self) -> Undoable | None:
@@ -61,36 +63,41 @@ class Changes:
         """The change that is made again next."""
         return self._undone[-1].shown if self._undone else None
 
-    def apply(self, command: Command, actor: str) -> Event:
-        """Carry out a command, or let it wait, and remember the way back."""
-        event, way = self._carry_out(command, actor)
-        paths = frozenset(command.set) if isinstance(command, Set) and event.kind == Set.kind else frozenset()
-        self._remember(event, way, paths)
-        return event
-
-    def stand(self, journal: Journal, actor: str, kind: str, text: str) -> Event:
-        """Let the bench stand at the end of a journal, and remember the way back."""
-        before = self._bench.journal(with_past=True)
-        event = self._bench.stand(journal, actor, kind, text)
-        self._remember(event, before)
-        self._bench.refresh_status()
-        return event
-
-    def back(self, actor: str) -> Event:
-        """Take the last change back.
+    def carry_out(self, command: Command | Undo | Redo, actor: str) -> Event:
+        """Change the board, or let the change wait; take the last change back, or make it again.
 
         Raises
         ------
         InputError
-            When there is none, or it can be taken back no more; it is forgotten then.
+            If the command cannot be carried out, and when too many wait. A change that can be taken back no more is
+            forgotten then.
         """
-        return self._move(self._done, self._undone, "undo", "undone", actor)
+        if isinstance(command, Undo):
+            return self._move(self._done, self._undone, "undo", "undone", actor)
+        if isinstance(command, Redo):
+            return self._move(self._undone, self._done, "redo", "redone", actor)
+        bench = self._bench
+        if len(bench.board.pending) >= MAX_PENDING and not isinstance(command, MakeSafe):
+            raise InputError(f"{MAX_PENDING} commands wait for their moment already", code="limit")
+        event, way = self._apply(command, actor)
+        paths = frozenset(command.set) if isinstance(command, Set) and event.kind == Set.kind else frozenset()
+        self._remember(event, way, paths)
+        bench.narration.tell()
+        bench.time.fast_forward.end()
+        bench.time.stop_if_tripped()
+        return event
 
-    def again(self, actor: str) -> Event:
-        """Make the change that was taken back last again."""
-        return self._move(self._undone, self._done, "redo", "redone", actor)
+    def stand(self, journal: Journal, actor: str, kind: str, text: str, board: Board | None = None) -> Event:
+        """Let the bench stand at the end of a journal, and remember the way back."""
+        before = self._bench.journal(with_past=True)
+        event = self._bench.stand(journal, actor, kind, text, board)
+        self._remember(event, before)
+        self._bench.refresh_status()
+        return event
 
-    def _move(self, source: list[Change], target: list[Change], kind: str, past: str, actor: str) -> Event:
+    def _move(
+        self, source: list[UndoableChange], target: list[UndoableChange], kind: str, past: str, actor: str
+    ) -> Event:
         if not source:
             raise InputError(f"there is nothing to {kind}", "kind", code="conflict")
         change = source.pop()
@@ -98,14 +105,14 @@ class Changes:
         if isinstance(way, Journal):
             before = self._bench.journal(with_past=True)
             event = self._bench.stand(way, actor, "restored", text)
-            target.append(Change(change.shown, before))
+            target.append(UndoableChange(change.shown, before))
             return event
         try:
             back = self._go(way, actor)
         except InputError as error:
             refusal = f"{change.shown.text} can no more be {past}: {error}"
             raise InputError(refusal, "kind", error.hint, "conflict") from None
-        target.append(Change(change.shown, back))
+        target.append(UndoableChange(change.shown, back))
         return self._bench.note(actor, past, text)
 
     def _go(self, way: list[Command | PendingCommand], actor: str) -> Way:
@@ -128,14 +135,14 @@ class Changes:
     def _step(self, step: Command | PendingCommand, actor: str) -> Way:
         bench = self._bench
         if not isinstance(step, PendingCommand):
-            return self._carry_out(step, actor)[1]
+            return self._apply(step, actor)[1]
         if step not in bench.board.pending:
             raise InputError("it waits no more")
         bench.board.pending.remove(step)
         bench.done(Deed(bench.board.tick, None, actor, step.number))
         return [step.command]
 
-    def _carry_out(self, command: Command, actor: str) -> tuple[Event, Way]:
+    def _apply(self, command: Command, actor: str) -> tuple[Event, Way]:
         """Carry out a command; return its event and the way back."""
         board = self._bench.board
         before = board.spec.document
@@ -157,7 +164,7 @@ class Changes:
         now, last = self._bench.clock(), self._done[-1] if self._done else None
         if last is not None and paths and last.paths == paths and now - last.at < AT_ONCE_S:
             way = self._done.pop().way
-        self._done.append(Change(Undoable(seq=event.seq, text=event.text), way, paths, now))
+        self._done.append(UndoableChange(Undoable(seq=event.seq, text=event.text), way, paths, now))
         journals = [i for i, change in enumerate(self._done) if isinstance(change.way, Journal)]
         first = journals[-MOST_JOURNALS - 1] + 1 if len(journals) > MOST_JOURNALS else 0
         self._done = self._done[max(first, len(self._done) - MOST) :]

@@ -22,14 +22,13 @@ import threading
 import time
 from collections.abc import Awaitable, Callable, Sequence
 from pathlib import Path
-from typing import Protocol
 
 from core.board.commands import MakeSafe, Trip
 from core.errors import InputError
 from core.format import format_short
 from server.bench.bench import LiveBench
-from server.bench.engine import Engine, Workload
-from server.bench.recording import Records, Wanted
+from server.bench.engine import Engine
+from server.bench.recording import RecordingControl, Wanted
 from server.errors import ApiError
 from server.metrics import Metrics
 from server.store.keeping import Keeping
@@ -53,19 +52,6 @@ MOST_KEPT = 8
 """Most such recordings at a time; the other benches have that time in their history as long as they are live."""
 
 
-class Guard(Protocol):
-    """Takes care of the benches; called on the thread of the watchdog."""
-
-    def hung(self, running: Sequence[Workload], held: Sequence[str], why: str) -> None:
-        """Take benches to safe outputs that ran when the engine hung, in slices of the benches that are named."""
-
-    def stuck(self, held: Sequence[str]) -> None:
-        """Record the benches in whose slices the engine hangs for good."""
-
-    def recovered(self) -> None:
-        """Show that the engine turns again."""
-
-
 class Watchdog:
     """Looks at the engine again and again.
 
@@ -73,14 +59,14 @@ class Watchdog:
     ----------
     engine : Engine
         The engine.
-    guard : Guard
+    safety : Safety
         Takes care of the benches.
     activity : Activity, optional
         Measures the work of the threads of the engine.
     """
 
-    def __init__(self, engine: Engine, guard: Guard, activity: Activity | None = None) -> None:
-        self._engine, self._guard, self._activity = engine, guard, activity or Activity()
+    def __init__(self, engine: Engine, safety: Safety, activity: Activity | None = None) -> None:
+        self._engine, self._safety, self._activity = engine, safety, activity or Activity()
         self._looked = self._expected = engine.clock()
         self._silent_s = self._idle_s = 0.0
         self._ended = threading.Event()
@@ -137,7 +123,7 @@ class Watchdog:
         self._silent_s = self._idle_s = 0.0
         if self.barks:
             self.barks = self.is_stuck = False
-            self._guard.recovered()
+            self._safety.recovered()
             log.warning("the engine turns again")
 
     def _bark(self, why: str) -> None:
@@ -147,7 +133,7 @@ class Watchdog:
         self.barks = True
         running, held = self._engine.running, [work.id for work in self._engine.held]
         if running:
-            self._guard.hung(running, held, why)
+            self._safety.hung(running, held, why)
         log.error("%s; benches that ran: %d; stacks of all threads:\n%s", why, len(running), _stacks())
 
     def _get_stuck(self) -> None:
@@ -157,7 +143,7 @@ class Watchdog:
         self.is_stuck = True
         held = [work.id for work in self._engine.held]
         log.critical("the engine hangs for good: restart the server; benches in hand: %s", ", ".join(held) or "none")
-        self._guard.stuck(held)
+        self._safety.stuck(held)
 
 
 class Activity:
@@ -236,7 +222,7 @@ class Safety:
     def __init__(
         self,
         engine: Engine,
-        records: Records,
+        records: RecordingControl,
         keeping: Keeping,
         metrics: Metrics,
         show: Callable[[Sequence[LiveBench]], None],
@@ -258,9 +244,10 @@ class Safety:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
 
-    def hung(self, running: Sequence[Workload], held: Sequence[str], why: str) -> None:
+    def hung(self, running: Sequence[LiveBench], held: Sequence[str], why: str) -> None:
         """Take benches to safe outputs; on the thread of the watchdog."""
-        sessions = sorted(_with_outputs(running), key=lambda one: one.id not in held)
+        with_outputs = [bench for bench in running if not bench.replay_of]
+        sessions = sorted(with_outputs, key=lambda one: one.id not in held)
         reasons = {session: _reason(session, held, why) for session in sessions}
         for session, reason in reasons.items():
             show_trip(session, reason)
@@ -297,8 +284,8 @@ class Safety:
         task.add_done_callback(self._tasks.discard)
 
     async def _keep(self, sessions: Sequence[LiveBench], why: str) -> None:
-        """Record the last seconds of some benches, except where a fault is hidden, because a file would reveal it."""
-        kept = [one for one in sessions if one.hiding.view is None and one.history.end_tick > one.history.first_tick]
+        """Record the last seconds of some benches, except where a view hides a part: a file would reveal it."""
+        kept = [one for one in sessions if one.view is None and one.history.end_tick > one.history.first_tick]
         for session in kept[:MOST_KEPT]:
             try:
                 wanted = Wanted(name=f"before the trip: {why}"[:100], past_ticks=_ticks(session), ticks=0)
@@ -329,11 +316,6 @@ def make_safe(session: LiveBench, reason: str) -> None:
     except Exception as error:
         log.exception("bench %s could not be taken to safe outputs", session.id)
         session.fail(error)
-
-
-def _with_outputs(benches: Sequence[Workload]) -> list[LiveBench]:
-    """Return the benches that have outputs: a recording that is played has none."""
-    return [bench for bench in benches if isinstance(bench, LiveBench) and not bench.replay_of]
 
 
 def _reason(session: LiveBench, held: Sequence[str], why: str) -> str:

@@ -2,7 +2,7 @@
 
 A door is a method and a path; doors of WebSockets have the method ``SOCKET``. A door that is not in the table is open
 to the teacher alone, so that a new route is closed until it gets an entry. While a fault is hidden on the bench of a
-student, only the doors marked ``*`` stay open for that student.
+student, only the doors marked ``*`` stay open for that student. A line has all methods of a path.
 """
 
 from __future__ import annotations
@@ -37,8 +37,7 @@ _DOORS = {
     Need.NOTHING: f"""
         GET /health/live
         GET /health/ready
-        GET /join
-        POST /join
+        GET POST /join
         GET /watch
         GET /watch/{{secret}}
         POST {CLASS}/join
@@ -63,8 +62,7 @@ _DOORS = {
         POST {API}/devices/spread  *
         GET {API}/scenarios  *
         GET {API}/scenarios/{{scenario_id}}  *
-        GET {API}/benches  *
-        POST {API}/benches  *
+        GET POST {API}/benches  *
         GET {API}/recordings
         GET {API}/recordings/{{recording_id}}
         GET {API}/recordings/{{recording_id}}/trace
@@ -91,11 +89,11 @@ _DOORS = {
         POST {API}/theory/persistency  *
         POST {API}/theory/aliases  *
         POST {API}/theory/instability-map  *
+        POST {API}/qr  *
     """,
     Need.MEMBER: f"""
         POST {API}/scenarios/check
-        GET {API}/units
-        POST {API}/units
+        GET POST {API}/units
         GET {API}/units/{{name}}
         GET {API}/parameter-sets
         GET {API}/parameter-sets/{{set_id}}
@@ -138,10 +136,8 @@ _DOORS = {
         POST {BENCH}/parameter-sets/{{set_id}}
         POST {BENCH}/recordings
         POST {BENCH}/recordings/{{recording_id}}/stop
-        GET {BENCH}/blind  *
-        POST {BENCH}/blind  *
+        GET POST DELETE {BENCH}/blind  *
         POST {BENCH}/blind/answer  *
-        DELETE {BENCH}/blind  *
     """,
     Need.TEACHER: f"""
         DELETE {BENCH}  *
@@ -150,35 +146,26 @@ _DOORS = {
         POST {BENCH}/variant
         POST {BENCH}/parameter-sets
         GET {BENCH}/audit
-        POST {BENCH}/watchers
-        GET {BENCH}/watchers
+        POST GET {BENCH}/watchers
         DELETE {BENCH}/watchers/{{watcher_id}}
-        PATCH {API}/parameter-sets/{{set_id}}
-        DELETE {API}/parameter-sets/{{set_id}}
+        PATCH DELETE {API}/parameter-sets/{{set_id}}
         DELETE {API}/recordings/{{recording_id}}
         POST {API}/recordings/{{recording_id}}/replay
         POST {API}/recordings/{{recording_id}}/compare
-        PUT {API}/units/{{name}}
-        DELETE {API}/units/{{name}}
-        POST {API}/runs
-        GET {API}/runs
+        PUT DELETE {API}/units/{{name}}
+        POST GET {API}/runs
         POST {API}/runs/remove
         GET {API}/runs/compare
         GET {API}/runs/compare/trace
-        GET {API}/runs/{{run_id}}
-        PATCH {API}/runs/{{run_id}}
-        DELETE {API}/runs/{{run_id}}
+        GET PATCH DELETE {API}/runs/{{run_id}}
         GET {API}/runs/{{run_id}}/scenario
         GET {API}/runs/{{run_id}}/trace
         GET {API}/runs/{{run_id}}/report
         GET {API}/runs/{{run_id}}/thumbnail
         GET {API}/runs/{{run_id}}/script
-        POST {API}/sweeps
-        GET {API}/sweeps
+        POST GET {API}/sweeps
         POST {API}/sweeps/remove
-        GET {API}/sweeps/{{sweep_id}}
-        PATCH {API}/sweeps/{{sweep_id}}
-        DELETE {API}/sweeps/{{sweep_id}}
+        GET PATCH DELETE {API}/sweeps/{{sweep_id}}
         GET {API}/sweeps/{{sweep_id}}/points
         GET {API}/sweeps/{{sweep_id}}/distribution
         GET {API}/sweeps/{{sweep_id}}/picture
@@ -186,8 +173,7 @@ _DOORS = {
         GET {API}/sweeps/{{sweep_id}}/report
         GET {API}/sweeps/{{sweep_id}}/script
         POST {API}/thresholds
-        GET {API}/thresholds/{{threshold_id}}
-        DELETE {API}/thresholds/{{threshold_id}}
+        GET DELETE {API}/thresholds/{{threshold_id}}
         POST {API}/gallery/run
         POST {API}/sheets
         DELETE {API}/sheets/{{sheet_id}}
@@ -195,41 +181,30 @@ _DOORS = {
         POST {CLASS}/sheet
         GET {CLASS}/grades
         GET {CLASS}/sheets/{{sheet_id}}/{{member_id}}/report
-        POST {API}/links
-        GET {API}/links
-        GET {API}/links/{{link_id}}
-        PATCH {API}/links/{{link_id}}
-        DELETE {API}/links/{{link_id}}
+        POST GET {API}/links
+        GET PATCH DELETE {API}/links/{{link_id}}
         POST {API}/links/{{link_id}}/open
         GET {API}/lectures
         GET {API}/lectures/{{lecture_id}}
         POST {API}/lectures/{{lecture_id}}/cues/{{number}}
-        POST {API}/votes
-        GET {API}/votes
-        GET {API}/votes/{{vote_id}}
-        DELETE {API}/votes/{{vote_id}}
+        POST GET {API}/votes
+        GET DELETE {API}/votes/{{vote_id}}
         POST {API}/votes/{{vote_id}}/close
         POST {API}/votes/{{vote_id}}/reveal
         PUT {API}/votes/{{vote_id}}/hands
-        POST {API}/classes
-        GET {API}/classes
-        GET {CLASS}
-        DELETE {CLASS}
-        POST {CLASS}/code
-        DELETE {CLASS}/code
+        POST GET {API}/classes
+        GET DELETE {CLASS}
+        POST DELETE {CLASS}/code
         GET {CLASS}/members
         DELETE {CLASS}/members/{{member_id}}
         DELETE {CLASS}/members/{{member_id}}/hand
         POST {CLASS}/commands
         POST {CLASS}/scenario
         POST {CLASS}/start
-        PUT {CLASS}/shown
-        DELETE {CLASS}/shown
+        PUT DELETE {CLASS}/shown
         PUT {CLASS}/layout
         GET {CLASS}/audit
-        POST {CLASS}/blind
-        GET {CLASS}/blind
-        DELETE {CLASS}/blind
+        POST GET DELETE {CLASS}/blind
         GET {CLASS}/games/{{game_id}}
         GET /metrics
         GET /class
@@ -250,8 +225,7 @@ _LTI_DOORS = {
     # The page at LTI itself is the same for all, and shows nothing until it has exchanged such a secret.
     Need.NOTHING: f"""
         GET {LTI}
-        GET {LTI}/login
-        POST {LTI}/login
+        GET POST {LTI}/login
         POST {LTI}/launch
         POST {LTI}/link
         POST {LTI}/session
@@ -270,10 +244,12 @@ def _table(doors: Mapping[Need, str]) -> tuple[dict[Door, Need], set[Door]]:
     needs: dict[Door, Need] = {}
     open_while_blind: set[Door] = set()
     for need, lines in doors.items():
-        for method, path, *mark in (line.split() for line in lines.split("\n") if line.strip()):
-            needs[method, path] = need
-            if mark:
-                open_while_blind.add((method, path))
+        for line in filter(str.strip, lines.split("\n")):
+            *methods, path = line.removesuffix("*").split()
+            here = {(method, path): need for method in methods}
+            needs |= here
+            if line.endswith("*"):
+                open_while_blind |= here.keys()
     return needs, open_while_blind
 
 

@@ -6,14 +6,15 @@ import asyncio
 import secrets
 from typing import Any
 
-from core.board.board import Board
 from core.device.drawn import device_of
 from core.errors import InputError
 from scenarios.schema import Scenario
-from server.bench.blind import Blind, bank_of, hide
+from server.bench.bench import LiveBench
 from server.bench.build import read_scenario
+from server.classroom.blind import bank_of, hide
 from server.classroom.blinds import OF_DRAW, Blinds, hidden_on
 from server.classroom.classes import Classes
+from server.classroom.hiding import Blind
 from server.errors import REFUSED, why
 from server.security.person import Person
 
@@ -65,8 +66,8 @@ async def _begin(
         await classes.draw(person, exercise, purpose) for purpose in ("device", "noise", "fault", "moment")
     ]
 
-    def hidden(board: Board) -> Blind:
-        return hide(board, scenario.spec.document, secrets.token_hex(8), shows, which, moment / OF_DRAW)
+    def hidden(made: LiveBench) -> Blind:
+        return hide(made.board, scenario.spec.document, secrets.token_hex(8), shows, which, moment / OF_DRAW)
 
     wanted = {
         "source": scenario.document,

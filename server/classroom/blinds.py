@@ -14,10 +14,12 @@ from sqlalchemy.orm import Session as DatabaseSession
 
 from core.errors import InputError, unknown
 from server.bench.bench import LiveBench
-from server.bench.blind import GAME_HINT, Blind, hide
 from server.bench.engine import Engine
+from server.bench.view import View
+from server.classroom.blind import hide
 from server.classroom.brier import points
 from server.classroom.draw import draw
+from server.classroom.hiding import GAME_HINT, Blind, blind_of, clear, hide_on, reveal
 from server.classroom.resonance import Resonance, resonance_of
 from server.errors import ApiError
 from server.security.person import Person
@@ -113,8 +115,8 @@ class Blinds:
             If the bench has no bank of hypotheses.
         """
         async with self._turn:
-            if session.hiding.blind is not None:
-                if session.hiding.blind.question.game is not None:
+            if (there := blind_of(session)) is not None:
+                if there.question.game is not None:
                     raise ApiError(409, "blind", "a game is played on this bench", hint=GAME_HINT)
                 raise ApiError(409, "blind", "a fault is hidden here already", hint="answer or give up first")
             if session.replay_of:
@@ -128,18 +130,17 @@ class Blinds:
                 return hide(session.board, session.document, id_, shows, which, when)
 
             def inject() -> None:
-                session.hiding.clear()
-                session.hiding.begin(chosen())
-                session.hiding.inject(person.name)
+                clear(session)
+                hide_on(session, chosen(), person.name)
 
             blind = await self._engine.call(chosen)  # refuses before anything has changed
             await self._database.keep(self.noting(session, person, blind, seed=seed))
-            session.hiding.begin(blind)  # from here on no page and no program gets more
+            session.view = View(session, blind)  # from here on no page and no program gets more
             await self._turn_pages(session)
             try:
                 await self._engine.call(inject)
             except InputError:  # the bench has no such fault
-                session.hiding.view = None
+                session.view = None
                 self._answers.pop(id_)
                 self._database.run_later(_deleted([id_]))
                 raise
@@ -185,7 +186,7 @@ class Blinds:
 
     def closing(self, session: LiveBench) -> list[Change]:
         """Note that the bench of a hidden fault goes without an answer."""
-        blind = session.hiding.blind
+        blind = blind_of(session)
         known = self._answers.get(blind.question.id) if blind is not None else None
         if known is None or known.state != "hidden":
             return []
@@ -213,7 +214,7 @@ class Blinds:
             told = {"healthy": resonance_of(spec, {}), "faulty": resonance_of(spec, factors)}
             answer = answer.model_copy(update={**said, **ending, **told})
             await self._database.keep(self._keeping(answer))
-        await self._engine.call(session.hiding.reveal, person.name)
+        await self._engine.call(reveal, session, person.name)
         await self._turn_pages(session)
         return answer
 
@@ -268,7 +269,7 @@ def _unanswered(
 
 def hidden_on(session: LiveBench) -> Blind:
     """Return the hidden part of a bench, or refuse."""
-    if (blind := session.hiding.blind) is None:
+    if (blind := blind_of(session)) is None:
         raise ApiError(409, "conflict", "no fault is hidden on this bench")
     if blind.question.game is not None:
         raise ApiError(409, "conflict", "a game is played on this bench", hint=GAME_HINT)

@@ -82,8 +82,6 @@ class Classes:
         Their attempts at games, which are deleted with them too.
     most_students : int
         Students of all classes.
-    shard : str
-        With which their ids, and so the codes, begin.
     """
 
     def __init__(
@@ -97,12 +95,11 @@ class Classes:
         votes: Votes,
         games: GameTable,
         most_students: int,
-        shard: str,
     ) -> None:
         self._database, self._people, self.benches = database, people, benches
         self._audit, self._lesson, self._blinds = audit, lesson, blinds
         self._votes, self._games = votes, games
-        self._most, self._shard = most_students, shard
+        self._most = most_students
         self._codes: dict[str, str] = {}
         self._turn = asyncio.Lock()
 
@@ -129,7 +126,7 @@ class Classes:
         if len(there) >= MOST_CLASSES:
             raise ApiError(409, "limit", f"{MOST_CLASSES} classes are open, the limit", hint="end one first")
         row = ClassRow(
-            id=new_class_id(self._shard, there),
+            id=new_class_id(there),
             name=name,
             scenario=wanted,
             secret=new_secret(),

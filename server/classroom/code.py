@@ -13,10 +13,10 @@ CLASS_LETTERS, CODE_LETTERS = 4, 8
 of them take twenty years, and a code lasts for hours."""
 
 
-def new_class_id(shard: str, taken: Container[str]) -> str:
-    """Return the id of a new class, which begins with the letter of the process."""
+def new_class_id(taken: Container[str]) -> str:
+    """Return the id of a new class."""
     while True:
-        made = shard + "".join(secrets.choice(LETTERS) for _ in range(CLASS_LETTERS - len(shard)))
+        made = "".join(secrets.choice(LETTERS) for _ in range(CLASS_LETTERS))
         if made not in taken:
             return made
 
@@ -29,12 +29,6 @@ def new_code() -> str:
 def shown(class_id: str, code: str) -> str:
     """Write a code as people read it aloud, such as ``K7M4 X9P2 TQ5H``."""
     return f"{class_id} {code[:4]} {code[4:]}".upper()
-
-
-def shard_of(typed: str) -> str:
-    """Return the letter of the process of a typed code, where several serve one address; "" for none."""
-    first = split(typed)[0][:1]
-    return first if first and first in LETTERS else ""
 
 
 def split(typed: str) -> tuple[str, str]:

@@ -15,10 +15,12 @@ from scenarios.games.draw import BENCH
 from scenarios.games.game import DIAGNOSER, Fact, Game, Kind, Outcome
 from server.bench.bench import LiveBench
 from server.bench.benches import Benches
-from server.bench.blind import HINT, Blind, Played, play
 from server.bench.engine import Engine
+from server.bench.status import Played
+from server.classroom.blind import play
 from server.classroom.classes import Classes
 from server.classroom.game_table import Attempt, GameTable, Standing, Turns
+from server.classroom.hiding import HINT, Blind, blind_of, from_the_start, reveal
 from server.classroom.student_benches import Swap
 from server.errors import ApiError
 from server.security.person import Person
@@ -162,13 +164,14 @@ class Games:
             "own_scale": True,
         }
         if person.role == "student":
-            blind = (await self._classes.benches.get(person)).hiding.blind
+            blind = blind_of(await self._classes.benches.get(person))
             if blind is not None and blind.question.game is None:
                 raise ApiError(409, "blind", "a fault is hidden on your bench", hint=HINT)
             await self._classes.benches.replace(person, wanted, None if over else hide)
         else:
             before = self._benches_of(person)
-            await self._swap(await self._benches.create(**wanted, hide=None if over else hide), before)
+            made = await self._benches.create(**wanted, before=from_the_start(None if over else hide))
+            await self._swap(made, before)
         return await self._shown(person, name, seed, number, *seen)
 
     async def hand_in(self, person: Person, name: str, seed: int, values: Mapping[str, Any]) -> Play:
@@ -230,7 +233,7 @@ class Games:
         session = self._bench_of(person, Played(game=game.id, seed=seed))
         if session is None or _left(game, turns):
             return
-        await self._engine.call(session.hiding.reveal, person.name)
+        await self._engine.call(reveal, session, person.name)
         await self._turn_pages(session)
 
     def _benches_of(self, person: Person) -> list[LiveBench]:
@@ -240,12 +243,12 @@ class Games:
             there = [found] if found is not None else []
         else:
             there = [session for session in self._benches.all() if not session.class_id]
-        return [one for one in there if one.hiding.blind is not None and one.hiding.blind.question.game is not None]
+        return [one for one in there if (blind := blind_of(one)) is not None and blind.question.game is not None]
 
     def _bench_of(self, person: Person, played: Played) -> LiveBench | None:
         """Return the bench on which a player plays a game at a seed."""
         for session in self._benches_of(person):
-            if session.hiding.blind is not None and session.hiding.blind.question.game == played:
+            if (blind := blind_of(session)) is not None and blind.question.game == played:
                 return session
         return None
 

@@ -11,22 +11,19 @@ from server.classroom.name import LONGEST_NAME
 from server.errors import ApiError, ErrorBody
 from server.security.limits import Buckets
 from server.security.person import Person
-from server.security.visitor import STYLE
+from server.security.visitor import page
 
 WRONG_PER_S, WRONG_AT_ONCE = 0.2, 8
 """Wrong codes and links of one address that are answered as such; a whole class may share it."""
 
-PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
-<title>Join a class · CombBench</title>
-{style}
-<main><h1>Join a class</h1>
+FORM = """\
 <p>You get a bench of your own: a tiny resonator that you drive, break and look after. Your teacher sees your bench and
 the name you give here. Both are forgotten when the class ends.</p>
 {wrong}<form method="post" action="{action}">
 <label>Code on the wall<input class="code" name="code" value="{code}" autocapitalize="characters" autocomplete="off"
 spellcheck="false" required maxlength="40"{focus_code}></label>
 <label>Your name<input name="name" value="{name}" autocomplete="nickname" required maxlength="{longest}"{focus_name}>
-</label><button>Join</button></form></main>
+</label><button>Join</button></form>
 """
 
 
@@ -89,8 +86,7 @@ def join_page(action: str, code: str = "", name: str = "", refusal: ErrorBody | 
         wrong = f'<p class="wrong" role="alert">{html.escape(". ".join(said))}.</p>\n'
     focus = " autofocus"
     to_code = not code or (refusal is not None and refusal.field == "code")
-    return PAGE.format(
-        style=STYLE,
+    form = FORM.format(
         wrong=wrong,
         action=html.escape(action),
         code=html.escape(code),
@@ -99,6 +95,7 @@ def join_page(action: str, code: str = "", name: str = "", refusal: ErrorBody | 
         focus_code=focus if to_code else "",
         focus_name="" if to_code else focus,
     )
+    return page("Join a class", form, "Join a class · CombBench")
 
 
 def _whose(refusal: ErrorBody) -> str:

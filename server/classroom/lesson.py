@@ -1,9 +1,10 @@
-"""A lesson: the teacher shows a bench to a whole class, and arranges their panels."""
+"""A lesson: the teacher shows a bench to a whole class, arranges their panels, and starts their benches together."""
 
 from __future__ import annotations
 
+import asyncio
 import secrets
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
@@ -11,6 +12,11 @@ from pydantic import BaseModel, Field
 from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
+from core.errors import InputError
+from server.bench.bench import LiveBench
+from server.bench.benches import Benches
+from server.bench.commands import Pause, Reset, Start
+from server.bench.engine import Engine
 from server.classroom.audit import Audit
 from server.classroom.lease import Pages
 from server.classroom.people import People
@@ -121,3 +127,48 @@ def _changed(class_id: str, **values: Any) -> Callable[[Session], object]:
     """Return the change of the row of a class."""
     change = update(ClassRow).where(ClassRow.id == class_id).values(**values)
     return lambda session: session.execute(change)
+
+
+async def start_together(
+    benches: Benches, engine: Engine, sessions: Sequence[LiveBench | None], actor: str
+) -> list[str | None]:
+    """Bring benches to tick 0 and start all of them at once; return of each why not, if so.
+
+    A bench that is already paused at tick 0 keeps its settings; any other is reset. From the start on, benches of the
+    same time scale are at the same tick, within one round of the engine.
+
+    Parameters
+    ----------
+    benches : Benches
+        Where commands are carried out.
+    engine : Engine
+        Starts all of them between two slices.
+    sessions : sequence of LiveBench
+        The benches; a missing bench stays out.
+    actor : str
+        Who starts them.
+    """
+
+    async def stand(session: LiveBench | None) -> str | None:
+        if session is None:
+            return "there is no bench"
+        try:
+            await benches.command(session, Pause(), actor)
+            if session.board.tick > 0:
+                await benches.command(session, Reset(), actor)
+        except (InputError, ApiError) as error:
+            return str(error)
+        return None
+
+    why = await asyncio.gather(*map(stand, sessions))
+
+    def start(session: LiveBench | None, before: str | None) -> str | None:
+        if session is None or before is not None:
+            return before
+        try:
+            session.execute(Start(), actor)
+        except (InputError, ApiError) as error:
+            return str(error)
+        return None
+
+    return await engine.call(lambda: [start(*pair) for pair in zip(sessions, why, strict=True)])

@@ -33,12 +33,10 @@ class People:
     ----------
     database : Database
         Where they are kept.
-    shard : str
-        Prefix of the secrets of sessions, because links to watch are made of them.
     """
 
-    def __init__(self, database: Database, shard: str = "") -> None:
-        self._database, self._shard = database, shard
+    def __init__(self, database: Database) -> None:
+        self._database = database
         self._by_hash: dict[str, Person] = {}
         self._hashes: dict[str, str] = {}
         self._benches: dict[str, str] = {}
@@ -80,7 +78,7 @@ class People:
         The change that ``also`` returns for the id of the person is stored with it. A session that the secret opened
         before ends.
         """
-        secret = secret or self._new_secret()
+        secret = secret or new_secret()
         before = self._by_hash.get(hash_of(secret))
         row = PersonRow(
             id=secrets.token_hex(8),
@@ -98,7 +96,7 @@ class People:
 
     async def renew(self, person: Person, until: datetime) -> tuple[Person, str]:
         """Give a person a new secret; the secret before, and the sockets that it opened, end."""
-        secret = self._new_secret()
+        secret = new_secret()
         hashed = hash_of(secret)
         query = update(PersonRow).where(PersonRow.id == person.id).values(secret_hash=hashed, until=until)
         await self._database.run(lambda session: session.execute(query))
@@ -107,9 +105,6 @@ class People:
         self._by_hash[hashed], self._hashes[person.id] = back, hashed
         self._check_again()
         return back, secret
-
-    def _new_secret(self) -> str:
-        return self._shard + new_secret()
 
     def by_secret(self, secret: str) -> Person | None:
         """Return whose session a secret opens, as long as it lasts."""

@@ -7,7 +7,6 @@ import logging
 import secrets
 
 from sqlalchemy import delete, select
-from sqlalchemy.exc import DBAPIError
 
 from core.errors import InputError
 from scenarios import sheets as library
@@ -16,7 +15,7 @@ from scenarios.sheets.sheet import Sheet
 from server.errors import ApiError, not_found
 from server.store.base import now
 from server.store.change import Change
-from server.store.database import Database, reason_of
+from server.store.database import Database
 from server.store.people import SheetRow
 
 log = logging.getLogger(__name__)
@@ -35,27 +34,16 @@ class Shelf:
     """
 
     def __init__(self, database: Database) -> None:
-        self.database = database
+        self._database = database
         self._own: dict[str, Sheet] = {}
-        self._unread: set[str] = set()
 
-    async def refresh(self) -> None:
-        """Read the sheets of users, also from other processes, and drop deleted sheets."""
-        known = set(self._own)
-        try:
-            there = await self.database.run(lambda session: set(session.scalars(select(SheetRow.id))))
-            query = select(SheetRow).where(SheetRow.id.in_(there - known - self._unread)).order_by(SheetRow.created)
-            new = await self.database.run(lambda session: list(session.scalars(query)))
-        except DBAPIError as error:  # a class continues with the known sheets
-            log.warning("the sheets cannot be looked up: %s", reason_of(error))
-            return
-        for gone in known - there:
-            self._own.pop(gone, None)
-        for row in new:
+    async def recover(self) -> None:
+        """Read the stored sheets of users."""
+        query = select(SheetRow).order_by(SheetRow.created)
+        for row in await self._database.run(lambda session: list(session.scalars(query))):
             try:
                 self._own[row.id] = await asyncio.to_thread(check, row.text, row.id)
             except InputError as error:
-                self._unread.add(row.id)
                 log.warning("a user's sheet cannot be read any more: %s", error)
 
     def all(self) -> list[Sheet]:
@@ -78,7 +66,7 @@ class Shelf:
         sheet = await asyncio.to_thread(check, text, name)
         if len(self._own) >= MOST_OWN:
             raise ApiError(409, "limit", f"{MOST_OWN} sheets are open, the limit", hint="delete one first")
-        await self.database.run(lambda session: session.add(SheetRow(id=name, text=text, created=now())))
+        await self._database.run(lambda session: session.add(SheetRow(id=name, text=text, created=now())))
         self._own[name] = sheet
         return sheet
 

@@ -20,8 +20,8 @@ from core.board.rows import Rows
 from scenarios.sheets.look import Finding, look, signals_of
 from scenarios.sheets.sheet import Hold
 from server.bench.bench import LiveBench
-from server.bench.tape import TickSource
-from server.bench.watch import KeptWatch
+from server.bench.replay import TickSource
+from server.bench.view import KeptWatch
 
 COLUMNS = 160
 """Columns of a small trace, each with minimum and maximum."""

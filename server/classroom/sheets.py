@@ -5,25 +5,25 @@ from __future__ import annotations
 import asyncio
 import logging
 import secrets
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
-from core.board.board import Board
 from core.errors import InputError
-from scenarios.sheets.begin import SEEDS
+from scenarios.sheets.begin import SEEDS, Beginning, begin
 from scenarios.sheets.look import known_limits
 from scenarios.sheets.progress import Progress
-from scenarios.sheets.sheet import BlindStep as BlindStep
-from scenarios.sheets.sheet import Hold, Sheet
+from scenarios.sheets.sheet import BlindStep, Hold, Sheet
 from server.bench.bench import LiveBench
 from server.bench.benches import Benches
-from server.bench.blind import HINT, Blind, hide
 from server.bench.engine import Engine
-from server.bench.watch import KeptWatch
+from server.bench.view import KeptWatch
+from server.classroom.blind import hide
+from server.classroom.blind_class import quiet
 from server.classroom.blinds import OF_DRAW, Blinds, hidden_on
 from server.classroom.classes import Classes
+from server.classroom.hiding import HINT, Blind, from_the_start
 from server.classroom.people import People
-from server.classroom.sheet_bench import SheetBenches
 from server.classroom.sheet_shelf import Shelf
 from server.classroom.sheet_view import SheetView, view_of
 from server.classroom.sheet_watch import Done, SheetWatch
@@ -77,8 +77,7 @@ class Sheets:
         blinds: Blinds,
     ) -> None:
         self._classes, self._people = classes, people
-        self._benches, self._engine = benches, engine
-        self._sheet_benches, self._blinds = SheetBenches(classes, benches, swap), blinds
+        self._benches, self._engine, self._swap, self._blinds = benches, engine, swap, blinds
         self.shelf = shelf
         self._database, self._works = database, Works(database)
         self._turn = asyncio.Lock()
@@ -92,7 +91,7 @@ class Sheets:
     async def recover(self) -> None:
         """Restore the stored works."""
         self._loop = asyncio.get_running_loop()
-        await self.shelf.refresh()
+        await self.shelf.recover()
         await self._works.recover()
 
     async def run(self, clock: Clock) -> None:
@@ -123,10 +122,7 @@ class Sheets:
     async def delete(self, sheet_id: str) -> None:
         """Delete a user's sheet, and the work at it."""
         gone, works = self.shelf.deletion(sheet_id), [one for one in self._works.all() if one.sheet_id == sheet_id]
-        if self.shelf.database is self._database:
-            return await self._forget(works, gone)
-        await self._forget(works)
-        await self.shelf.database.keep(gone)
+        await self._forget(works, gone)
 
     def works(self, person_id: str = "", class_id: str = "") -> list[Work]:
         """List the works of students, latest first: of one person, or of a class."""
@@ -144,7 +140,7 @@ class Sheets:
             return view_of(sheet, None, None, None)
         await self._follow(work)
         bench = self._benches.find(work.bench_id)
-        watch = bench.watch if bench is not None and bench.hiding.blind is None else None
+        watch = bench.watch if bench is not None and bench.view is None else None
         held = watch.now if isinstance(watch, SheetWatch) and watch.step is work.progress.open_step(sheet) else None
         return view_of(sheet, work.progress, bench.id if bench is not None else None, held)
 
@@ -157,7 +153,7 @@ class Sheets:
             If the bench cannot be made.
         """
         sheet = self.get(sheet_id)
-        beginning = await self._sheet_benches.beginning(person, sheet)
+        beginning = await self._beginning(person, sheet)
         async with self._turn:
             before = self._works.get(person.id, sheet_id)
             progress = before.progress if before is not None else Progress(facts=beginning.facts)
@@ -167,7 +163,7 @@ class Sheets:
                 work.bench_id = made.id
                 return [self._keeping(work)]
 
-            await self._sheet_benches.give(person, sheet, beginning.values, before, kept)
+            await self._give(person, sheet, beginning.values, before, kept)
         await self._follow(work)
         return work
 
@@ -189,10 +185,10 @@ class Sheets:
         which, when, noise = [
             await self._classes.draw(person, exercise, str(number), word) for word in ("fault", "moment", "noise")
         ]
-        beginning = await self._sheet_benches.beginning(person, sheet)
+        beginning = await self._beginning(person, sheet)
 
-        def hidden(board: Board) -> Blind:
-            return hide(board, board.spec.document, secrets.token_hex(8), False, which, when / OF_DRAW)
+        def hidden(made: LiveBench) -> Blind:
+            return hide(made.board, made.board.spec.document, secrets.token_hex(8), False, which, when / OF_DRAW)
 
         async with self._turn:
             work = self._must_have(person, sheet_id)
@@ -200,7 +196,7 @@ class Sheets:
             if not isinstance(step, BlindStep):
                 raise InputError("hides nothing", "step", code="conflict")
             bench = self._benches.find(work.bench_id)
-            if bench is not None and bench.hiding.blind is not None:
+            if bench is not None and bench.view is not None:
                 raise ApiError(409, "blind", "a fault is hidden here already", hint=HINT)
 
             def kept(made: LiveBench) -> list[Change]:
@@ -210,7 +206,40 @@ class Sheets:
                 return [self._keeping(now_there), self._blinds.noting(made, person, blind, exercise)]
 
             values = {**beginning.values, "seed": noise % SEEDS}
-            await self._sheet_benches.give(person, sheet, values, work, kept, hidden)
+            await self._give(person, sheet, values, work, kept, hidden)
+
+    async def _beginning(self, person: Person, sheet: Sheet) -> Beginning:
+        """Draw the bench of a sheet for a person."""
+        words = ["device", "noise", *(f"number {name}" for name in sheet.head.draws)]
+        drawn = {word: await self._classes.draw(person, sheet.id, word) for word in words}
+        return await asyncio.to_thread(begin, sheet, drawn.__getitem__)
+
+    async def _give(
+        self,
+        person: Person,
+        sheet: Sheet,
+        values: dict[str, Any],
+        before: Work | None,
+        also: Callable[[LiveBench], Sequence[Change]],
+        hide: Callable[[LiveBench], Blind] | None = None,
+    ) -> None:
+        """Replace the bench of a sheet by a new one, with a hidden fault if ``hide`` chooses one."""
+        bench = sheet.head.bench
+        wanted: dict[str, Any] = {
+            "source": bench.scenario if hide is None else (await asyncio.to_thread(quiet, bench.scenario)).document,
+            "values": values,
+            "seed": None,
+            "paused": False,
+            "time_scale": bench.time_scale,
+            "own_scale": bench.time_scale is None,
+            "quiet_lead": False,
+        }
+        if person.role == "student":
+            await self._classes.benches.replace(person, wanted, hide, also)
+            return
+        old = self._benches.find(before.bench_id) if before is not None else None
+        made = await self._benches.create(**wanted, before=from_the_start(hide))
+        await self._swap(made, [old] if old is not None else [], *also(made))
 
     async def _welcome(self, person: Person) -> None:
         """Begin the sheet of the class with a student who has just joined."""
@@ -261,7 +290,7 @@ class Sheets:
         if bench is None:
             return
         watch = bench.watch if isinstance(bench.watch, SheetWatch) else None
-        if not isinstance(step, Hold) or bench.hiding.blind is not None:  # progress would reveal hidden values
+        if not isinstance(step, Hold) or bench.view is not None:  # progress would reveal hidden values
             bench.watch = None
         elif watch is None or watch.step is not step:
 
@@ -287,7 +316,7 @@ class Sheets:
         for work in self._works.all():
             sheet = self._known(work.sheet_id) if work.bench_id == bench.id else None
             step = work.progress.open_step(sheet) if sheet is not None else None
-            if isinstance(step, Hold) and bench.hiding.blind is None:
+            if isinstance(step, Hold) and bench.view is None:
                 bench.watch = watch = self._watch(work, step, bench)
                 if kept is not None:
                     watch.go_on(kept)

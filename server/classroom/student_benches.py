@@ -9,13 +9,12 @@ from typing import Any, Protocol
 
 from sqlalchemy import select
 
-from core.board.board import Board
 from core.own.admission import kept
 from server.bench.bench import LiveBench
 from server.bench.benches import Benches
-from server.bench.blind import Blind
-from server.bench.checkpoints import Checkpoints
-from server.bench.watch import KeptWatch
+from server.bench.checkpoints import Checkpoints, Kept
+from server.bench.view import KeptWatch
+from server.classroom.hiding import Blind, from_the_start, hide_again
 from server.classroom.people import People
 from server.errors import not_found
 from server.security.person import Person
@@ -112,7 +111,7 @@ class StudentBenches:
         self,
         person: Person,
         wanted: dict[str, Any],
-        hide: Callable[[Board], Blind] | None = None,
+        hide: Callable[[LiveBench], Blind] | None = None,
         also: Callable[[LiveBench], Sequence[Change]] = lambda _: (),
     ) -> LiveBench:
         """Replace the bench of a student, with a hidden fault if ``hide`` chooses one.
@@ -170,21 +169,26 @@ class StudentBenches:
             self._given_up.add(bench_id)
             return None
         try:
-            return await self._benches.revive(found, self.on_revived)
+            return await self._benches.revive(found, self._continue)
         except Exception:
             log.exception("bench %s cannot continue from its checkpoint", bench_id)
             self._given_up.add(bench_id)
             return None
+
+    def _continue(self, bench: LiveBench, kept: Kept) -> None:
+        """Hide what was hidden on a bench, and watch it, before it continues from its checkpoint."""
+        hide_again(bench, kept)
+        self.on_revived(bench, kept.watch)
 
     async def _make(
         self,
         person: Person,
         wanted: dict[str, Any],
         before: Sequence[LiveBench],
-        hide: Callable[[Board], Blind] | None = None,
+        hide: Callable[[LiveBench], Blind] | None = None,
         also: Callable[[LiveBench], Sequence[Change]] = lambda _: (),
     ) -> LiveBench:
         """Make a bench and give it to a student."""
-        made = await self._benches.create(**wanted, class_id=person.class_id, hide=hide)
+        made = await self._benches.create(**wanted, class_id=person.class_id, before=from_the_start(hide))
         await self._swap(made, before, self._people.giving(person, made.id), *also(made))
         return made

@@ -7,9 +7,9 @@ from collections.abc import Awaitable, Callable
 
 from server.bench.bench import LiveBench, Seen
 from server.bench.benches import Benches
-from server.bench.blind import refusal
 from server.bench.idling import Idling
 from server.bench.status import Bench
+from server.classroom.hiding import refusal
 from server.classroom.people import People
 from server.security.person import Person
 from server.stream.hub import Hub
@@ -49,14 +49,14 @@ class Views:
         self._has_3d, self._close_bench = has_3d, close_bench
 
     def seen(self, session: LiveBench, person: Person) -> Seen:
-        """Return a bench as a person may see it: all of it, or the view while a fault is hidden."""
-        view = session.hiding.view
-        return view if view is not None and session.hiding.hides_from(person) else session
+        """Return a bench as a person may see it: a teacher sees all of the bench of a student, others its view."""
+        view = session.view
+        return session if view is None or (session.class_id and person.is_teacher) else view
 
     def is_blind(self, person: Person, bench_id: str) -> bool:
         """Whether a fault is hidden from a person, on the bench in the path or on the bench of a student."""
         session = self._benches.find(bench_id or self._people.bench_of(person))
-        return session is not None and session.hiding.hides_from(person)
+        return session is not None and self.seen(session, person) is not session
 
     def whole(self, bench_id: str, person: Person) -> LiveBench:
         """Return a bench that a person may see completely, or refuse."""

@@ -73,12 +73,10 @@ class Votes:
     ----------
     database : Database
         Where they are kept.
-    shard : str
-        With which their ids begin.
     """
 
-    def __init__(self, database: Database, shard: str = "") -> None:
-        self._database, self._shard = database, shard
+    def __init__(self, database: Database) -> None:
+        self._database = database
 
     async def open(self, class_id: str | None, question: Asked, right: str) -> Vote:
         """Ask a class, or the room; the vote before, which is not open any more, is forgotten.
@@ -96,7 +94,7 @@ class Votes:
             if before is not None:
                 _forget(session, before.id)
             row = VoteRow(
-                id=f"{self._shard}{secrets.token_hex(8)}",
+                id=secrets.token_hex(8),
                 class_id=class_id,
                 question={**question.model_dump(), "right": right},
                 state="open",

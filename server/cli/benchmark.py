@@ -18,10 +18,10 @@ from server.cli.units import UnitOption
 
 @plainly
 def benchmark(
-    unit: Annotated[str | None, typer.Argument(help="A diagnoser; without one, all there are.")] = None,
+    unit: Annotated[str | None, typer.Argument(help="The diagnoser to measure; without one, all of them.")] = None,
     track: Annotated[str | None, typer.Option(help="Only this track.")] = None,
     seeds: Annotated[
-        str, typer.Option(metavar="LIST", help="public, demonstration, or the file of the hidden list.")
+        str, typer.Option(metavar="LIST", help="public, demonstration, or the file with the hidden list.")
     ] = "public",
     check: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Recompute these results and compare them.")
@@ -29,7 +29,7 @@ def benchmark(
     units: UnitOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Measure diagnosers by mems-diag-1: 0 done, 1 results that were checked differ, 2 invalid input."""
+    """Measure diagnosers by mems-diag-1; exit code 0: done, 1: checked results differ, 2: invalid input."""
     from scenarios.benchmark import results as benchmark_results
     from scenarios.benchmark.measure import measure
     from scenarios.benchmark.seeds import LISTS, hidden_list, seed_list

@@ -9,16 +9,14 @@ import typer
 
 from core.errors import InputError
 from scenarios.edit import parse_assignment, with_values
-from server.cli.terminal import load, plainly, say
+from server.cli.terminal import AssignOption, load, plainly, say
 
 
 @plainly
 def fmu(
     scenario: Annotated[str, typer.Argument(help="Library id or file.")],
-    assign: Annotated[
-        list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Any field of the scenario.")
-    ] = None,
-    out: Annotated[Path, typer.Option(metavar="FILE", help="Where the FMU goes.")] = Path("device.fmu"),
+    assign: AssignOption = None,
+    out: Annotated[Path, typer.Option(metavar="FILE", help="File of the FMU.")] = Path("device.fmu"),
 ) -> None:
     """Write the device of a scenario as an FMU of FMI 3: its linear plant, voltage in, displacement out."""
     chosen = with_values(load(scenario), dict(parse_assignment(text) for text in assign or []))

@@ -14,15 +14,19 @@ from server.cli.terminal import JsonOption, plainly, say, say_json
 
 @plainly
 def game(
-    name: Annotated[str | None, typer.Argument(metavar="GAME", help="Which game; without one, all there are.")] = None,
-    seed: Annotated[int, typer.Option(help="The same seed is the same game for every user outside a class.")] = 1,
-    assign: Annotated[
-        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="The values of the answer.")
+    name: Annotated[
+        str | None, typer.Argument(metavar="GAME", help="The game; without one, the list of all games.")
     ] = None,
-    hidden: Annotated[bool, typer.Option("--hidden", help="Show the hidden values of the seed instead.")] = False,
+    seed: Annotated[
+        int, typer.Option(help="Seed of the game: the same seed gives the same game, except in a class.")
+    ] = 1,
+    assign: Annotated[
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A value of the answer. May be repeated.")
+    ] = None,
+    hidden: Annotated[bool, typer.Option("--hidden", help="Show the hidden values of the seed.")] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Play a game headless: the points of an answer, the same bits as on the page; 2 invalid input."""
+    """Play a game headless: print the points of an answer, with the bits of the page; exit code 2: invalid input."""
     from scenarios.games import GAMES, game_of
     from scenarios.games.game import check_seed
 

@@ -19,7 +19,7 @@ def lectures(
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Check lectures by running each cue: 0 all that the notes claim holds, 1 some does not, 2 invalid input."""
+    """Check lectures by running each cue; exit code 0: all claims of notes hold, 1: some do not, 2: invalid input."""
     from scenarios.lecture import Lecture
     from scenarios.lectures import lecture, lecture_ids
 
@@ -50,10 +50,12 @@ def lectures(
 
 @plainly
 def sheets(
-    check: Annotated[Path | None, typer.Option(metavar="FILE", help="Check this sheet instead.")] = None,
+    check: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A sheet of your own to check in their place.")
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """List the lab sheets and check all of them, or check one of your own: exit code 2 and one line if it is wrong."""
+    """List the lab sheets and check all of them, or check one of your own; exit code 2 and one line: it is wrong."""
     from scenarios import sheets as library
     from scenarios.sheets.check import check as check_sheet
 

@@ -14,22 +14,19 @@ import typer
 from typer.core import TyperGroup
 
 import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
+from core.cards import BlockCard
 from core.errors import InputError, one_line
-from core.format import format_si, unit_text
-from scenarios.edit import parse_assignment, with_values
+from core.format import format_short, format_si, unit_text
+from core.registry import catalog
 from scenarios.library import get, ids
-from scenarios.report.text import gallery_text, run_text
-from scenarios.report.traces import TraceFile
+from scenarios.report.text import gallery_text
 from scenarios.run import run as run_scenario
-from scenarios.samples import temporary_folder
-from scenarios.schema import Scenario
-from scenarios.seeds import parse_seeds
 from server.cli.benchmark import benchmark
-from server.cli.blocks import blocks
 from server.cli.export import fmu
 from server.cli.games import game
 from server.cli.lessons import lectures, sheets
-from server.cli.terminal import JsonOption, load, plainly, say, say_json
+from server.cli.run import run
+from server.cli.terminal import JsonOption, plainly, say, say_json
 from server.cli.units import UnitOption, check
 from server.version import VERSION
 
@@ -53,12 +50,12 @@ class OneLine(TyperGroup):
 
 
 app = typer.Typer(cls=OneLine, no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
+app.command()(run)
+app.command()(fmu)
 app.command()(benchmark)
 app.command()(lectures)
 app.command()(sheets)
 app.command()(check)
-app.command(name="catalog")(blocks)
-app.command()(fmu)
 app.command()(game)
 
 MOST_WORKERS = 1024
@@ -84,112 +81,11 @@ def common(
 
 @app.command()
 @plainly
-def run(
-    scenario: Annotated[str, typer.Argument(help="Library id or file.")],
-    assign: Annotated[
-        list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Any field of the scenario.")
-    ] = None,
-    units: UnitOption = None,
-    seed: Annotated[int | None, typer.Option(help="Instead of the scenario's own, 0 or more.")] = None,
-    seeds: Annotated[str | None, typer.Option(metavar="A:B", help="One run for each seed from A to B.")] = None,
-    as_json: JsonOption = False,
-    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write trace, report and script here.")] = None,
-    everything: Annotated[
-        bool,
-        typer.Option(
-            "--all",
-            help="Also run the controllers that never drive, and write all signals to the trace, "
-            "also of sensors that are never in use. No figure and no digest depends on it.",
-        ),
-    ] = False,
-    narrate: Annotated[bool, typer.Option("--narrate", help="Also say in plain sentences what happens.")] = False,
-    controller_process: Annotated[
-        str | None,
-        typer.Option(metavar="COMMAND", help="A program that drives, asked over a pipe (docs/other-languages.md)."),
-    ] = None,
-    controller_timeout: Annotated[float, typer.Option(metavar="S", help="Longest time for one of its answers.")] = 10.0,
-    threshold: Annotated[
-        str | None, typer.Option(metavar="METRIC", help="Find where this claim holds, over the range of --over.")
-    ] = None,
-    over: Annotated[
-        str | None, typer.Option(metavar="PATH=LOW:HIGH[:log]", help="The number to turn for --threshold.")
-    ] = None,
-) -> None:
-    """Run a scenario headless: 0 all expectations hold, 1 some do not, 2 invalid input."""
-    from scenarios.campaign.single import beside, run_seeds  # each worker process loads this file, and not these
-    from scenarios.outside.process import Process
-    from scenarios.report.keeping import keep
-    from scenarios.report.traces import write_json
-
-    chosen = with_values(load(scenario, units), dict(parse_assignment(text) for text in assign or []))
-    if threshold is not None or over is not None:
-        _find(chosen if seed is None else with_values(chosen, {"seed": seed}), threshold, over, as_json)
-    if seed is not None and seeds is not None:
-        raise InputError("give --seed or --seeds, not both", "--seeds")
-    if seeds is not None and out is not None:
-        raise InputError("traces are written for one seed; use --seed", "--out")
-    if seeds is not None and everything:
-        raise InputError("is for the trace of one seed; use --seed", "--all")
-    if seeds is not None and narrate:
-        raise InputError("tells of one seed; use --seed", "--narrate")
-    if seeds is not None and controller_process is not None:
-        raise InputError("drives one run; use --seed", "--controller-process")
-    try:
-        with ExitStack() as stack:
-            law = None
-            if controller_process is not None:
-                law = stack.enter_context(Process(controller_process, controller_timeout))
-            if seeds is not None:
-                summary = run_seeds(chosen, parse_seeds(seeds))
-            elif out is None:
-                result = run_scenario(chosen, seed, figures_only=True, everything=everything, law=law, narrate=narrate)
-                summary = result.summary()
-            else:
-                stem = out / f"{chosen.id}-seed{chosen.spec.seed if seed is None else seed}"
-                with TraceFile(stem.with_suffix(".parquet"), chosen.document) as trace:
-                    result = run_scenario(
-                        chosen, seed, taps=True, everything=everything, trace=trace, law=law, narrate=True
-                    )
-                    if law is None:
-                        summary = beside(result)
-                        keep(result, summary, [result.seed], stem)
-                    else:  # no report and no script: they would describe the scenario's own controller
-                        summary = result.summary()
-                        write_json(stem.with_suffix(".json"), summary)
-            if narrate:
-                summary["narration"] = [said.model_dump() for said in result.narration]
-    except OSError as error:
-        folder, field = (temporary_folder(), "TMPDIR") if out is None else (out, "--out")
-        raise InputError(f"cannot write to {folder}: {error.strerror}", field) from None
-    if as_json:
-        say_json(summary)
-    else:
-        say(run_text(summary))
-    raise typer.Exit(0 if summary["ok"] else 1)
-
-
-def _find(scenario: Scenario, threshold: str | None, over: str | None, as_json: bool) -> None:
-    """Find where a claim holds, print it and end: 0 somewhere in the range, 1 nowhere."""
-    from server.cli.find import find, threshold_text
-
-    if threshold is None or over is None:
-        given, missing = ("--over", "--threshold") if threshold is None else ("--threshold", "--over")
-        raise InputError(f"goes with {missing}", given)
-    found = find(scenario, threshold, over)
-    if as_json:
-        say_json(found.model_dump())
-    else:
-        say(threshold_text(found))
-    raise typer.Exit(0 if any(one.holds for one in found.tried) else 1)
-
-
-@app.command()
-@plainly
 def gallery(
     only: Annotated[str, typer.Option(metavar="GLOB", help="Only ids that match.")] = "*",
     as_json: JsonOption = False,
 ) -> None:
-    """Run every library scenario: published claim, expectation, measured, verdict, and the figure of the open loop."""
+    """Run every library scenario: claim, expectation, measured figure, verdict, and the figure of the open loop."""
     from scenarios.campaign.single import beside
 
     chosen = [get(name) for name in ids() if fnmatch.fnmatch(name, only)]
@@ -208,16 +104,21 @@ def gallery(
 def sweep(
     file: Annotated[Path, typer.Argument(help="Campaign in TOML.")],
     workers: Annotated[
-        int | None, typer.Option(help="Processes of this machine, 1 to 1024; as many as it has processors.")
+        int | None, typer.Option(help="Processes of this machine, 1 to 1024; without it, as many as it has processors.")
     ] = None,
     scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler instead, such as tcp://host:8786.")
+        str | None,
+        typer.Option(
+            metavar="ADDRESS", help="Address of a Dask scheduler in place of processes, such as tcp://host:8786."
+        ),
     ] = None,
-    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Where results go; sweeps/<id> if not given.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Folder of the results; without it, sweeps/ID.")
+    ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Continue the campaign in the folder.")] = False,
     units: UnitOption = None,
 ) -> None:
-    """Run a campaign: 0 every run was carried out, 1 some could not be, 2 invalid input."""
+    """Run a campaign; exit code 0: every run was carried out, 1: some were not, 2: invalid input."""
     from scenarios.campaign.campaign import Stopped
     from scenarios.campaign.executor import collect_seldom
     from server.cli.sweep import carry_out, read_sweep
@@ -276,13 +177,51 @@ def bench(as_json: JsonOption = False) -> None:
         say(text)
 
 
+@app.command(name="catalog")
+@plainly
+def blocks(
+    family: Annotated[str | None, typer.Argument(help="Only this family.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """List every block: parameters with unit, range, default, meaning, equations."""
+    cards = catalog(family)
+    if as_json:
+        say_json([card.model_dump() for card in cards])
+        return
+    for card in cards:
+        _show(card)
+        say()
+
+
+def _show(card: BlockCard) -> None:
+    """Print a block for people."""
+    say(f"{card.family}/{card.name}: {card.title}")
+    say(f"  {card.summary}")
+    for weakness in card.weaknesses:
+        say(f"  Known weakness: {weakness}")
+    for equation in card.equations:
+        say(f"  {equation.label}: {equation.latex}" + (f"   [{equation.source}]" if equation.source else ""))
+    for entry in card.parameters:
+        bounds = (entry.minimum, entry.maximum)
+        limits = " .. ".join("" if bound is None else format_short(bound, "", 6) for bound in bounds)
+        live = "live" if entry.live else "at reset"
+        allowed = (
+            f" one of {', '.join(entry.choices)}" if entry.choices else f" [{limits}]" if limits.strip(" .") else ""
+        )
+        default = (
+            "auto" if entry.default is None else entry.default if not isinstance(entry.default, list | dict) else "..."
+        )
+        say(f"    {entry.name} = {default} {unit_text(entry.unit)}{allowed} ({live}): {entry.meaning}")
+
+
 @app.command()
 @plainly
 def serve(
     host: Annotated[
-        str | None, typer.Option(help="Address to listen on; anything but loopback needs a token or --classroom.")
+        str | None,
+        typer.Option(help="Address on which the server listens; beyond this machine it needs a token or --classroom."),
     ] = None,
-    port: Annotated[int | None, typer.Option(help="Port to listen on; 0 for any free one.")] = None,
+    port: Annotated[int | None, typer.Option(help="Port on which the server listens; 0 chooses a free one.")] = None,
     data: Annotated[Path | None, typer.Option(help="Folder for database and recordings.")] = None,
     classroom: Annotated[
         bool, typer.Option("--classroom", help="Serve a class on this network: students join by a code, without TLS.")
@@ -290,7 +229,7 @@ def serve(
     open_page: Annotated[bool, typer.Option("--open", help="Open the page in a browser.")] = False,
     units: UnitOption = None,
 ) -> None:
-    """Serve the dashboard."""
+    """Serve the page."""
     from server.cli.serve import serve as start
     from server.settings import load_settings
 
@@ -301,7 +240,7 @@ def serve(
 @app.command()
 @plainly
 def doctor(as_json: JsonOption = False) -> None:
-    """Show effective settings and where each comes from, versions and the state of the kernel cache."""
+    """Show the effective settings with their sources, versions, and the state of the kernel cache."""
     from server.cli.doctor import examine
 
     report = examine()

@@ -22,7 +22,7 @@ from server.security.identity import fits_header
 from server.security.privacy import keep_private
 from server.settings import ANY_IPV4, ANY_IPV6, Settings
 from server.store.lock import lock
-from server.stream.line import Line
+from server.stream.line import WebSocketLine
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
@@ -139,7 +139,7 @@ def make_server(settings: Settings, app: FastAPI, address: str = "", notice: str
         app,
         loop="uvloop",
         http=Connection,
-        ws=Line,
+        ws=WebSocketLine,
         ws_max_size=settings.message_limit_bytes,
         ws_per_message_deflate=False,
         ws_ping_interval=20.0,
@@ -174,19 +174,22 @@ def serve(settings: Settings) -> None:
         try:
             keep_private(settings.data)
             stack.enter_context(lock(settings.data, "data"))
+            if settings.database_url:
+                from server.store.database import FILE, check_left_behind
+
+                check_left_behind(settings.data / FILE)
             gc.disable()  # loading makes many objects and no garbage; `startup` turns it on again
             from server.app import create_app  # this import loads everything; wrong settings are reported before it
 
             app = create_app(settings)
-            app.state.service.shared.migrate()
-            app.state.service.shared.claim(settings.shard)
+            app.state.service.database.migrate()
+            app.state.service.database.claim()
         except OSError as error:
             raise InputError(f"the data folder {settings.data} cannot be used: {error.strerror}", "data") from None
         host = f"[{settings.host}]" if ":" in settings.host else settings.host
         shown = LOOPBACK if settings.classroom or is_everywhere else host
         page = settings.public_origin or f"http://{shown}:{port}"
-        here = f"shard={settings.shard}&" if settings.shard else ""
-        address = f"{page}/?{here}token={quote(app.state.identity.token, safe='')}"
+        address = f"{page}/?token={quote(app.state.identity.token, safe='')}"
         notice = ""
         if settings.classroom:
             from server.classroom import addresses

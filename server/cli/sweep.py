@@ -16,7 +16,6 @@ from core.errors import InputError
 from core.nesting import read_toml
 from scenarios.campaign.campaign import Campaign, Stopped
 from scenarios.campaign.check import check
-from scenarios.campaign.cluster import check_address
 from scenarios.campaign.executor import LOST, Processes
 from scenarios.campaign.parts import ParquetParts, write_runs
 from scenarios.campaign.survey import Survey, listed
@@ -48,7 +47,7 @@ FEW_LISTED, PIECES = 750, 8
 
 
 @dataclass(frozen=True)
-class Ended:
+class CampaignEnd:
     """How a campaign ended."""
 
     done: int
@@ -90,7 +89,7 @@ def carry_out(
     workers: int,
     scheduler: str,
     on_progress: Callable[[int, int], None],
-) -> Ended:
+) -> CampaignEnd:
     """Run the missing runs of a campaign and write its results.
 
     Raises
@@ -102,6 +101,8 @@ def carry_out(
         When no worker computes any more, or nothing can be written; the table has the runs that are done.
     """
     if scheduler:
+        from scenarios.campaign.cluster import check_address
+
         check_address(scheduler)
     place, named = folder / TABLE, folder / CAMPAIGN
     if any(path.exists() for path in (place, named, folder / REPORT)) and not resume:
@@ -143,7 +144,7 @@ def carry_out(
         processes.shutdown()
         database.close()
         held.close()
-    return Ended(campaign.done, campaign.total, failed, warnings, folder)
+    return CampaignEnd(campaign.done, campaign.total, failed, warnings, folder)
 
 
 def write(sweep: Sweep, parts: ParquetParts, folder: Path, processes: Processes) -> tuple[int, list[str]]:

@@ -17,6 +17,9 @@ from scenarios.own import with_units
 from scenarios.reading import read_text
 from scenarios.schema import Scenario
 
+AssignOption = Annotated[
+    list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Any field of the scenario.")
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document.")]
 
 

@@ -18,7 +18,7 @@ from server.cli.terminal import JsonOption, plainly, say, say_json
 
 UnitOption = Annotated[
     list[Path] | None,
-    typer.Option("--unit", metavar="FILE", help="A unit of your own, named after its file. May be repeated."),
+    typer.Option("--unit", metavar="FILE", help="A unit of your own, with the name of its file. May be repeated."),
 ]
 
 
@@ -30,7 +30,7 @@ def check(
     ],
     as_json: JsonOption = False,
 ) -> None:
-    """Check units of your own: 0 all can be used, each with its cost per sample; 2 one cannot, with line and column."""
+    """Check your own units; exit code 0: all are usable, with the cost of a sample, 2: one is not, with its place."""
     found = [row for one in given for row in (_of_package(one) if one in packages() else [_of_file(Path(one))])]
     if as_json:
         say_json(found)

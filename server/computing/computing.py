@@ -16,7 +16,7 @@ from core.errors import InputError
 from core.own.admission import terms
 from scenarios.campaign.executor import Processes
 from server.computing.asker import asker
-from server.computing.limits import MOST_BYTES, Done, within
+from server.computing.limits import MOST_BYTES, EndedWork, within
 from server.errors import ApiError
 from server.security.limits import Buckets
 
@@ -111,7 +111,7 @@ class Computing:
         return done.value  # type: ignore[no-any-return]
 
 
-async def _done(worker: Processes, most_s: float, function: Callable[..., Any], *arguments: Any) -> Done:
+async def _done(worker: Processes, most_s: float, function: Callable[..., Any], *arguments: Any) -> EndedWork:
     """Call a function in a process; end the process if the request is cancelled."""
     too_much = InputError(
         f"takes more than {most_s:g} s of processor time or {MOST_BYTES >> 20} MB of memory", code="too_much"
@@ -147,5 +147,5 @@ async def _start(worker: Processes) -> None:
 
 def load() -> None:
     """Load the code of all computations, in the process that computes."""
-    for name in ("aliases", "devices", "experiments", "scenarios", "theory", "units"):
+    for name in ("devices", "diagnosers", "experiments", "scenarios", "theory", "units"):
         import_module(f"server.api.{name}")

@@ -21,7 +21,7 @@ _limited: list[bool] = []
 
 
 @dataclass(frozen=True)
-class Done:
+class EndedWork:
     """A piece of work that has ended.
 
     Parameters
@@ -39,7 +39,7 @@ class Done:
     refusal: tuple[str, str, str, str] | None = None
 
 
-def within(most_s: float, terms: Terms, function: Callable[..., Any], *arguments: Any) -> Done:
+def within(most_s: float, terms: Terms, function: Callable[..., Any], *arguments: Any) -> EndedWork:
     """Call a function; this process ends when that takes more processor time than it may.
 
     Raises
@@ -62,7 +62,7 @@ def within(most_s: float, terms: Terms, function: Callable[..., Any], *arguments
         raise RuntimeError(traceback.format_exc()) from None  # any other might not reach the server whole
     finally:
         _end_after(0.0)
-    return Done(value, time.process_time() - begun, refusal)
+    return EndedWork(value, time.process_time() - begun, refusal)
 
 
 def _end_after(seconds: float) -> None:

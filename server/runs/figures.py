@@ -4,6 +4,8 @@ Figures built into an image or a wheel are in `BUILT`. The others are made when 
 in sight first, by the worker processes of headless runs at their low priority, one after the other: a run that a person
 starts waits for one figure at most. Results in the table of runs are not computed again, and new ones are added to it.
 A scenario that fails, or a full disk, gives one line in the log and stops nothing.
+
+``python -m server.runs.figures`` makes the figures of the whole library, for an image or a wheel.
 """
 
 from __future__ import annotations
@@ -11,15 +13,17 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
+import multiprocessing
 from collections.abc import Awaitable, Callable
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from scenarios.campaign.campaign import Campaign
-from scenarios.campaign.single import single
-from scenarios.library import is_demo, library
+from scenarios.campaign.single import compared, single
+from scenarios.library import get, ids, is_demo, library
 from scenarios.report.traces import write_json
 from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
@@ -35,7 +39,7 @@ BUILT = Path(__file__).resolve().parent / "built_figures"
 
 
 @dataclass(frozen=True)
-class Figure:
+class ScenarioFigure:
     """The result of one scenario: its summary, and its picture as SVG."""
 
     key: str
@@ -43,7 +47,7 @@ class Figure:
     svg: str
 
 
-class Figures:
+class ScenarioFigures:
     """Makes the figures of the library that are not there yet, and keeps all of them at hand.
 
     Parameters
@@ -62,7 +66,7 @@ class Figures:
         self._first: list[str] = []
         self._reading = asyncio.Lock()
         self._ready: Callable[[], Awaitable[None]] | None = None
-        self.made: dict[str, Figure] = {}
+        self.made: dict[str, ScenarioFigure] = {}
         self.failed: dict[str, str] = {}
         self.problem = ""
 
@@ -107,9 +111,9 @@ class Figures:
             name = next((name for name in self._first if name in missing), next(iter(missing)))
             scenario = missing.pop(name)
             try:
-                figure = Figure(self.keys[name], **await self._draw(scenario))
+                figure = ScenarioFigure(self.keys[name], **await self._draw(scenario))
                 self.made[scenario.id] = figure
-                await asyncio.to_thread(self._keep, figure)
+                await asyncio.to_thread(keep, self._folder, figure)
             except OSError as error:
                 self._tell(f"the figure of {scenario.id} could not be kept: {error.strerror or error}")
             except Exception as error:
@@ -137,7 +141,7 @@ class Figures:
             for folder in (self._folder, BUILT):
                 try:
                     kept = json.loads((folder / f"{key}.json").read_text("utf-8"))
-                    self.made[name] = Figure(key, kept["summary"], kept["svg"])
+                    self.made[name] = ScenarioFigure(key, kept["summary"], kept["svg"])
                     break
                 except (OSError, ValueError, KeyError, TypeError):  # missing, or not whole: it is made again
                     continue
@@ -145,16 +149,13 @@ class Figures:
         missing.sort(key=lambda scenario: (not is_demo(scenario.id), cost(scenario)))
         return {scenario.id: scenario for scenario in missing}
 
-    def _keep(self, figure: Figure) -> None:
-        keep(self._folder, figure)
-
 
 def key_of(scenario: Scenario) -> str:
     """Return the key of a figure: the id of the run with the scenario's own seed."""
     return identify(scenario, [scenario.spec.seed])[1][:32]
 
 
-def keep(folder: Path, figure: Figure) -> None:
+def keep(folder: Path, figure: ScenarioFigure) -> None:
     """Write a figure into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     write_json(folder / f"{figure.key}.json", {"summary": figure.summary, "svg": figure.svg})
@@ -163,3 +164,30 @@ def keep(folder: Path, figure: Figure) -> None:
 def cost(scenario: Scenario) -> int:
     """Return about how long a scenario takes: its ticks. Most studies take a moment."""
     return 0 if scenario.study is not None else scenario.samples or DEFAULT_SAMPLES
+
+
+def build(name: str, folder: Path = BUILT) -> None:
+    """Make the figure of one scenario, unless the folder has it."""
+    scenario = get(name)
+    seed = scenario.spec.seed
+    key = key_of(scenario)
+    if (folder / f"{key}.json").exists():
+        return
+    others = [[outcome.model_dump_json() for outcome in outcomes] for outcomes in compared(scenario, [seed]).values()]
+    document, _ = identify(scenario, [seed])
+    keep(folder, ScenarioFigure(key, **draw(document, seed, [[], *others])[1]))
+
+
+def main() -> None:
+    """Make all figures on all processors, and delete the figures of other versions."""
+    keys = {f"{key_of(scenario)}.json" for scenario in library()}
+    for path in BUILT.glob("*.json"):
+        if path.name not in keys:
+            path.unlink()
+    ordered = sorted(ids(), key=lambda name: -cost(get(name)))
+    with ProcessPoolExecutor(mp_context=multiprocessing.get_context("forkserver")) as pool:
+        print(f"figures made: {len(list(pool.map(build, ordered)))}")
+
+
+if __name__ == "__main__":
+    main()

@@ -14,10 +14,9 @@ from scenarios.campaign.campaign import Campaign
 from scenarios.campaign.single import single
 from scenarios.key import content_hash, run_key
 from scenarios.schema import Scenario
-from server.errors import ApiError, not_found
-from server.runs.length import check_length
-from server.runs.listing import Run, fresh
-from server.runs.queue import Requested
+from server.errors import not_found
+from server.runs.listing import Run
+from server.runs.queue import Requested, check_length
 from server.runs.worker import STEM, Keep
 from server.store.models import RequestRow
 
@@ -45,13 +44,10 @@ class Jobs(Requested[Run]):
         ApiError
             If too many wait, or the run is too long, or the same run is under way and keeps fewer signals.
         """
-        if self._settings.run_workers == 0:
-            raise ApiError(409, "runs_disabled", "this server takes no headless runs (run_workers = 0)")
+        self.check_enabled()
         await asyncio.to_thread(check_length, scenario, len(seeds), self._settings, "this run", "scenario")
         document, key = identify(scenario, seeds)
-        row = fresh(
-            id=key[:32],
-            kind=self.kind,
+        return await self.enter(
             key=key,
             name=scenario.id,
             scenario_id=scenario.id,
@@ -62,8 +58,6 @@ class Jobs(Requested[Run]):
             everything=everything,
             runs=len(seeds),
         )
-        found, is_new = await self._queue.start(row)
-        return self.shown(found), is_new
 
     async def campaign(self, row: RequestRow, on_progress: Callable[[int, int], None]) -> Campaign:
         """Return a run as a campaign; it is carried out on this machine."""
@@ -84,7 +78,7 @@ class Jobs(Requested[Run]):
         return {row.id: self.shown(row) for row in await self._requests.some(self.kind, run_ids)}
 
     async def traces(self, run_ids: list[str]) -> tuple[list[Run], list[Path]]:
-        """Return runs, and where their traces are if they have any."""
+        """Return runs, and the path of the trace of each; a run without a trace has no file there."""
         runs = [await self.get(run_id) for run_id in run_ids]
         return runs, [(self._requests.folders[self.kind] / run.id / STEM).with_suffix(".parquet") for run in runs]
 
@@ -93,7 +87,6 @@ class Jobs(Requested[Run]):
         row = await self._requests.get(self.kind, run_id)
         run, path = self.shown(row), (self._requests.folders[self.kind] / row.id / STEM).with_suffix(ending)
         if run.state != "done" or not path.is_file():
-            self._requests.check_here(row)
             raise not_found(f"{ending[1:]} file of run", run_id, "a run has its files once it is done")
         return run, path
 

@@ -10,15 +10,14 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 from sqlalchemy import Select, delete, or_, select, update
-from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session, defer
 
 from core.errors import InputError
 from scenarios.key import code_version
-from server.errors import ApiError, Elsewhere, not_found
+from server.errors import ApiError, not_found
 from server.store.base import now
 from server.store.database import Database
-from server.store.models import RequestRow, of_process
+from server.store.models import RequestRow
 
 ACTIVE = ("queued", "running")
 AT_ONCE = 500
@@ -94,12 +93,10 @@ class Requests:
         Where it is.
     data : Path
         The data folder, in which each run and each campaign has a folder of its own.
-    shard : str
-        Letter of this process, where several share the table: each carries its own requests out.
     """
 
-    def __init__(self, database: Database, data: Path, shard: str = "") -> None:
-        self._database, self._shard = database, shard
+    def __init__(self, database: Database, data: Path) -> None:
+        self._database = database
         self.folders: dict[Kind, Path] = {
             "run": data / "runs",
             "campaign": data / "sweeps",
@@ -116,10 +113,9 @@ class Requests:
         ApiError
             If such a run waits or is under way.
         """
-        row.shard = self._shard
 
         def work(session: Session) -> RequestRow | None:
-            known = session.get(RequestRow, row.id, with_for_update=True)
+            known = session.get(RequestRow, row.id)
             lacks = known is not None and row.everything and not known.everything
             if known is not None and lacks and known.state in ACTIVE:
                 text = f"the same run is {known.state} and keeps fewer signals; ask again once it has ended"
@@ -128,16 +124,11 @@ class Requests:
                 known.label = row.label or known.label
                 return known
             row.label = row.label or (known.label if known is not None else "")
-            if has_room and known is None:
-                session.add(row)  # which another process may have done meanwhile
-            elif has_room:
+            if has_room:
                 session.merge(row)
             return None
 
-        try:
-            return await self._database.run(work)
-        except IntegrityError:  # another process got the same request at the same moment
-            return await self._database.run(work)
+        return await self._database.run(work)
 
     async def all(self, kind: Kind, wanted: RunFilter) -> list[RequestRow]:
         """List the selected rows, newest first, without their documents."""
@@ -148,26 +139,9 @@ class Requests:
         return await self._rows(select(RequestRow).where(RequestRow.id.in_(ids), RequestRow.kind == kind))
 
     async def recover(self) -> list[RequestRow]:
-        """Return the waiting and active rows of this process, in the order of their requests.
-
-        The first process that starts with a letter takes over the requests of the time before letters.
-        """
-        if self._shard:
-            adopted = update(RequestRow).where(RequestRow.shard == "").values(shard=self._shard)
-            await self._database.run(lambda session: session.execute(adopted))
-        active = select(RequestRow).where(RequestRow.state.in_(ACTIVE), of_process(self._shard))
+        """Return the waiting and active rows, in the order of their requests."""
+        active = select(RequestRow).where(RequestRow.state.in_(ACTIVE))
         return await self._rows(active.order_by(RequestRow.created, RequestRow.id))
-
-    def check_here(self, row: RequestRow) -> None:
-        """Redirect a caller to the process that carries a request out and has its files, if that is another one.
-
-        Raises
-        ------
-        Elsewhere
-            With the letter of that process.
-        """
-        if self._shard and row.shard != self._shard:
-            raise Elsewhere(row.shard)
 
     async def get(self, kind: Kind, row_id: str) -> RequestRow:
         """Return one, or refuse with 404."""
@@ -183,35 +157,30 @@ class Requests:
         """Give a run or a campaign a name; an empty one takes it away."""
         name = clean_label(label)
 
-        def named(session: Session) -> RequestRow | None:
+        def named(session: Session) -> RequestRow:
             row = session.get(RequestRow, row_id)
-            if row is not None and row.kind == kind:
-                row.label = name
-                return row
-            return None
+            if row is None or row.kind != kind:
+                raise not_found(kind, row_id)
+            row.label = name
+            return row
 
-        row = await self._database.run(named)
-        if row is None:
-            raise not_found(kind, row_id)
-        return row
+        return await self._database.run(named)
 
     async def remove(self, kind: Kind, ids: Sequence[str] | None) -> int:
-        """Remove some that have ended, or all of this process if none is named; return how many.
+        """Remove some that have ended, or all if none is named; return how many.
 
         If one of them cannot be removed, none is.
 
         Results stay, for others share them.
         """
         if ids is None:
-            ended = (RequestRow.kind == kind, RequestRow.state.not_in(ACTIVE), of_process(self._shard))
-            query = select(RequestRow.id).where(*ended)
+            query = select(RequestRow.id).where(RequestRow.kind == kind, RequestRow.state.not_in(ACTIVE))
             ids = await self._database.run(lambda session: list(session.scalars(query)))
         else:
             rows = {row.id: row for row in await self.some(kind, ids)}
             for row_id in ids:
                 if row_id not in rows:
                     raise not_found(kind, row_id)
-                self.check_here(rows[row_id])
                 if (state := rows[row_id].state) in ACTIVE:
                     raise ApiError(409, "conflict", f"the {kind} {row_id} is {state}; cancel it first", "ids")
 
@@ -234,7 +203,7 @@ class Requests:
 def fresh(**values: Any) -> RequestRow:
     """Return a request that waits from now on."""
     return RequestRow(
-        **values,
+        **{"id": values["key"][:32], "label": "", "seeds": None, **values},
         state="queued",
         version=code_version(),
         done=0,

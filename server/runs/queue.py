@@ -26,9 +26,11 @@ from core.errors import InputError
 from scenarios.campaign.campaign import ATTEMPTS, Campaign, Stopped
 from scenarios.campaign.executor import Processes
 from scenarios.key import code_version
+from scenarios.run import DEFAULT_SAMPLES
+from scenarios.schema import Scenario
 from server.errors import ApiError, body_of
 from server.metrics import Metrics
-from server.runs.listing import Kind, Requests, RunFilter, change
+from server.runs.listing import Kind, Requests, RunFilter, change, fresh
 from server.runs.worker import NICE, NotKept
 from server.settings import Settings
 from server.store.base import now
@@ -65,6 +67,21 @@ class Requested(ABC, Generic[Shown]):
     async def campaign(self, row: RequestRow, on_progress: Callable[[int, int], None]) -> Campaign:
         """Return a request as a campaign."""
 
+    @property
+    def has_workers(self) -> bool:
+        """Whether there are processes for such requests."""
+        return self._settings.run_workers > 0
+
+    def check_enabled(self) -> None:
+        """Refuse all requests of a server without processes for them."""
+        if not self.has_workers:
+            raise ApiError(409, "runs_disabled", "this server takes no headless runs (run_workers = 0)")
+
+    async def enter(self, **values: Any) -> tuple[Shown, bool]:
+        """Queue a request, or return the same one if it exists; true when it is new. A name it is given is its name."""
+        found, is_new = await self._queue.start(fresh(kind=self.kind, **values))
+        return self.shown(found), is_new
+
     async def ended(self, row: RequestRow, done: int) -> None:
         """Complete the files of an ended request with a number of finished runs."""
 
@@ -94,6 +111,14 @@ class Requested(ABC, Generic[Shown]):
         return await self.get(row_id)
 
 
+def check_length(scenario: Scenario, seeds: int, settings: Settings, what: str, field: str) -> None:
+    """Refuse a run with so many seeds that it has too many ticks for this server; with its name and the field."""
+    ticks = seeds * (scenario.samples or DEFAULT_SAMPLES)
+    if ticks > settings.max_run_ticks:
+        text = f"{what} has {ticks} ticks, the limit is {settings.max_run_ticks} (max_run_ticks)"
+        raise ApiError(422, "too_long", text, field)
+
+
 class Queue:
     """Carries requests out, each in its turn.
 
@@ -112,7 +137,7 @@ class Queue:
         workers = max(1, settings.run_workers)
         self.kinds: dict[str, Requested[Any]] = {}
         self.results, self.processes = Results(database), Processes(workers, NICE)
-        self.requests = Requests(database, settings.data, settings.shard)
+        self.requests = Requests(database, settings.data)
         self._turns = {
             "run": asyncio.Semaphore(workers),
             "campaign": asyncio.Semaphore(1),
@@ -148,7 +173,6 @@ class Queue:
         """
         row, task = await self.requests.get(kind, row_id), self._tasks.get(row_id)
         if task is None:
-            self.requests.check_here(row)
             raise ApiError(409, "conflict", f"the {kind} is {row.state}; it cannot be cancelled any more")
         self._cancel(row_id, task)
         await asyncio.wait([task], timeout=CANCEL_S)
@@ -162,10 +186,10 @@ class Queue:
     async def recover(self) -> None:
         """Continue the work that the end of the server interrupted; fail requests that were begun too often."""
         for row in await self.requests.recover():
-            text, has_workers = "", self._settings.run_workers or (row.kind == "campaign" and self._settings.scheduler)
+            text = ""
             if row.version != code_version():
                 text = "was begun by another version of the code; start it again"
-            elif row.attempts >= ATTEMPTS or not has_workers:
+            elif row.attempts >= ATTEMPTS or not self.kinds[row.kind].has_workers:
                 text = f"the server stopped before this {row.kind} was done, {row.attempts} times"
             if text:
                 await self._end(row.id, "aborted", error={"code": "aborted", "message": text})
@@ -252,10 +276,10 @@ class Queue:
     async def _end(self, row_id: str, state: str, **values: Any) -> None:
         """Note how a request ended, as soon as the database can be written."""
         self._metrics.runs.labels(state).inc()
-        values = {"state": state, "finished": now(), **values}
+        ended = now()
         for tries in itertools.count():
             try:
-                await self.requests.update(row_id, **values)
+                await self.requests.update(row_id, state=state, finished=ended, **values)
                 return
             except DBAPIError as error:
                 if self._is_closing:

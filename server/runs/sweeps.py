@@ -16,10 +16,8 @@ from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
 from scenarios.key import code_version, content_hash, run_key
 from server.errors import ApiError
-from server.runs.length import check_length
-from server.runs.listing import fresh
-from server.runs.queue import Queue, Requested
-from server.runs.surveys import Surveys
+from server.runs.queue import Queue, Requested, check_length
+from server.runs.surveys import CampaignStanding, Surveys
 from server.settings import Settings
 from server.store.database import Database
 from server.store.models import RequestRow
@@ -64,6 +62,11 @@ class Sweeps(Requested[SweepRun]):
         super().__init__(queue, settings)
         self._surveys = Surveys(database, self._requests.folders[self.kind])
 
+    @property
+    def has_workers(self) -> bool:
+        """Whether there are processes, or a cluster."""
+        return super().has_workers or bool(self._settings.scheduler)
+
     async def start(self, document: dict[str, Any], label: str = "") -> tuple[SweepRun, bool]:
         """Queue a campaign, or return the same one if it exists; true when it is new. A name it is given is its name.
 
@@ -75,35 +78,29 @@ class Sweeps(Requested[SweepRun]):
             If too many wait, or it has too many runs, or one of them is too long.
         """
         settings = self._settings
-        if settings.run_workers == 0 and not settings.scheduler:
-            raise ApiError(409, "runs_disabled", "this server takes no headless runs (run_workers = 0)")
+        self.check_enabled()
         sweep = await asyncio.to_thread(Sweep, document)
         if len(sweep) > settings.max_sweep_runs:
             text = f"this campaign has {len(sweep)} runs, the limit is {settings.max_sweep_runs} (max_sweep_runs)"
             raise ApiError(422, "too_long", text, "sweep")
         await asyncio.to_thread(lambda: check_length(check(sweep), 1, settings, "a run of this campaign", "sweep"))
         key = run_key(content_hash({"sweep": document}))
-        row = fresh(
-            id=key[:32],
-            kind=self.kind,
+        return await self.enter(
             key=key,
             name=sweep.head.id,
             scenario_id=sweep.base.id,
             title=sweep.head.title,
             label=label,
             document=json.loads(json.dumps(document, default=str)),
-            seeds=None,
             runs=len(sweep),
         )
-        found, is_new = await self._queue.start(row)
-        return self.shown(found), is_new
 
     async def campaign(self, row: RequestRow, on_progress: Callable[[int, int], None]) -> Campaign:
         """Return a campaign as it is carried out: on the cluster if there is one."""
         sweep = await asyncio.to_thread(Sweep, row.document)
         scheduler = self._settings.scheduler
         processes = None if scheduler else self._queue.processes
-        follow = self._surveys.follow(row.id, row.document)
+        follow = self._surveys.follow(CampaignStanding.of(row, 0, True))
 
         def progress(done: int, total: int) -> None:
             on_progress(done, total)
@@ -113,7 +110,7 @@ class Sweeps(Requested[SweepRun]):
 
     async def ended(self, row: RequestRow, done: int) -> None:
         """Have the files of a campaign written to the end."""
-        self._surveys.write(row.id, row.document, done, False)
+        self._surveys.write(CampaignStanding.of(row, done, False))
 
     async def document(self, sweep_id: str) -> dict[str, Any]:
         """Return the document that a campaign was requested with."""
@@ -121,8 +118,7 @@ class Sweeps(Requested[SweepRun]):
 
     async def read(self, sweep_id: str, reader: Callable[[Survey], T]) -> T:
         """Call a reader on the results so far."""
-        row = await self._readable(sweep_id)
-        return await self._surveys.read(sweep_id, row.document, *self._progress(row), reader)
+        return await self._surveys.read(self._standing(await self._readable(sweep_id)), reader)
 
     async def surveyed(self, sweep_id: str, reader: Callable[[Survey], T]) -> tuple[SweepRun, T]:
         """Call a reader, and return the campaign too; if the campaign has ended, its results are complete."""
@@ -133,12 +129,16 @@ class Sweeps(Requested[SweepRun]):
     async def report(self, sweep_id: str) -> str:
         """Return the report of the results so far."""
         row = await self._readable(sweep_id)
-        return await self._surveys.report(sweep_id, row.document, *self._progress(row), row.label)
+        return await self._surveys.report(self._standing(row), row.label)
 
-    def _progress(self, row: RequestRow) -> tuple[int, bool]:
-        """Return how many runs are done, and whether there may be more soon."""
+    def _standing(self, row: RequestRow) -> CampaignStanding:
+        """Return how far a campaign is."""
         campaign = self._queue.campaigns.get(row.id)
-        return (row.done, False) if campaign is None else (campaign.done, True)
+        return (
+            CampaignStanding.of(row, row.done, False)
+            if campaign is None
+            else CampaignStanding.of(row, campaign.done, True)
+        )
 
     async def _readable(self, sweep_id: str) -> RequestRow:
         row = await self._requests.get(self.kind, sweep_id)

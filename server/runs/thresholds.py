@@ -15,10 +15,7 @@ from scenarios.campaign.halving import Threshold, ThresholdGoal
 from scenarios.campaign.threshold import Search
 from scenarios.key import content_hash, run_key
 from scenarios.schema import Scenario
-from server.errors import ApiError
-from server.runs.length import check_length
-from server.runs.listing import fresh
-from server.runs.queue import Requested
+from server.runs.queue import Requested, check_length
 from server.store.models import RequestRow
 
 
@@ -50,27 +47,20 @@ class Thresholds(Requested[ThresholdRun]):
         ApiError
             If too many wait, or it is too long.
         """
-        if self._settings.run_workers == 0:
-            raise ApiError(409, "runs_disabled", "this server takes no headless runs (run_workers = 0)")
+        self.check_enabled()
         await asyncio.to_thread(Search, scenario, wanted, self._queue.results)
         check_length(scenario, wanted.points, self._settings, "the grid", "points")
         document = json.loads(json.dumps(scenario.document, default=str))
         asked = {"scenario": document, "wanted": wanted.model_dump()}
         key = run_key(content_hash({"threshold": {**asked, "seed": scenario.spec.seed}}))
-        row = fresh(
-            id=key[:32],
-            kind=self.kind,
+        return await self.enter(
             key=key,
             name=wanted.path[:64],
             scenario_id=scenario.id,
             title=scenario.head.title,
-            label="",
             document=asked,
-            seeds=None,
             runs=wanted.points,
         )
-        found, is_new = await self._queue.start(row)
-        return self.shown(found), is_new
 
     async def campaign(self, row: RequestRow, on_progress: Callable[[int, int], None]) -> Campaign:
         """Return a search as it is carried out, on this machine."""

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from scenarios.campaign.campaign import Others
-from scenarios.campaign.outcome import Outcome, outcome_of
+from scenarios.campaign.outcome import RunOutcome, outcome_of
 from scenarios.campaign.signs import tell
 from scenarios.campaign.single import counterparts, summary
 from scenarios.run import DEFAULT_SAMPLES, RunResult, build, run
@@ -41,7 +41,7 @@ class Keep:
     most_bytes: int
     everything: bool = False
 
-    def __call__(self, document: dict[str, Any], seed: int, others: Others) -> tuple[Outcome, dict[str, Any]]:
+    def __call__(self, document: dict[str, Any], seed: int, others: Others) -> tuple[RunOutcome, dict[str, Any]]:
         """Run a scenario; return its outcome, and the summary of all its seeds, with counterparts.
 
         Raises
@@ -78,7 +78,7 @@ class Keep:
         return runs[0], told
 
 
-def draw(document: dict[str, Any], seed: int, others: Others) -> tuple[Outcome, dict[str, Any]]:
+def draw(document: dict[str, Any], seed: int, others: Others) -> tuple[RunOutcome, dict[str, Any]]:
     """Run a scenario; return its outcome, and its summary with its figure. Nothing else of it is kept."""
     from scenarios.report.figure import figure
     from scenarios.report.svg import CARD, paint
@@ -88,9 +88,9 @@ def draw(document: dict[str, Any], seed: int, others: Others) -> tuple[Outcome, 
     return runs[0], {"summary": told, "svg": paint(figure(result), CARD)}
 
 
-def _summary(result: RunResult, others: Others) -> tuple[list[Outcome], dict[str, Any]]:
+def _summary(result: RunResult, others: Others) -> tuple[list[RunOutcome], dict[str, Any]]:
     """Return the outcomes of a run, seed by seed, and their summary."""
-    rest, *beside = [[Outcome.model_validate_json(text) for text in texts] for texts in others]
+    rest, *beside = [[RunOutcome.model_validate_json(text) for text in texts] for texts in others]
     runs = [outcome_of(result), *rest]
     told = summary(result.scenario, runs, dict(zip(counterparts(result.scenario), beside, strict=True)))
     return runs, json.loads(json.dumps(told, default=str))

@@ -10,14 +10,12 @@ from pathlib import Path
 from starlette.requests import HTTPConnection
 from starlette.responses import Response
 
-from server.errors import SHARD
 from server.security.ends import is_from_this_machine
 from server.security.privacy import write_private
 from server.security.public import DIRECT, PublicOrigin
 
 TOKEN_FILE = "token"
 COOKIE_S = 30 * 86400
-SHARD_COOKIE = "combbench_shard"
 BEARER_PROTOCOL = "combbench.session."
 
 
@@ -35,13 +33,10 @@ class Identity:
         Where the page is behind a proxy.
     loopback_only : bool
         Whether the token is accepted from this machine alone; from elsewhere the right one is refused like a wrong one.
-    shard : str
-        Letter of this process, where several serve one origin: browsers that come in here are to come back here.
     """
 
-    def __init__(self, token: str, public: PublicOrigin = DIRECT, loopback_only: bool = False, shard: str = "") -> None:
+    def __init__(self, token: str, public: PublicOrigin = DIRECT, loopback_only: bool = False) -> None:
         self._token, self._public, self._loopback_only = token.encode(), public, loopback_only
-        self._shard = shard
         self.cookie = self._digest(b"combbench session")
         # A browser takes a cookie with one of these names by TLS alone, and __Host- for this host and its root alone.
         prefix = ("__Secure-" if public.prefix else "__Host-") if public.is_secure else ""
@@ -54,7 +49,7 @@ class Identity:
 
     def secret_of_link(self, link_id: str) -> str:
         """Return the secret of the session by which people without the token watch, if a link allows it."""
-        return self._shard + self._digest(f"combbench link {link_id}".encode())
+        return self._digest(f"combbench link {link_id}".encode())
 
     def give_cookie(self, response: Response) -> None:
         """Set the cookie that lets a browser come in again."""
@@ -63,12 +58,6 @@ class Identity:
     def give_session(self, response: Response, secret: str, seconds: float) -> None:
         """Set the cookie of a session that is not the teacher's."""
         self._set_cookie(response, self.session_name, secret, int(seconds))
-        self.give_shard(response)
-
-    def give_shard(self, response: Response) -> None:
-        """Set the cookie by which a proxy brings a browser back to this process; it opens nothing."""
-        if self._shard:
-            self._set_cookie(response, SHARD_COOKIE, self._shard, COOKIE_S)
 
     def _set_cookie(self, response: Response, name: str, value: str, seconds: int) -> None:
         response.set_cookie(
@@ -89,11 +78,6 @@ class Identity:
     def is_token(self, given: str) -> bool:
         """Return whether ``given`` is the token."""
         return hmac.compare_digest(given.encode(), self._token)
-
-    def is_meant(self, connection: HTTPConnection) -> bool:
-        """Whether the caller opened the page at an address that names this process."""
-        named = connection.query_params.get(SHARD, "")
-        return connection.scope["path"] == "/" and bool(named) and named == self._shard
 
     def may_use_token(self, connection: HTTPConnection) -> bool:
         """Whether the token is accepted from where the caller is."""

@@ -33,13 +33,9 @@ small { color: var(--muted) }
 STYLE_HASH = "sha256-" + b64encode(sha256(STYLE[len("<style>") : -len("</style>")].encode()).digest()).decode()
 """By which the content policy knows it."""
 
-PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
-<title>CombBench</title>
-{style}
-<main><h1>CombBench</h1>
+ABOUT = """\
 <p>A live lab for tiny comb resonators and gyroscopes etched in silicon. A simulated control board drives the device;
 you inject faults, change controllers and watch the diagnosis find out, in the browser.</p>
-{way_in}</main>
 """
 
 WITH_TOKEN = """\
@@ -59,6 +55,14 @@ OF_A_CLASS = """\
 <p>This bench serves a class. Students <a href="{join}">join with the code</a> that their teacher shows.</p>
 <p{mark}>{elsewhere}</p>
 """
+
+
+def page(heading: str, body: str, title: str = "CombBench") -> str:
+    """Build a page for a person without a session; its body is HTML."""
+    return (
+        '<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">'
+        f"<title>{html.escape(title)}</title>\n{STYLE}\n<main><h1>{html.escape(heading)}</h1>\n{body}</main>\n"
+    )
 
 
 def visitor_page(
@@ -83,11 +87,11 @@ def visitor_page(
     if not may_use_token:
         mark = WRONG if has_sent_token else ""
         way_in = OF_A_CLASS.format(mark=mark, join=join, elsewhere=html.escape(ELSEWHERE))
-        return PAGE.format(style=STYLE, way_in=why + way_in)
+        return page("CombBench", ABOUT + why + way_in)
     hidden = "".join(
         f'<input type="hidden" name="{html.escape(name)}" value="{html.escape(value)}">'
         for name, value in fields
         if name != "token"
     )
     wrong = f"<p{WRONG}>This token is not the one of this bench.</p>\n" if has_sent_token else ""
-    return PAGE.format(style=STYLE, way_in=why + WITH_TOKEN.format(hidden=hidden, wrong=wrong, join=join))
+    return page("CombBench", ABOUT + why + WITH_TOKEN.format(hidden=hidden, wrong=wrong, join=join))

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import sqlite3
 import sys
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
+FILE = "combbench.sqlite3"
+"""The database in a data folder, if none is given by address."""
 MIGRATIONS = Path(__file__).parent / "migrations"
 CLAIM = b"combben"
 """Name of the advisory lock of a server, as a number; others of the same database have other numbers."""
@@ -66,13 +69,8 @@ class Database:
         except DBAPIError as error:
             raise InputError(f"the database cannot be used: {reason_of(error)}", "database_url") from None
 
-    def claim(self, shard: str = "") -> None:
+    def claim(self) -> None:
         """Lock a PostgreSQL database for this process until `close`; the lock of the data folder protects SQLite.
-
-        Parameters
-        ----------
-        shard : str
-            Letter of the process, when others with other letters use the same database; empty: it is alone.
 
         Raises
         ------
@@ -81,19 +79,12 @@ class Database:
         """
         if self.url.startswith("sqlite"):
             return
-        locks = {CLAIM: "_shared", CLAIM + shard.encode(): ""} if shard else {CLAIM: ""}
         connection = self._engine.connect()
-        taken = (
-            connection.execute(text(f"SELECT pg_try_advisory_lock{kind}(:key)"), {"key": _number(name)}).scalar()
-            for name, kind in locks.items()
-        )
-        if all(taken):
+        if connection.execute(text("SELECT pg_try_advisory_lock(:key)"), {"key": _number(CLAIM)}).scalar():
             connection.execute(text(KEEPALIVES))
             connection.commit()  # the locks and the settings stay
             self._claim = connection
         else:
-            connection.invalidate()  # the pool would keep it, and with it a lock that was free
-            connection.close()
             connection.close()
             raise InputError(
                 "the database is in use by another server", "database_url", "stop that one, or name another database"
@@ -233,6 +224,32 @@ def make_engine(url: str) -> Engine:
         cursor.close()
 
     return engine
+
+
+def check_left_behind(file: Path) -> None:
+    """Check that no class is left out: earlier versions kept classes here in addition to a shared database.
+
+    Ids of that time began with the letter of their process, so they have one character more.
+
+    Parameters
+    ----------
+    file : Path
+        The SQLite file of a data folder that is to be used with another database.
+
+    Raises
+    ------
+    InputError
+        If it holds classes or recordings of such a process.
+    """
+    if not file.is_file():
+        return
+    marked = "SELECT id FROM recordings WHERE length(id) = 31 UNION SELECT id FROM people WHERE length(bench_id) = 13"
+    with closing(sqlite3.connect(f"{file.absolute().as_uri()}?mode=ro", uri=True)) as connection:
+        with suppress(sqlite3.OperationalError):  # no such tables
+            if connection.execute(marked).fetchone() is None:
+                return
+            text = f"{file} holds classes and recordings of a process with a letter (shard)"
+            raise InputError(text, "database_url", "leave database_url out, or choose another data folder")
 
 
 def newest_revision() -> str:

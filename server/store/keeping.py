@@ -15,7 +15,7 @@ from server.clock import Clock
 from server.errors import ApiError
 from server.settings import Settings
 from server.store.database import Database
-from server.store.models import RecordingRow, RequestRow, of_process
+from server.store.models import RecordingRow, RequestRow
 from server.store.recording import free_bytes
 
 log = logging.getLogger(__name__)
@@ -29,14 +29,14 @@ class Keeping:
 
     Parameters
     ----------
-    database, shared : Database
-        Storage of the rows of recordings and of runs; usually one and the same.
+    database : Database
+        Storage of the rows of recordings and of runs.
     settings : Settings
         Folder, quota, retention.
     """
 
-    def __init__(self, database: Database, shared: Database, settings: Settings) -> None:
-        self._database, self._shared, self._settings = database, shared, settings
+    def __init__(self, database: Database, settings: Settings) -> None:
+        self._database, self._settings = database, settings
 
     async def room(self) -> int:
         """Return the bytes that may still be written.
@@ -50,8 +50,7 @@ class Keeping:
         if free <= self._settings.disk_reserve_bytes:
             text = f"{free} bytes of the disk are free, which is its reserve (disk_reserve_bytes)"
             raise ApiError(507, "no_space", text, hint="delete recordings, or make room on the disk")
-        used = await asyncio.to_thread(self._used)
-        used += sum([await database.used_bytes() for database in {self._database, self._shared}])
+        used = await asyncio.to_thread(self._used) + await self._database.used_bytes()
         left = self._settings.quota_bytes - used
         if left <= 0:
             quota = f"the quota is {self._settings.quota_bytes} (quota_bytes)"
@@ -77,15 +76,15 @@ class Keeping:
             return 0
         before = datetime.now(UTC) - timedelta(days=self._settings.retention_days)
         count = 0
-        for database, table, folder, which in (
-            (self._database, RecordingRow, "recordings", true()),
-            (self._shared, RequestRow, "runs", (RequestRow.kind == "run") & of_process(self._settings.shard)),
+        for table, folder, which in (
+            (RecordingRow, "recordings", true()),
+            (RequestRow, "runs", RequestRow.kind == "run"),
         ):
             query = select(table.id).where(table.finished < before, which)
-            ids = await database.run(lambda session, q=query: list(session.scalars(q)))  # type: ignore[misc]
+            ids = await self._database.run(lambda session, q=query: list(session.scalars(q)))  # type: ignore[misc]
             for key in ids:
                 statement = delete(table).filter_by(id=key)
-                await database.run_or_make_room(
+                await self._database.run_or_make_room(
                     lambda session, s=statement: session.execute(s),  # type: ignore[misc]
                     partial(_remove, self._settings.data / folder, key),
                 )

@@ -24,7 +24,6 @@ MOST_CONTENT = 2_000_000
 """Most characters of the target of a link, as JSON."""
 MOST_LET_GO = 500
 """Closed idle benches that can come back; beyond, the oldest is forgotten."""
-SHOWN = ("id", "kind", "title", "note", "scenario_id", "tick", "digest", "version", "bytes", "created")
 
 
 class Link(BaseModel):
@@ -114,7 +113,7 @@ class Links:
 
     async def all(self, kind: Kind | None = None) -> list[Link]:
         """List links, newest first; without closed idle benches."""
-        columns = [getattr(LinkRow, name) for name in SHOWN]
+        columns = [getattr(LinkRow, name) for name in Link.model_fields]
         query = select(*columns).where(LinkRow.kind != "bench").order_by(LinkRow.created.desc())
         if kind is not None:
             query = query.where(LinkRow.kind == kind)

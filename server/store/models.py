@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import BigInteger, ColumnElement, Float, Integer, String, false, true
+from sqlalchemy import BigInteger, Float, Integer, String, false
 from sqlalchemy.orm import Mapped, mapped_column
 
 from server.store.base import Base, now
@@ -18,8 +18,6 @@ class RequestRow(Base):
     ----------
     kind : str
         ``run`` or ``campaign``.
-    shard : str
-        The process that carries it out and has its files, where several share the table.
     key : str
         Its key; the id is its beginning.
     name : str
@@ -44,7 +42,6 @@ class RequestRow(Base):
 
     id: Mapped[str] = mapped_column(String(32), primary_key=True)
     kind: Mapped[str] = mapped_column(String(16), index=True)
-    shard: Mapped[str] = mapped_column(String(8), default="", server_default="")
     key: Mapped[str] = mapped_column(String(64), default="", server_default="")
     state: Mapped[str] = mapped_column(String(16), index=True)
     name: Mapped[str] = mapped_column(String(200))
@@ -67,11 +64,6 @@ class RequestRow(Base):
     def progress(self) -> float:
         """Share of the runs that were done when it ended."""
         return self.done / self.runs if self.runs else 0.0
-
-
-def of_process(shard: str) -> ColumnElement[bool]:
-    """Return the condition that a process carries a request out; a process without a letter is alone and has all."""
-    return RequestRow.shard == shard if shard else true()
 
 
 class ResultRow(Base):

@@ -69,10 +69,7 @@ class ParameterSets:
 
     async def get(self, set_id: str) -> ParameterSetDetail:
         """Return a set, or refuse with 404."""
-        row = await self._database.run(lambda session: session.get(ParameterSetRow, set_id))
-        if row is None:
-            raise not_found("parameter set", set_id)
-        return ParameterSetDetail.model_validate(row)
+        return _found(await self._database.run(lambda session: session.get(ParameterSetRow, set_id)), set_id)
 
     async def rename(self, set_id: str, name: str) -> ParameterSetDetail:
         """Give a set another name."""
@@ -84,15 +81,19 @@ class ParameterSets:
                 row.name = name
             return row
 
-        row = await self._database.run(change)
-        if row is None:
-            raise not_found("parameter set", set_id)
-        return ParameterSetDetail.model_validate(row)
+        return _found(await self._database.run(change), set_id)
 
     async def delete(self, set_id: str) -> None:
         """Forget a set."""
         await self.get(set_id)
         await self._database.run(lambda session: session.execute(delete(ParameterSetRow).filter_by(id=set_id)))
+
+
+def _found(row: ParameterSetRow | None, set_id: str) -> ParameterSetDetail:
+    """Describe a set, or refuse with 404."""
+    if row is None:
+        raise not_found("parameter set", set_id)
+    return ParameterSetDetail.model_validate(row)
 
 
 def _check_name(session: Session, name: str) -> None:

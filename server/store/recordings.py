@@ -17,13 +17,12 @@ from sqlalchemy import Update, delete, select, update
 from sqlalchemy.exc import DBAPIError
 
 from scenarios.arrow import pa
-from scenarios.key import code_version
 from server.errors import ApiError, not_found
 from server.store.database import Database, reason_of
 from server.store.earlier import in_this_notation
+from server.store.experiment import THIS_VERSION
 from server.store.models import RecordingRow
 from server.store.recording import EVENTS, PART, RecordingFile, events_of, first_tick, is_readable, rescue
-from server.version import VERSION
 
 log = logging.getLogger(__name__)
 
@@ -95,12 +94,10 @@ class Recordings:
         Where the files are.
     reserve_bytes : int
         Free space that recordings must leave.
-    shard : str
-        With which their ids begin.
     """
 
-    def __init__(self, database: Database, folder: Path, reserve_bytes: int, shard: str = "") -> None:
-        self._database, self._folder, self._reserve_bytes, self._shard = database, folder, reserve_bytes, shard
+    def __init__(self, database: Database, folder: Path, reserve_bytes: int) -> None:
+        self._database, self._folder, self._reserve_bytes = database, folder, reserve_bytes
         self._unclosed: dict[str, dict[str, Any]] = {}
 
     def path(self, recording_id: str) -> Path:
@@ -110,22 +107,15 @@ class Recordings:
     async def open(self, about: About, schema: pa.Schema) -> tuple[Recording, RecordingFile]:
         """Make the row and the growing file of a new recording."""
         row = RecordingRow(
-            id=f"{self._shard}{secrets.token_hex(15)}",
-            bench_id=about.bench_id,
-            name=about.name,
-            title=about.title,
+            **{**vars(about), "scenario": json.loads(json.dumps(about.scenario, default=str))},
+            id=secrets.token_hex(15),
             state="armed" if about.condition else "recording",
-            dt_ms=about.dt_ms,
             start_tick=0,
             signals=[
                 {"name": field.name, "unit": (field.metadata or {}).get(b"unit", b"").decode()}
                 for field in list(schema)[2:]
             ],
-            scenario=json.loads(json.dumps(about.scenario, default=str)),
-            layout=about.layout,
-            seed=about.seed,
-            version=f"{VERSION} {code_version()}",
-            condition=about.condition,
+            version=THIS_VERSION,
         )
         try:
             file = await asyncio.to_thread(RecordingFile, self.path(row.id), schema, self._reserve_bytes)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 from sqlalchemy import JSON, BindParameter, Insert, Text, bindparam, cast, select
 from sqlalchemy.dialects import sqlite
@@ -28,11 +29,7 @@ class Results:
 
     def have(self, keys: Sequence[str]) -> set[str]:
         """Return the keys that have a result."""
-        keys_there: set[str] = set()
-        for start in range(0, len(keys), AT_ONCE):
-            query = select(ResultRow.key).where(ResultRow.key.in_(keys[start : start + AT_ONCE]))
-            keys_there |= set(self._database.transact(lambda session, q=query: list(session.scalars(q))))  # type: ignore[misc]
-        return keys_there
+        return {row.key for row in self._rows(keys, ResultRow.key)}
 
     def put(self, outcomes: list[tuple[str, str]]) -> None:
         """Add outcomes, JSON texts, in one transaction; existing outcomes stay as they are."""
@@ -42,12 +39,13 @@ class Results:
 
     def outcomes(self, keys: Sequence[str]) -> Iterator[tuple[str, str]]:
         """Yield the outcomes in the table as JSON texts, a few hundred at a time."""
+        yield from self._rows(keys, ResultRow.key, cast(ResultRow.outcome, Text))
+
+    def _rows(self, keys: Sequence[str], *columns: Any) -> Iterator[Any]:
+        """Yield columns of the rows with some keys."""
         for start in range(0, len(keys), AT_ONCE):
-            query = select(ResultRow.key, cast(ResultRow.outcome, Text)).where(
-                ResultRow.key.in_(keys[start : start + AT_ONCE])
-            )
-            rows = self._database.transact(lambda session, q=query: list(session.execute(q)))  # type: ignore[misc]
-            yield from ((key, outcome) for key, outcome in rows)
+            query = select(*columns).where(ResultRow.key.in_(keys[start : start + AT_ONCE]))
+            yield from self._database.transact(lambda session, q=query: list(session.execute(q)))  # type: ignore[misc]
 
     def _insert(self) -> Insert:
         """Return the statement "insert unless it exists" in the dialect of the database; it takes the JSON as it is."""

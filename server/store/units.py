@@ -58,10 +58,6 @@ class Units:
         """Whether a unit is in the folder."""
         return name in self._kept
 
-    def find(self, name: str) -> Unit | None:
-        """Return a unit, or nothing."""
-        return self._given.get(name) or self._kept.get(name)
-
     def beside(self, document: Document) -> Document:
         """Return the units that a scenario does not carry itself, as it would."""
         return beside({one.name: {"source": one.source} for one in self.all()}, document)

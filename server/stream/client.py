@@ -15,12 +15,12 @@ from collections.abc import Callable
 from pydantic import BaseModel
 
 from server.bench.bench import Seen
-from server.bench.narration import Mark
+from server.bench.narration import NarrationPlace
 from server.metrics import Sent
 from server.security.person import TEACHER, Person
 from server.stream.codec import encode
 from server.stream.cuts import SharedCuts
-from server.stream.line import Line, binary_head, text_message
+from server.stream.line import WebSocketLine, binary_head, text_message
 from server.stream.news import News
 from server.stream.panel import Panel
 from server.stream.wire import Notice, Reply
@@ -46,7 +46,7 @@ class Client:
     ----------
     line : Line
         The accepted connection.
-    session : LiveBench or BlindView
+    session : LiveBench or View
         The bench it watches, as it may be seen.
     sent : Sent
         Where frames are counted.
@@ -64,7 +64,7 @@ class Client:
 
     def __init__(
         self,
-        line: Line,
+        line: WebSocketLine,
         session: Seen,
         sent: Sent,
         news: News,
@@ -82,7 +82,7 @@ class Client:
         self.closing: tuple[int, str] | None = None
         self.closed = asyncio.Event()
         self._cursor = last_event
-        self._edition, self._said = 0, Mark()
+        self._edition, self._said = 0, NarrationPlace()
         self._outbox: deque[bytes] = deque()
         self._wants_events = self._wants_status = self._wants_frame = False
         self._frame = self._acked = 0

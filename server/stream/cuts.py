@@ -13,7 +13,7 @@ from server.bench.bench import Seen
 from server.bench.captures import Captured, CaptureSet
 from server.stream.behind import Behind
 from server.stream.codec import Moment, Picture
-from server.stream.view import View, window_of
+from server.stream.view import PictureCutter, window_of
 from server.stream.wire import Subscribe
 
 
@@ -22,16 +22,16 @@ class SharedCuts:
 
     Parameters
     ----------
-    session : LiveBench or BlindView
+    session : LiveBench or View
         The bench as those pages see it; its history may be replaced by a reset.
     """
 
     def __init__(self, session: Seen) -> None:
         self._session = session
-        self._views: WeakValueDictionary[str, View] = WeakValueDictionary()
-        self._with_behind: WeakSet[View] = WeakSet()
+        self._views: WeakValueDictionary[str, PictureCutter] = WeakValueDictionary()
+        self._with_behind: WeakSet[PictureCutter] = WeakSet()
         self._history = session.history
-        self._pictures: WeakKeyDictionary[View, Picture] = WeakKeyDictionary()
+        self._pictures: WeakKeyDictionary[PictureCutter, Picture] = WeakKeyDictionary()
         self.refresh()
 
     def refresh(self) -> int:
@@ -45,7 +45,7 @@ class SharedCuts:
         self._pictures.clear()
         return self.moment.head
 
-    def picture(self, view: View) -> Picture:
+    def picture(self, view: PictureCutter) -> Picture:
         """Return the picture of a view at this moment."""
         picture = self._pictures.get(view)
         if picture is None:
@@ -59,13 +59,13 @@ class SharedCuts:
 
     def view(
         self, spec: Subscribe, indices: list[int], trigger_index: int | None, behind: Sequence[Behind] = ()
-    ) -> View:
+    ) -> PictureCutter:
         """Return the view of a subscription: pages with the same subscription share one.
 
         People may see other benches than others do, so a view with benches behind it is its own.
         """
         captures = self._captures(spec, indices) if trigger_index is not None else None
-        fresh = View(spec, indices, trigger_index, self.moment.dt_ms, self.moment.head, behind, captures)
+        fresh = PictureCutter(spec, indices, trigger_index, self.moment.dt_ms, self.moment.head, behind, captures)
         if behind:
             self._with_behind.add(fresh)
             return fresh

@@ -1,4 +1,4 @@
-"""All open streams: the hub counts them, offers them news, and closes stalled ones."""
+"""All open streams, room by room: the hub counts them, sets their pace, offers them news, and closes stalled ones."""
 
 from __future__ import annotations
 
@@ -16,14 +16,115 @@ from server.metrics import Metrics
 from server.security.person import Person
 from server.settings import Settings
 from server.stream.client import CLOSE_SLOW, Client
-from server.stream.pace import Pace
-from server.stream.room import Room
+from server.stream.cuts import SharedCuts
+from server.stream.news import News
 from server.stream.wire import Notice, Ping
 
 log = logging.getLogger(__name__)
 
-STATUS_S = 0.2
+STATUS_S, EVENT_STATUS_S = 0.2, 0.05
+"""The status comes five times a second, and at once after an event, but not more often than this."""
+PAGES_AT_ONCE = 25
+"""Pages served before the event loop may do something else; each takes it some 20 us."""
 CLOSE_FULL, CLOSE_GONE, CLOSE_NO_BENCH, CLOSE_TURNED = 1013, 1001, 4404, 4205
+SLACK = 0.25
+"""Share of a period a picture may come early: it follows a round of the engine, and rounds have their own period."""
+
+BUSY = 0.5
+"""Share of its time the event loop may work; above it commands wait too long behind pictures."""
+
+SLOWEST_S = 0.2
+OVER_S = 0.25
+"""Time over which the work of the loop is measured."""
+
+
+class Pace:
+    """The period of pictures, chosen so that the event loop is busy for a given share of its time at most.
+
+    Pictures cost in proportion to their rate and are nearly all the work of a busy loop. The period is therefore
+    stretched by the ratio of the load of the loop to `BUSY`, and shrinks again in the same way.
+
+    Parameters
+    ----------
+    rate_hz : float
+        Pictures per second when there is time for them.
+    clock : callable
+        Seconds the calling thread has worked.
+    """
+
+    def __init__(self, rate_hz: float, clock: Callable[[], float] = time.thread_time) -> None:
+        self._wanted_s = self.period_s = 1.0 / rate_hz
+        self._clock = clock
+        self._next = 0.0
+        self._since: tuple[float, float] | None = None
+
+    def is_due(self, now: float) -> bool:
+        """Return whether it is time for a picture."""
+        return now >= self._next
+
+    def wait_s(self, now: float) -> float:
+        """Return how long it is until a picture is late: rounds that come before that are in time to send it."""
+        return max(self._next + SLACK * self.period_s - now, 0.0)
+
+    def begin(self, now: float) -> None:
+        """Note that pictures are sent now."""
+        worked = self._clock()
+        if self._since is None:
+            self._since = (now, worked)
+        elif (passed := now - self._since[0]) >= OVER_S:
+            busy = (worked - self._since[1]) / passed
+            stretch = min(max(busy / BUSY, 0.8), 1.5)
+            self.period_s = min(max(self.period_s * stretch, self._wanted_s), SLOWEST_S)
+            self._since = (now, worked)
+        self._next = now + (1.0 - SLACK) * self.period_s
+
+
+class Room:
+    """The pages that watch a bench.
+
+    Parameters
+    ----------
+    session : LiveBench or View
+        The bench as they see it.
+    around : callable
+        Returns the fields of a status that the bench itself does not know.
+    """
+
+    def __init__(self, session: Seen, around: Callable[[], dict[str, Any]]) -> None:
+        self.session = session
+        self.clients: set[Client] = set()
+        self.cuts = SharedCuts(session)
+        self.news = News(session, around)
+        self._scenario = session.scenario_id
+        self._head = self._last = self._status_event = -1
+        self._behind: list[tuple[tuple[int, int], ...]] = []
+        self._status_at = 0.0
+
+    def publish(self, now: float) -> Iterator[None]:
+        """Offer every page the news; pause between groups of pages."""
+        if self.session.scenario_id != self._scenario:  # no status carries title, interval and blocks of another one
+            self._scenario = self.session.scenario_id
+            self.turn()
+        head, last = self.cuts.refresh(), self.session.events.last
+        self.cuts.gather()
+        status = last != self._status_event and now - self._status_at >= EVENT_STATUS_S
+        if status:
+            self._status_event, self._status_at = last, now
+        behind = self.cuts.behind
+        frame = head != self._head or behind != self._behind
+        new = {"events": last != self._last, "frame": frame, "status": status}
+        self._head, self._last, self._behind = head, last, behind
+        if any(new.values()):
+            for served, client in enumerate(list(self.clients), 1):
+                client.offer(**new)
+                if served % PAGES_AT_ONCE == 0:
+                    yield
+
+
+    def turn(self) -> None:
+        """Close the streams, because another bench is to be seen; its pages come back at once."""
+        for client in list(self.clients):
+            client.close(CLOSE_TURNED, "the visible part of the bench has changed")
 
 
 class Hub:
@@ -148,8 +249,9 @@ class Hub:
 
     def turn_bench(self, bench_id: str) -> None:
         """Close the streams of a bench whose view has changed; its pages come back at once."""
-        for client in self._all(bench_id):
-            client.close(CLOSE_TURNED, "the visible part of the bench has changed")
+        for seen, room in self._rooms.items():
+            if seen.id == bench_id:
+                room.turn()
 
     def close_all(self, reason: str) -> None:
         """Close every stream because the server stops."""

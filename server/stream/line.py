@@ -54,7 +54,7 @@ def ends_whole(data: bytes) -> bool:
     return at == len(data)
 
 
-class Line(WebSocketsSansIOProtocol):
+class WebSocketLine(WebSocketsSansIOProtocol):
     """uvicorn's WebSocket, with a short way past the application in both directions.
 
     The usual way costs two turns of the event loop and a copy for each message: too much for a picture sixty times a
@@ -78,9 +78,9 @@ class Line(WebSocketsSansIOProtocol):
         self._is_new = self._is_whole = True
 
     @classmethod
-    def of(cls, socket: WebSocket) -> Line:
+    def of(cls, socket: WebSocket) -> WebSocketLine:
         """Return the line under a socket."""
-        return cast(Line, socket.scope["extensions"][EXTENSION])
+        return cast(WebSocketLine, socket.scope["extensions"][EXTENSION])
 
     @property
     def is_free(self) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from server.bench.bench import Seen
-from server.bench.narration import Mark
+from server.bench.narration import NarrationPlace
 from server.stream.line import text_message
 from server.stream.wire import Events, Narrated, Notice, Status
 
@@ -20,7 +20,7 @@ class News:
 
     Parameters
     ----------
-    session : LiveBench or BlindView
+    session : LiveBench or View
         The bench as those pages see it.
     around : callable
         Returns the fields of a status that the bench itself does not know.
@@ -35,7 +35,7 @@ class News:
         self._texts: dict[bool, str] = {}
         self._statuses: dict[tuple[bool, int], bytes] = {}
         self._events: dict[int, tuple[list[bytes], int]] = {}
-        self._narration: dict[Mark, tuple[list[bytes], Mark]] = {}
+        self._narration: dict[NarrationPlace, tuple[list[bytes], NarrationPlace]] = {}
         self._last = -1
 
     def status(self, known_edition: int, dropped: int) -> bytes:
@@ -72,7 +72,7 @@ class News:
             self._events[after] = ([text_message(message.model_dump_json()) for message in messages], last)
         return self._events[after]
 
-    def narration(self, known: Mark) -> tuple[list[bytes], Mark]:
+    def narration(self, known: NarrationPlace) -> tuple[list[bytes], NarrationPlace]:
         """Return the message with the sentences a page does not know yet, if there are any, and how far they go."""
         now = self._session.narration.mark
         if known == now:

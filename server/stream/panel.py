@@ -5,7 +5,7 @@ from __future__ import annotations
 from server.bench.captures import MOST
 from server.stream.codec import Picture
 from server.stream.cuts import SharedCuts
-from server.stream.view import View
+from server.stream.view import PictureCutter
 from server.stream.wire import CaptureList, CaptureMark
 
 
@@ -20,7 +20,7 @@ class Panel:
         Number of the subscription of this panel.
     """
 
-    def __init__(self, view: View, revision: int) -> None:
+    def __init__(self, view: PictureCutter, revision: int) -> None:
         self.view, self.revision = view, revision
         self._sent: Picture | None = None
         self._edition = -1

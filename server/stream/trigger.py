@@ -14,7 +14,7 @@ BLOCK = 50_000
 """Ticks scanned at once; bounds the memory of a scan."""
 
 
-class Samples(Protocol):
+class TriggerSamples(Protocol):
     """The history that a trigger reads."""
 
     @property
@@ -69,7 +69,7 @@ class Trigger:
         self.next_tick = tick
         self._ready = dict.fromkeys(self._ways, False)
 
-    def scan(self, history: Samples, first_only: bool = False) -> list[int]:
+    def scan(self, history: TriggerSamples, first_only: bool = False) -> list[int]:
         """Return the ticks of all crossings since the last scan, oldest first.
 
         Parameters
@@ -129,7 +129,7 @@ class Trigger:
         return (samples >= level) & (samples <= upper), (samples < level - far) | (samples > upper + far)
 
 
-def crossing_time(history: Samples, index: int, tick: int, *levels: float) -> float:
+def crossing_time(history: TriggerSamples, index: int, tick: int, *levels: float) -> float:
     """Place a crossing of a level between two ticks, on the line between them, so that a picture does not jitter."""
     if tick - 1 < history.first_tick:
         return float(tick)

@@ -14,11 +14,11 @@ from core.board.history import FACTOR
 from server.bench.captures import MOST, CaptureSet
 from server.stream.behind import Behind
 from server.stream.codec import FROZEN, TRIGGERED, WAITING, Picture
-from server.stream.trigger import Samples, Trigger, crossing_time
+from server.stream.trigger import Trigger, TriggerSamples, crossing_time
 from server.stream.wire import Subscribe
 
 
-class History(Samples, Protocol):
+class FullHistory(TriggerSamples, Protocol):
     """The full-rate past of a bench."""
 
     def columns(self, signals: list[int], start: int, stop: int, columns: int) -> NDArray[np.float32]:
@@ -29,7 +29,7 @@ class History(Samples, Protocol):
 
 
 @dataclass(frozen=True)
-class Span:
+class TickSpan:
     """Columns of whole ticks.
 
     They begin at multiples of their width, so a column keeps its samples while the picture moves and
@@ -41,7 +41,7 @@ class Span:
     columns: int
 
     @classmethod
-    def ending(cls, head: int, window: int, width: int) -> Span:
+    def ending(cls, head: int, window: int, width: int) -> TickSpan:
         """Cover the last ``window`` ticks before ``head``."""
         step = column_step(window, width)
         count = max(1, math.ceil(window / step))
@@ -49,7 +49,7 @@ class Span:
         return cls(end - count * step, end, count)
 
     @classmethod
-    def between(cls, start: int, end: int, width: int) -> Span:
+    def between(cls, start: int, end: int, width: int) -> TickSpan:
         """Cover at least ``start`` to ``end``."""
         step = column_step(end - start, width)
         first = start // step * step
@@ -85,7 +85,7 @@ class _State(NamedTuple):
     behind: tuple[tuple[int, int], ...] = ()
 
 
-class View:
+class PictureCutter:
     """Cuts the pictures of a subscription.
 
     Parameters
@@ -123,9 +123,9 @@ class View:
         self._sweep: _Sweep | None = None
         if trigger_index is not None and spec.mode == "triggered":
             self._sweep = _Sweep(spec, trigger_index, self._window, before, head)
-        self._frozen: Span | None = None
+        self._frozen: TickSpan | None = None
         if spec.mode == "frozen" and spec.start_tick is not None and spec.end_tick is not None:
-            self._frozen = Span.between(spec.start_tick, spec.end_tick, spec.width)
+            self._frozen = TickSpan.between(spec.start_tick, spec.end_tick, spec.width)
         self._state: _State | None = None
         self._picture: Picture | None = None
 
@@ -143,12 +143,12 @@ class View:
         """Take a new picture even of the same ticks, because their samples may have changed."""
         self._state = None
 
-    def find(self, history: History) -> None:
+    def find(self, history: FullHistory) -> None:
         """Find captures, also while no page takes a picture."""
         if self._sweep is not None:
             self._find(history, self._sweep)
 
-    def _find(self, history: History, sweep: _Sweep) -> tuple[int | None, int]:
+    def _find(self, history: FullHistory, sweep: _Sweep) -> tuple[int | None, int]:
         """Return the crossing to show, if any, and the flags; windows that are complete are captured."""
         shown = sweep.update(history)
         if self.captures is not None:
@@ -157,7 +157,7 @@ class View:
                     history.capture(self.captures, tick, sweep.exact(history, tick))
         return shown
 
-    def picture(self, history: History) -> Picture:
+    def picture(self, history: FullHistory) -> Picture:
         """Return the picture of now; the same object while nothing in it changes."""
         state = self._look(history)._replace(behind=self.behind)
         if self._picture is None or state != self._state:
@@ -177,7 +177,7 @@ class View:
             )
         return self._picture
 
-    def _look(self, history: History) -> _State:
+    def _look(self, history: FullHistory) -> _State:
         """Return the key of the picture of now: pictures differ if and only if their keys differ."""
         head = history.end_tick
         if self._frozen is not None:
@@ -189,7 +189,7 @@ class View:
             return _State("triggered", tick, flags)
         return _State("rolling", head, flags) if self._sweep.is_auto else _State("empty", 0, flags)
 
-    def _span(self, history: History, state: _State) -> tuple[Span, float]:
+    def _span(self, history: FullHistory, state: _State) -> tuple[TickSpan, float]:
         """Return the columns of a picture, and where it was triggered."""
         if self._frozen is not None:
             return self._frozen, math.nan
@@ -198,10 +198,10 @@ class View:
             start = state.tick - self._sweep.before
             step = column_step(self._window, self.spec.width)
             count = max(1, math.ceil(self._window / step))
-            return Span(start, start + count * step, count), self._sweep.exact(history, state.tick)
-        span = Span.ending(history.end_tick, self._window, self.spec.width)
+            return TickSpan(start, start + count * step, count), self._sweep.exact(history, state.tick)
+        span = TickSpan.ending(history.end_tick, self._window, self.spec.width)
         if state.kind == "empty":  # behind the newest tick
-            span = Span(history.end_tick, history.end_tick + span.end - span.start, span.columns)
+            span = TickSpan(history.end_tick, history.end_tick + span.end - span.start, span.columns)
         return span, math.nan
 
 
@@ -233,7 +233,7 @@ class _Sweep:
             self._trigger.restart(head)
             self._waiting, self._armed = [], True
 
-    def update(self, history: History) -> tuple[int | None, int]:
+    def update(self, history: FullHistory) -> tuple[int | None, int]:
         """Return the crossing to show, if any, and the flags."""
         after = self._window - self.before
         if self._shown is not None and self._shown > history.end_tick:
@@ -255,12 +255,12 @@ class _Sweep:
             return (None if self._spec.sweep == "auto" else self._shown), WAITING
         return self._shown, TRIGGERED
 
-    def exact(self, history: History, tick: int) -> float:
+    def exact(self, history: FullHistory, tick: int) -> float:
         """Return the tick of the crossing, between whole ticks."""
         return crossing_time(history, self._trigger.index, tick, self._spec.level, self._trigger.upper)
 
 
-def _latest(history: History, indices: list[int]) -> NDArray[np.float32]:
+def _latest(history: FullHistory, indices: list[int]) -> NDArray[np.float32]:
     """Return the newest sample of each signal."""
     head = history.end_tick
     if head <= history.first_tick:

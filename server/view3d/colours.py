@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,6 +20,7 @@ def blend(first: Color, second: Color, share: float) -> Color:
     return red, green, blue
 
 
+@cache
 def in_batch(color: Color) -> NDArray[np.uint8]:
     """Return a colour for a batch: viser takes colours of batches as linear, all others as sRGB."""
     share = np.array(color) / 255.0

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 from core.format import format_short
-from server.view3d.layout import HEIGHTS, WIDTHS
+from server.view3d.resonator.layout import HEIGHTS, WIDTHS
 
 SEEN_HZ = 8.0
 """An oscillation faster than this on the screen is strobed."""
@@ -22,16 +21,8 @@ WANTED_TURN_UM = 12.0
 """The same for the motion of the ends of the arms by a rotation."""
 
 
-@dataclass(frozen=True)
-class Moment:
-    """A tick to show, and whether it was chosen by the strobe."""
-
-    tick: int
-    is_strobed: bool
-
-
-def moment(head: int, period_ticks: float | None, rate_ticks_s: float, wall_s: float) -> Moment:
-    """Choose the tick to show.
+def moment(head: int, period_ticks: float | None, rate_ticks_s: float, wall_s: float) -> tuple[int, bool]:
+    """Choose the tick to show; return it, and whether the strobe has chosen it.
 
     Parameters
     ----------
@@ -46,10 +37,10 @@ def moment(head: int, period_ticks: float | None, rate_ticks_s: float, wall_s: f
     """
     last = head - 1
     if period_ticks is None or rate_ticks_s <= SEEN_HZ * period_ticks:
-        return Moment(last, False)
+        return last, False
     phase = (wall_s * STROBE_HZ) % 1.0
     behind = (last / period_ticks - phase) % 1.0
-    return Moment(max(0, last - round(behind * period_ticks)), True)
+    return max(0, last - round(behind * period_ticks)), True
 
 
 def exaggeration(
@@ -74,17 +65,13 @@ def exaggeration(
     return fitting[-1] if fitting else 1.0
 
 
-def closed_share(lateral_um: float, gap_um: float) -> float:
-    """Return the share of the gap between fingers that is closed: 0 at the centre, 1 at the stator."""
-    return min(1.0, abs(lateral_um) / gap_um)
+def warning(lateral_um: float, gap_um: float) -> float:
+    """Return how much of the colour of attention a comb takes: nothing at the centre of its gap, all at the stator.
 
-
-def warning(closed: float) -> float:
-    """Return how much of the colour of attention a comb takes.
-
-    It is a root, so that the approach is visible: stability is lost when a tenth to a fifth of the gap has closed.
+    It is the root of the closed share of the gap, so that the approach is visible: stability is lost when a tenth to a
+    fifth has closed.
     """
-    return math.sqrt(closed)
+    return math.sqrt(min(1.0, abs(lateral_um) / gap_um))
 
 
 def caption(factor: float, turn_factor: float | None, is_strobed: bool) -> str:

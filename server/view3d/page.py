@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 from functools import cache
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import viser
 
-from server.view3d.layout import UM_PER_UNIT, View
+from server.view3d.part import UM_PER_UNIT
+from server.view3d.solids import View
 
 POLICY = "; ".join(
     (
@@ -26,20 +27,13 @@ POLICY = "; ".join(
 """Content policy of this document only: its client is one file of inline script and compiles code at run time."""
 
 
-class Viewed(Protocol):
-    """Target of a camera."""
-
-    def views(self) -> dict[str, View]:
-        """Return the presets of the camera by their names on the page."""
-
-
-def page(layout: Viewed) -> str:
+def page(views: dict[str, View]) -> str:
     """Return viser's page with our lines in its head."""
     before, ours, after = _parts()
-    return before + ours.replace('"__DEVICE__"', json.dumps(cameras(layout))) + after
+    return before + ours.replace('"__DEVICE__"', json.dumps(cameras(views))) + after
 
 
-def cameras(layout: Viewed) -> dict[str, Any]:
+def cameras(views: dict[str, View]) -> dict[str, Any]:
     """Return the presets of the camera for tall and for wide pictures; boxes in scene units."""
     return {
         name: {
@@ -47,7 +41,7 @@ def cameras(layout: Viewed) -> dict[str, Any]:
             "portrait": portrait,
             "landscape": landscape,
         }
-        for name, (box, portrait, landscape) in layout.views().items()
+        for name, (box, portrait, landscape) in views.items()
     }
 
 

@@ -6,38 +6,19 @@ import asyncio
 import logging
 import time
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from server.bench.bench import LiveBench
-from server.view3d.gyroscope.parts import Parts
-from server.view3d.gyroscope.pose import GyroscopeObserver
-from server.view3d.layout import Layout
-from server.view3d.pose import Observer, kept
+from server.view3d.device import DeviceModel
+from server.view3d.gyroscope.gyroscope import GyroscopeModel
+from server.view3d.resonator.resonator import ResonatorModel
+
+if TYPE_CHECKING:
+    from server.view3d.scene import Scene
 
 log = logging.getLogger(__name__)
 
 FRAME_S = 1.0 / 60.0
-
-
-class Observing(Protocol):
-    """Reads the moments of one bench."""
-
-    def pose(self, looked: int | None = None) -> Any:
-        """Return the pose of a past tick, if the history has it; else the present pose."""
-
-
-class Scene(Protocol):
-    """The picture of one bench; it shows the poses of its observer."""
-
-    @property
-    def path(self) -> Path:
-        """The Unix socket of the scene, which only this user can open."""
-
-    def show(self, pose: Any) -> None:
-        """Move the parts."""
-
-    def close(self) -> None:
-        """Stop the server and disconnect its clients."""
 
 
 class Looked:
@@ -56,7 +37,7 @@ class Looked:
 
 
 class Show:
-    """The scene of one bench and the number of its viewers.
+    """The scenes of one bench and the number of its viewers.
 
     A page that shows another moment gets a scene of its own from then on, so that other pages keep their moment.
 
@@ -68,85 +49,69 @@ class Show:
 
     def __init__(self, session: LiveBench) -> None:
         self._session = session
-        self._watchers = 0
-        self._scene: Scene | None = None
-        self._ready = asyncio.Lock()
-        self._task: asyncio.Task[None] | None = None
-        self._own: dict[Looked, tuple[Scene, asyncio.Task[None]]] = {}
-
-    @property
-    def watchers(self) -> int:
+        self.watchers = 0
         """Open 3D pages."""
-        return self._watchers
+        self._turn = asyncio.Lock()
+        self._scenes: dict[Looked | None, tuple[Scene, asyncio.Task[None]]] = {}
+        """The scenes of pages, and under ``None`` the scene of all other pages."""
 
     async def enter(self) -> Path:
         """Count a new viewer; return the socket of the scene."""
-        self._watchers += 1
+        self.watchers += 1
         try:
-            async with self._ready:
-                if self._scene is None:
-                    self._scene = await asyncio.to_thread(build_scene, self._session)
-                    self._task = asyncio.create_task(self._play(self._scene, None))
-                return self._scene.path
+            async with self._turn:
+                return self._scenes[None][0].path if None in self._scenes else await self.open(None)
         except BaseException:
-            self._watchers -= 1
+            self.watchers -= 1
             raise
 
-    async def leave(self) -> None:
-        """Count a viewer that leaves; close the scene after the last one.
+    async def leave(self, looked: Looked) -> None:
+        """Count a viewer that leaves, and close its scene; close the shared scene after the last viewer.
 
         A scene keeps a number for every message it has sent, and goes through all of them for each new viewer. A new
         scene keeps that short.
         """
-        self._watchers -= 1
-        async with self._ready:
-            if self._watchers == 0:
+        await self._close(looked)
+        self.watchers -= 1
+        async with self._turn:
+            if self.watchers == 0:
                 await self.close()
 
-    async def own(self, looked: Looked) -> Path:
-        """Build the scene of one page, as the shared one is now; return its socket."""
-        scene = await asyncio.to_thread(build_scene, self._session)
-        scene.show(observer_of(self._session).pose())
-        self._own[looked] = scene, asyncio.create_task(self._play(scene, looked))
+    async def open(self, looked: Looked | None) -> Path:
+        """Build the shared scene, or the scene of one page, as the bench is now; return its socket."""
+        device, scene = await asyncio.to_thread(build_scene, self._session)
+        scene.show(device.pose())
+        self._scenes[looked] = scene, asyncio.create_task(self._play(device, scene, looked))
         return scene.path
-
-    async def close_own(self, looked: Looked) -> None:
-        """Close the scene of a page that leaves, if it has one."""
-        if looked in self._own:
-            scene, task = self._own.pop(looked)
-            await _end(scene, task)
 
     async def close(self) -> None:
         """Stop moving and close the scenes."""
-        for looked in list(self._own):
-            await self.close_own(looked)
-        task, scene, self._task, self._scene = self._task, self._scene, None, None
-        if task is not None and scene is not None:
-            await _end(scene, task)
+        for looked in list(self._scenes):
+            await self._close(looked)
 
-    async def _play(self, scene: Scene, looked: Looked | None) -> None:
+    async def _close(self, looked: Looked | None) -> None:
+        """Stop moving a scene and close it, if there is one."""
+        if looked in self._scenes:
+            scene, task = self._scenes.pop(looked)
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+            await asyncio.to_thread(scene.close)
+
+    async def _play(self, device: DeviceModel[Any], scene: Scene, looked: Looked | None) -> None:
         """Show the bench 60 times a second: a page its moment, others now."""
-        observer = observer_of(self._session)
         due, shown = time.monotonic(), None
         while True:
             try:
-                at = kept(self._session.history, looked.tick) if looked is not None else None
-                is_seen = looked is not None or self._watchers > len(self._own)
+                at = device.kept(looked.tick) if looked is not None else None
+                is_seen = looked is not None or self.watchers >= len(self._scenes)  # not each page has its own
                 if is_seen and (at is None or at != shown):  # a moment of the past stays as it is
-                    scene.show(observer.pose(at))
+                    scene.show(device.pose(at))
                 shown = at
             except Exception:
                 log.exception("the 3D view of bench %s failed", self._session.id)
                 return
             due = max(due + FRAME_S, time.monotonic())
             await asyncio.sleep(due - time.monotonic())
-
-
-async def _end(scene: Scene, task: asyncio.Task[None]) -> None:
-    """Stop moving a scene and close it."""
-    task.cancel()
-    await asyncio.gather(task, return_exceptions=True)
-    await asyncio.to_thread(scene.close)
 
 
 class Viewers:
@@ -177,26 +142,14 @@ class Viewers:
             await self.drop(bench_id)
 
 
-def build_scene(session: LiveBench) -> Scene:
-    """Build the scene; viser is loaded here, so that nothing else waits for it."""
-    from server.view3d.gyroscope.scene import GyroscopeScene
-    from server.view3d.scene import ResonatorScene
+def build_scene(session: LiveBench) -> tuple[DeviceModel[Any], Scene]:
+    """Build the scene of a bench; viser is loaded here, so that nothing else waits for it."""
+    from server.view3d.scene import Scene
 
-    layout = layout_of(session)
-    return ResonatorScene(layout) if isinstance(layout, Layout) else GyroscopeScene(layout)
-
-
-def observer_of(session: LiveBench) -> Observing:
-    """Return the observer of the poses that the scene of this bench shows."""
-    layout = layout_of(session)
-    return Observer(session, layout) if isinstance(layout, Layout) else GyroscopeObserver(session)
+    device = device_of(session)
+    return device, Scene(device)
 
 
-def layout_of(session: LiveBench) -> Layout | Parts:
-    """Return where the parts are.
-
-    A plant with axes is drawn as gyroscopes, any other as a resonator; a device without a drawing as the reference
-    device.
-    """
-    axes = session.board.spec.axes
-    return Parts(axes) if axes else Layout(session.board.spec.device.drawing)
+def device_of(session: LiveBench) -> DeviceModel[Any]:
+    """Return the device of a bench as it is drawn: gyroscopes if its plant has axes, otherwise a resonator."""
+    return GyroscopeModel(session) if session.board.spec.axes else ResonatorModel(session)

@@ -16,7 +16,9 @@ KINDS = ("adaptive_rate", "mimo_adaptive")
 SETTLED_MS = 500.0
 
 
-def turned(kind: str, name: str, khz: float, rate: float, ms: float = 1000.0, warm: bool = False, **law: Any) -> RunResult:
+def turned(
+    kind: str, name: str, khz: float, rate: float, ms: float = 1000.0, warm: bool = False, **law: Any
+) -> RunResult:
     document = {
         "sample_rate_khz": khz,
         "duration_ms": ms,

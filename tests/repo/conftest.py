@@ -31,6 +31,6 @@ def files() -> list[Path]:
 
 @pytest.fixture(scope="session")
 def documents() -> dict[str, str]:
-    """The documents at the top of the repository, by name."""
-    names = ("README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")
-    return {name: (ROOT / name).read_text() for name in names}
+    """The documents, by path: at the top of the repository, in `docs` and in `docs/design`."""
+    paths = [path for place in ("*.md", "docs/*.md", "docs/design/*.md") for path in sorted(ROOT.glob(place))]
+    return {path.relative_to(ROOT).as_posix(): path.read_text() for path in paths}

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import re
 import subprocess
 import sys
 import tomllib
 from pathlib import Path
+from types import ModuleType
 
 import pytest
-from typer.testing import CliRunner
+import typer
 
 from server.cli.main import app
 
@@ -22,19 +24,48 @@ def code_spans(text: str) -> list[str]:
     return re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", text, flags=re.S))
 
 
-@pytest.mark.parametrize("name", ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "SECURITY.md"])
-def test_named_paths_exist(name: str, root: Path, documents: dict[str, str]) -> None:
+def test_named_paths_exist(root: Path, documents: dict[str, str]) -> None:
     missing = []
-    for span in code_spans(documents[name]):
-        top = span.split("/")[0]
-        if "/" in span and (new := PLACEHOLDER.search(span)):  # the folder of a new file exists
-            folder = span[: new.start()].rpartition("/")[0]
-            if (root / top).is_dir() and not (root / folder).is_dir():
-                missing.append(span)
-        is_ours = "/" in span and top and (root / top).is_dir() and re.fullmatch(r"[\w.*/-]+", span)
-        if is_ours and not PLACEHOLDER.search(span) and not list(root.glob(span.rstrip("/"))):
-            missing.append(span)
-    assert not missing, f"{name} names what is not there (a new file's name is written <name>): {missing}"
+    for name, text in documents.items():
+        for span in code_spans(text) if name != "CHANGELOG.md" else ():
+            top = span.split("/")[0]
+            if not (top and "/" in span and (root / top).is_dir()):
+                continue
+            if new := PLACEHOLDER.search(span):  # the folder of a new file exists
+                span = span[: new.start()].rpartition("/")[0]
+            if re.fullmatch(r"[\w.*/-]+", span) and not list(root.glob(span.rstrip("/"))):
+                missing.append(f"{name}: {span}")
+    assert not missing, f"they name what is not there (a new file's name is written <name>): {missing}"
+
+
+def test_links_to_headings_resolve(root: Path, documents: dict[str, str]) -> None:
+    headings = {name: {anchor(one) for one in re.findall(r"^#+ (.*)$", text, re.M)} for name, text in documents.items()}
+    broken = []
+    for name, text in documents.items():
+        for target, heading in re.findall(r"\]\((?!https?:)([^)#\s]*)#([^)\s]+)\)", text):
+            path = ((root / name).parent / target).resolve() if target else root / name
+            if heading not in headings.get(path.relative_to(root).as_posix(), {heading}):
+                broken.append(f"{name} -> {target}#{heading}")
+    assert not broken
+
+
+def anchor(heading: str) -> str:
+    """Return the anchor of a heading, as the sites that show repositories make it."""
+    return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
+
+
+def test_the_first_pages_stay_short_and_each_document_names_its_readers(documents: dict[str, str]) -> None:
+    assert len(documents["README.md"].encode()) <= 7000
+    assert documents["ARCHITECTURE.md"].count("\n") <= 100 and documents["ARCHITECTURE.md"].count("![") == 1
+    heads = {name: text.partition("\n## ")[0] for name, text in documents.items()}
+    assert [name for name, head in heads.items() if "\n\nFor " not in head] == ["CHANGELOG.md", "README.md"]
+
+
+def test_the_first_pages_lead_to_every_document(documents: dict[str, str]) -> None:
+    below = {"docs": "README.md", "docs/design": "ARCHITECTURE.md"}
+    found = [(name, below[folder]) for name in documents if (folder := name.rpartition("/")[0])]
+    assert len(found) > 20
+    assert [name for name, start in found if f"({name}" not in documents[start]] == []
 
 
 def test_what_is_installed_is_the_checkout_with_extras_that_it_has(root: Path, files: list[Path]) -> None:
@@ -74,35 +105,57 @@ def layout(text: str) -> list[str]:
     return paths
 
 
-def test_architecture_lists_what_exists_and_all_of_it(root: Path, documents: dict[str, str]) -> None:
-    listed = layout(documents["ARCHITECTURE.md"])
+def test_the_layout_lists_what_exists_and_all_of_it(root: Path, documents: dict[str, str]) -> None:
+    listed = layout(documents["docs/design/layout.md"])
     assert not [path for path in listed if not list(root.glob(path.rstrip("/")))]
     packages = {
         f"{path.parent.relative_to(root)}/"
         for top in ("core", "scenarios", "server")
         for path in [*root.glob(f"{top}/__init__.py"), *root.glob(f"{top}/*/__init__.py")]
     }
-    assert not packages - set(listed), "folders that ARCHITECTURE.md does not list"
+    assert not packages - set(listed), "folders that docs/design/layout.md does not list"
 
 
-def test_named_commands_exist(root: Path, documents: dict[str, str]) -> None:
-    code = "\n".join(re.findall(r"```.*?```|`[^`\n]+`", documents["README.md"], re.S))
-    commands = set(re.findall(r"\bcombbench ([a-z]+)", code))
+def test_named_commands_exist(documents: dict[str, str]) -> None:
+    texts = (text for name, text in documents.items() if name != "CHANGELOG.md")
+    code = "\n".join(part for text in texts for part in re.findall(r"```.*?```|`[^`\n]+`", text, re.S))
+    commands = set(re.findall(r"(?<![\w./-])combbench ([a-z]+)", code))
     assert {"serve", "run"} <= commands
-    helped = CliRunner().invoke(app, ["--help"]).stdout
-    for command in commands:
-        assert re.search(rf"\b{command}\b", helped), f"combbench has no command {command}"
+    assert commands <= {*typer.main.get_command(app).commands}
 
 
-def test_every_setting_is_in_the_readme_with_its_default(documents: dict[str, str]) -> None:
-    from server.settings import Settings
+@pytest.fixture(scope="module")
+def generator(root: Path) -> ModuleType:
+    """The script that writes the generated parts."""
+    spec = importlib.util.spec_from_file_location("write_documents", root / "scripts" / "write_documents.py")
+    assert spec is not None and spec.loader is not None
+    script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    return script
 
-    rows = dict(re.findall(r"^\| *`(\w+)` *\|(.*)$", documents["README.md"], re.M))
-    for name, field in Settings.model_fields.items():
-        assert name in rows, f"README's table of settings has no row for {name}"
-        if field.default not in (None, [], ""):
-            default = str(field.default).lower()
-            assert default in rows[name].lower(), f"README gives {name} another default than {default}"
+
+def test_generated_parts_are_current(root: Path, generator: ModuleType) -> None:
+    written = generator.documents()
+    assert len(written) == 3
+    for path, text in written.items():
+        assert (root / path).read_text() == text, f"{path}: run make codegen"
+
+
+def test_every_setting_command_and_option_has_its_meaning(generator: ModuleType) -> None:
+    settings, commands = generator.settings_table(), generator.commands_list()
+    rows = [line.split(" | ") for line in [*settings.splitlines(), *commands.splitlines()] if line.startswith("| `")]
+    assert len(rows) > 80 and [row[0] for row in rows if len(row[-1].strip("| ").split()) < 2] == []
+    assert re.search(r"^\| `port` \| `8000` \| \w", settings, re.M)
+    assert re.search(r"^\| `--seeds A:B` \| \w", commands, re.M)
+
+
+def test_the_picture_shows_every_module_of_the_contracts(root: Path, generator: ModuleType) -> None:
+    shown = set(re.findall(r"\w+", " ".join(re.findall(r"<text[^>]*>([^<]*)", generator.picture()))))
+    for package in ("server", "scenarios"):  # their contracts are exhaustive
+        modules = {path.stem for path in (root / package).glob("*.py") if path.stem != "__init__"}
+        assert modules - shown == set()
+        assert {path.parent.name for path in (root / package).glob("*/__init__.py")} - shown == set()
+    assert {"board", "control", "diagnose", "plant", "block"} <= shown
 
 
 def test_documents_and_container_files_name_only_settings_that_exist(root: Path, documents: dict[str, str]) -> None:
@@ -110,8 +163,8 @@ def test_documents_and_container_files_name_only_settings_that_exist(root: Path,
 
     texts = [*documents.values(), *((root / name).read_text() for name in ("Dockerfile", "compose.yaml"))]
     named = {name.lower() for text in texts for name in re.findall(rf"{PREFIX}(\w+)", text)}
-    # The folder of kernels is needed before the settings exist; the seed belongs to the long suite.
-    assert named <= {*Settings.model_fields, "kernel_cache", "test_seed"}
+    # The folder of kernels is needed before the settings exist, the address by scripts; the seed is of the long suite.
+    assert named <= {*Settings.model_fields, "kernel_cache", "address", "test_seed"}
 
 
 @pytest.mark.long

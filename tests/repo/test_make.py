@@ -11,7 +11,7 @@ PROMISED = set("run classroom setup test help check fix dev bench load soak imag
 
 
 def targets(root: Path) -> dict[str, str]:
-    rules = re.findall(r"^([a-z]+):[^=\n]*?(?:## (.*))?$", (root / "Makefile").read_text(), re.M)
+    rules = re.findall(r"^([a-z-]+):[^=\n]*?## (.*)$", (root / "Makefile").read_text(), re.M)
     return dict(rules)
 
 
@@ -44,7 +44,7 @@ def test_documents_name_only_targets_that_exist(root: Path, documents: dict[str,
     known = targets(root)
     for document, text in documents.items():
         code = " ; ".join(re.findall(r"```.*?```|`[^`\n]+`", text, re.S))
-        named = set(re.findall(r"\bmake ([a-z]+)", code))
+        named = set(re.findall(r"\bmake ([a-z-]+)", code))
         assert named <= set(known), f"{document} names {named - set(known)}"
     assert "`make run`" in documents["README.md"] or "make run\n" in documents["README.md"]
 

@@ -7,7 +7,14 @@ from pathlib import Path
 
 import pytest
 
-READ = ("scenarios/report", "core/board/words.py", "core/board/observer.py", "server/cli/main.py", "server/bench")
+READ = (
+    "scenarios/report",
+    "core/board/words.py",
+    "core/board/observer.py",
+    "server/cli/main.py",
+    "server/cli/run.py",
+    "server/bench",
+)
 """What writes for people."""
 
 

@@ -16,7 +16,8 @@ from scenarios.starters import starters
 from tests.lab import RICH, do, make, play
 
 ROOT = Path(__file__).resolve().parents[2]
-CODE = re.findall(r"```python\n(.*?)```", (ROOT / "CONTRIBUTING.md").read_text(), re.DOTALL)[0]
+TEXT = (ROOT / "CONTRIBUTING.md").read_text()
+CODE = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)[0]
 
 
 @pytest.fixture
@@ -77,3 +78,22 @@ def test_both_documents_show_the_file_that_the_page_offers():
     offered = (ROOT / "scenarios" / "starters" / "pi.py").read_text("utf-8")
     assert offered == CODE == shown
     assert {one.name: one.source for one in starters()}["pi"] == offered
+
+
+@pytest.mark.parametrize(
+    ("recipe", "example", "places"),
+    [
+        ("Add a verb to a bench", r"\bMakeSafe\b", ["core/board/*.py", "server/bench/commands.py"]),
+        ("Add a verb to a bench", r"\bTimeScale\b", ["server/**/*.py"]),
+        ("Add an export format", r"[\"']npz[\"']", ["server/**/*.py", "web/src/**/*.tsx"]),
+        ("Add a limit for students", r"\bstudent_history_mb\b", ["server/**/*.py"]),
+        ("Add a limit for students", r"\bstudent_events\b", ["server/settings.py", "server/api/*.py"]),
+    ],
+)
+def test_a_recipe_names_every_file_that_its_example_touches(recipe, example, places):
+    """The youngest verb, format and limit of the project show where the next one goes."""
+    section = TEXT.split(f"\n## {recipe}\n")[1].split("\n## ")[0]
+    paths = sorted(path for place in places for path in ROOT.glob(place) if ".test." not in path.name)
+    touched = [str(path.relative_to(ROOT)) for path in paths if re.search(example, path.read_text("utf-8"))]
+    assert len(touched) > 1
+    assert [name for name in touched if f"`{name}`" not in section] == []

@@ -12,7 +12,7 @@ import sys
 import tempfile
 import textwrap
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -54,16 +54,6 @@ def site(folder: Path, port: int, services: dict[str, int]) -> str:
     return whole
 
 
-def sharded_site(folder: Path, port: int, services: dict[str, int]) -> str:
-    """Return what docs/scaling.md makes of it for two processes: the port of each by its letter."""
-    maps, line = re.findall(r"```nginx\n(.*?)```", (ROOT / "docs" / "scaling.md").read_text(), re.S)
-    first, second = services["a"], services["b"]
-    whole, alone = site(folder, port, {"": first}), f"proxy_pass http://127.0.0.1:{first};"
-    assert whole.count(alone) == 1 and maps.count("127.0.0.1:8000") == maps.count("127.0.0.1:8001") == 1
-    maps = maps.replace("127.0.0.1:8000", f"127.0.0.1:{first}").replace("127.0.0.1:8001", f"127.0.0.1:{second}")
-    return maps + whole.replace(alone, line.strip())
-
-
 def make_certificate(folder: Path) -> None:
     """Make a certificate that vouches for itself."""
     command = "openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -days 2"
@@ -73,9 +63,7 @@ def make_certificate(folder: Path) -> None:
 
 
 @contextmanager
-def nginx(
-    port: int, services: dict[str, int], site: Callable[[Path, int, dict[str, int]], str] = site
-) -> Iterator[Path]:
+def nginx(port: int, services: dict[str, int]) -> Iterator[Path]:
     """Run nginx on a port of loopback, in front of services on others; yield its folder, with its certificate."""
     found = subprocess.run([ROOT / "scripts" / "nginx"], stdout=subprocess.PIPE, text=True, check=True)
     with tempfile.TemporaryDirectory(prefix="combbench-nginx-") as name:

@@ -26,7 +26,7 @@ class Clock:
 
     def look(self) -> set[str]:
         service = self._live.service
-        asyncio.run_coroutine_threadsafe(service.reopening.let_go(), service._loop).result(20)
+        asyncio.run_coroutine_threadsafe(service.idling.let_go(), service._loop).result(20)
         return {session.id for session in service.benches.all()}
 
 

@@ -81,6 +81,21 @@ def test_a_bench_of_other_signals_is_left_alone_and_a_fresh_one_made(live: Any) 
         live.http.delete(f"/api/v1/benches/{bench}")
 
 
+def test_pages_of_a_bench_read_it_anew_when_a_cue_is_of_another_scenario(live: Any) -> None:
+    bench = put(live, "ch5-diagnosis", 5)["bench"]
+    with live.stream(bench["id"]) as stream:
+        assert stream.step()["bench"]["title"] == bench["title"]
+        put(live, "ch5-diagnosis", 6, bench["id"])  # of the same scenario: the streams stay
+        stream.settle()
+        other = put(live, "ch5-diagnosis", 7, bench["id"])["bench"]
+        assert stream.until_closed().code == 4205
+    assert other["id"] == bench["id"] and (bench["dt_ms"], other["dt_ms"]) == (0.01, 0.02)
+    with live.stream(bench["id"]) as stream:
+        hello = stream.step()["bench"]
+        assert (hello["title"], hello["dt_ms"]) == (other["title"], 0.02)
+    live.http.delete(f"/api/v1/benches/{bench['id']}")
+
+
 def test_what_there_is_not_is_refused_in_one_line(live: Any) -> None:
     def refused(path: str, **body: Any) -> tuple[int, str]:
         answer = live.http.post(f"/api/v1/lectures/{path}", json=body)

@@ -6,6 +6,8 @@ import json
 import os
 import subprocess
 import sys
+from importlib.metadata import packages_distributions
+from pathlib import Path
 
 import pytest
 
@@ -21,7 +23,7 @@ SELDOM = [
     "psutil",  # a classroom
     "psycopg",  # a database by address
     "pyarrow",  # traces, recordings and campaigns
-    "pylti1p3",  # launches from learning platforms
+    "jwt",  # launches from learning platforms
     "requests",
     "rich",  # the help of the command line
     "scipy",  # reports of campaigns, peers of the benchmark, one estimate of noise
@@ -31,7 +33,39 @@ SELDOM = [
     "viser",  # the 3D view
     "wasmtime",  # units of students
 ]
+OPTIONAL = {
+    "pyjwt": "launches from learning platforms",
+    "cryptography": "the same",
+    "requests": "the same",
+    "distributed": "campaigns on a cluster",
+    "dask": "the same",
+    "psycopg": "a database by address",
+    "psycopg-binary": "the same",
+}
+"""Distributions of features that are configured."""
+STARTED = """
+from pathlib import Path
+from server.cli import serve
+from server.settings import Settings
+start = serve.Server.startup
+async def startup(self, sockets):
+    await start(self, sockets)
+    self.should_exit = True
+serve.Server.startup = startup
+serve.serve(Settings(port=0, data=Path(sys.argv[1]), figures=False, run_workers=0))
+"""
 SERVICE = ["asyncio", "fastapi", "multiprocessing", "sqlalchemy", "starlette", "uvicorn"]
+
+
+def loaded_by(code: str, *arguments: str) -> list[str]:
+    """Return the modules that a program has loaded at its end."""
+    told = f"import atexit, json, sys; atexit.register(lambda: print(json.dumps([*sys.modules])))\n{code}"
+    # with bytecode kept: without it every start compiles all packages
+    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": ""}
+    command = [sys.executable, "-c", told, *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
+    loaded: list[str] = json.loads(done.stdout.splitlines()[-1])
+    return loaded
 
 
 @pytest.mark.parametrize(
@@ -43,10 +77,16 @@ SERVICE = ["asyncio", "fastapi", "multiprocessing", "sqlalchemy", "starlette", "
     ids=["server", "run"],
 )
 def test_a_start_loads_no_library_that_it_seldom_uses(code: str, unwanted: list[str]) -> None:
-    told = f"import atexit, json, sys; atexit.register(lambda: print(json.dumps([*sys.modules])))\n{code}"
-    # with bytecode kept: without it every start compiles all packages
-    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": ""}
-    done = subprocess.run([sys.executable, "-c", told], capture_output=True, text=True, check=True, env=environment)
-    loaded = json.loads(done.stdout.splitlines()[-1])
+    loaded = loaded_by(code)
     assert "scenarios.schema" in loaded
     assert [name for name in unwanted if name in loaded] == []
+
+
+def test_a_started_server_has_no_distribution_of_what_is_not_configured(tmp_path: Path) -> None:
+    modules = loaded_by(STARTED, str(tmp_path))
+    loaded = {name.partition(".")[0] for name in modules}
+    owners = packages_distributions()
+    there = {owner.lower().replace("_", "-") for name in loaded for owner in owners.get(name, ())}
+    assert {"fastapi", "sqlalchemy", "uvicorn"} <= there and not there & OPTIONAL.keys()
+    assert not [name for name in modules if name.startswith("server.classroom.lti")]
+    assert "scenarios.campaign.cluster" not in modules

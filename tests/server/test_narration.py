@@ -9,9 +9,10 @@ import pytest
 from core.board.commands import Heal
 from scenarios.library import get
 from scenarios.run import run
-from server.bench.blind import ACTOR, OF_A_DIAGNOSER, SIGNALS, hide
 from server.bench.commands import parse
-from server.bench.narration import Mark
+from server.bench.narration import NarrationPlace
+from server.classroom.blind import hide
+from server.classroom.hiding import ACTOR, OF_A_DIAGNOSER, SIGNALS, clear, hide_on
 from tests.server.bench.test_session import advance, session
 from tests.server.classroom.group import join, open_class
 
@@ -133,17 +134,16 @@ def test_a_view_that_hides_a_fault_says_nothing_of_the_error() -> None:
     bench = session("ch5-seven-step", events=[], samples=10_000)
     question = hide(bench.board, bench.scenario.document, "q", False, 0, 0.0)
     fault = {"fault": "added_mass", "severity": 0.5}
-    bench.hiding.begin(question.model_copy(update={"faults": [fault], "came_tick": 2000}))
-    bench.hiding.clear()
-    bench.hiding.inject("board")
+    clear(bench)
+    hide_on(bench, question.model_copy(update={"faults": [fault], "came_tick": 2000}), "board")
     advance(bench, 1000)
     bench.execute(parse({"switch": "mrac"}), "test")
     advance(bench, 3000)
     bench.board.apply(Heal(heal="all"), ACTOR)
     advance(bench, 4000)
-    view = bench.hiding.view
+    view = bench.view
     assert view is not None
-    whole, told = (one.narration.after(Mark())[2] for one in (bench, view))
+    whole, told = (one.narration.after(NarrationPlace())[2] for one in (bench, view))
     since = [said.text.rpartition(" ")[2] for said in whole if said.kind == "settled"]
     assert since == ["fault.", "healing."]
     assert [(said.kind, said.tick, said.signals) for said in told] == [("switch", 1000, [])]

@@ -31,7 +31,7 @@ def page(live: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     monkeypatch.setattr(live.app.state.page, "_folder", tmp_path)
     fields = {"state": "failed", "name": "n", "scenario_id": "s", "title": "t", "document": {}, "runs": 1}
     rows = [RequestRow(id="a1", kind="run", **fields), RequestRow(id="b2", kind="campaign", **fields)]
-    live.on_loop(live.service.shared.run(lambda session: session.add_all(rows)))
+    live.on_loop(live.service.database.run(lambda session: session.add_all(rows)))
     yield live
     for kind, one in (("runs", "a1"), ("sweeps", "b2")):
         removed = live.http.post(f"/api/v1/{kind}/remove", json={"ids": [one]})

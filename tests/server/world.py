@@ -109,7 +109,7 @@ class World:
                 "leases": sorted(service.driving._leases),
                 "benches": {
                     one.id: (
-                        one.board.tick, one.events.last, one.name, one.keep, one.hiding.blind,
+                        one.board.tick, one.events.last, one.name, one.keep, one.view and one.view.rules,
                         sorted(one.recordings.under_way), len(one.snapshots.all()), one.is_running,
                     )
                     for one in benches

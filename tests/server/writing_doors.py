@@ -139,10 +139,10 @@ def _(w: World) -> Asked:
 @case("POST", f"{BENCH}/reopen")
 def _(w: World) -> Asked:
     service, bench = w.live.service, w.bench()
-    w.live.on_loop(service.reopening._let_go(service.benches.get(bench)))
+    w.live.on_loop(service.idling._let_go(service.benches.get(bench)))
     if service.benches.find(bench) is not None:  # it is unused from now on
         service.idling._seen[bench], service.idling._patience_s = -1e9, 1.0
-        w.live.on_loop(service.reopening._let_go(service.benches.get(bench)))
+        w.live.on_loop(service.idling._let_go(service.benches.get(bench)))
         service.idling._patience_s = 60.0 * service.settings.idle_minutes
     return w.teacher, {"bench_id": bench}, None
 
@@ -294,7 +294,8 @@ WITHOUT = {
     for method, path in DOORS
     if path.startswith((f"{API}/theory", f"{API}/devices", f"{API}/scenarios", f"{API}/units", f"{API}/thresholds"))
     or path.startswith((f"{BENCH}/commands", f"{BENCH}/snapshots", f"{BENCH}/driving", f"{BENCH}/fork"))
-    or path in (f"{BENCH}/variant", f"{BENCH}/identification", f"{BENCH}/diagnosers/{{name}}/aliases", "/join")
+    or path
+    in (f"{BENCH}/variant", f"{BENCH}/identification", f"{BENCH}/diagnosers/{{name}}/aliases", f"{API}/qr", "/join")
     or path == f"{API}/lectures/{{lecture_id}}/cues/{{number}}"
 }
 """Doors that ask no database, or the same as others: a search as a run, the page to join as the door of the class."""

@@ -9,7 +9,9 @@ test("a class runs from its code to its end", async ({ page, server, elsewhere }
   await page.getByLabel("Name of the class").fill("Tuesday");
   await page.getByRole("button", { name: "Open the class" }).click();
   const code = await page.getByLabel("Join code").innerText();
-  await expect(page.getByRole("img", { name: /^QR code of .*\/join\?code=/ })).toBeVisible();
+  const qr = page.getByRole("img", { name: /^QR code of .*\/join\?code=/ });
+  await expect(qr).toBeVisible();
+  await expect.poll(() => qr.evaluate((image: HTMLImageElement) => image.naturalWidth)).toBeGreaterThan(200);
   await page.getByRole("button", { name: "Show on the wall" }).click();
   await expect(page.getByRole("dialog", { name: "Tuesday" })).toContainText(code);
   await page.keyboard.press("Escape");

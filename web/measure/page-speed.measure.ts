@@ -104,7 +104,7 @@ test("from a click to its effect", async ({ page, openBench }) => {
   const took: number[] = [];
   for (let i = 0; i < CLICKS; i++) {
     const button = i % 2 ? heal : inject;
-    const [name, effect] = i % 2 ? ["Heal all", "The device is healthy"] : ["Inject", "1 fault acts"];
+    const [name, effect] = i % 2 ? ["Heal all", "The device is healthy"] : ["Inject", "1 active fault"];
     await button.waitFor();
     took.push(
       await button.evaluate(
@@ -112,7 +112,7 @@ test("from a click to its effect", async ({ page, openBench }) => {
           new Promise<number>((resolve) => {
             const began = performance.now();
             const observer = new MutationObserver(() => {
-              if (!document.body.innerText.includes(text)) return;
+              if (!document.body.innerText.replaceAll("\u00a0", " ").includes(text)) return;
               observer.disconnect();
               requestAnimationFrame(() => resolve(performance.now() - began));
             });

@@ -9,7 +9,8 @@ from typing import Any
 from server.security.platforms import Platform
 
 CLAIM = "https://purl.imsglobal.org/spec/lti/claim/"
-DEEP_LINKING = "https://purl.imsglobal.org/spec/lti-dl/claim/deep_linking_settings"
+LINK = "https://purl.imsglobal.org/spec/lti-dl/claim/"
+DEEP_LINKING, LINK_ITEMS, LINK_DATA = f"{LINK}deep_linking_settings", f"{LINK}content_items", f"{LINK}data"
 GRADES = "https://purl.imsglobal.org/spec/lti-ags/claim/endpoint"
 SCORE = "https://purl.imsglobal.org/spec/lti-ags/scope/score"
 MEMBERSHIP = "http://purl.imsglobal.org/vocab/lis/v2/membership"
@@ -49,6 +50,11 @@ class Launch:
         return self.text("sub")
 
     @property
+    def deployment(self) -> str:
+        """The place in the platform where this tool is installed."""
+        return self.text(f"{CLAIM}deployment_id")
+
+    @property
     def name(self) -> str:
         """The name of the person, if the platform gives it."""
         return self.text("name") or " ".join(filter(None, (self.text("given_name"), self.text("family_name"))))
@@ -56,8 +62,7 @@ class Launch:
     @property
     def course(self) -> tuple[str, ...]:
         """The ids by which a course is known; where there is none, all of a deployment are one."""
-        place = (self.text(f"{CLAIM}deployment_id"), self.text(f"{CLAIM}context", "id"))
-        return (self.platform.issuer, self.platform.client_id, *place)
+        return (self.platform.issuer, self.platform.client_id, self.deployment, self.text(f"{CLAIM}context", "id"))
 
     @property
     def course_name(self) -> str:

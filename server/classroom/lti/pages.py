@@ -10,7 +10,7 @@ from starlette.responses import HTMLResponse
 
 from server.errors import ErrorBody
 from server.security.headers import POLICY
-from server.security.visitor import STYLE
+from server.security.visitor import page
 
 STORED = "combbench.lti."
 """Under this name and the state, the browser keeps the secret of a launch that it has begun."""
@@ -24,12 +24,8 @@ def _page(title: str, body: str, status: int = 200, nonce: str = "", referrer: s
         f"default-src 'none'; {script}style-src 'unsafe-inline'; form-action {forms}; "
         "base-uri 'none'; frame-ancestors 'none'"
     )
-    text = (
-        "<!doctype html><html lang='en'><meta charset='utf-8'><meta name='viewport' content='width=device-width'>"
-        f"<title>{html.escape(title)} · CombBench</title>{STYLE}<main><h1>{html.escape(title)}</h1>{body}</main>"
-    )
     headers = {POLICY: policy, "Cache-Control": "no-store", "Referrer-Policy": referrer}
-    return HTMLResponse(text, status, headers)
+    return HTMLResponse(page(title, body, f"{title} · CombBench"), status, headers)
 
 
 def login_page(address: str, state: str, browser: str, again: str) -> HTMLResponse:

@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Any
+from urllib.parse import urlsplit
 
-from pylti1p3.assignments_grades import AssignmentsGradesService
-from pylti1p3.exception import LtiException, LtiServiceException
-from pylti1p3.grade import Grade
-from pylti1p3.service_connector import ServiceConnector
 from requests import RequestException
 
 from server.classroom.audit import Audit
 from server.classroom.lti.launch import SCORE, Launch
 from server.classroom.lti.tool import Tool, Web
 from server.classroom.sheet_work import SheetBrief, Work
-from server.security.person import Person
+from server.security.person import Person, new_secret
 from server.store.base import now
 
 log = logging.getLogger(__name__)
@@ -31,12 +30,17 @@ FIRST_WAIT_S, LONGEST_WAIT_S, MOST_TRIES = 5.0, 600.0, 12
 THREADS = 2
 """That wait for platforms, and for nothing else."""
 
+KIND = "application/vnd.ims.lis.v1.score+json"
+BY_SIGNATURE = {
+    "grant_type": "client_credentials",
+    "client_assertion_type": "urn:ietf:params:oauth:client-assertion-type:jwt-bearer",
+}
 Key = tuple[str, str]
 """A person and a sheet."""
 
 
 @dataclass(frozen=True)
-class Target:
+class ScoreTarget:
     """Where a score goes; the platform's id of the user is in memory alone."""
 
     launch: Launch
@@ -44,7 +48,7 @@ class Target:
 
 
 @dataclass(frozen=True)
-class Score:
+class LtiScore:
     """A score, as it is sent."""
 
     given: float
@@ -54,7 +58,7 @@ class Score:
     at: str
 
 
-class Scores:
+class LtiScores:
     """Sends scores.
 
     Parameters
@@ -79,9 +83,9 @@ class Scores:
     ) -> None:
         self._tool, self._audit, self._brief_of = tool, audit, brief_of
         self._quiet_s, self._first_wait_s = quiet_s, first_wait_s
-        self._targets: dict[Key, Target] = {}
-        self._wanted: dict[Key, Score] = {}
-        self._sent: dict[Key, Score] = {}
+        self._targets: dict[Key, ScoreTarget] = {}
+        self._wanted: dict[Key, LtiScore] = {}
+        self._sent: dict[Key, LtiScore] = {}
         self._tasks: dict[Key, asyncio.Task[None]] = {}
         self._pool = ThreadPoolExecutor(THREADS, thread_name_prefix="combbench-scores")
 
@@ -90,7 +94,7 @@ class Scores:
         if not launch.line_item or not launch.sheet:
             return
         key = (person.id, launch.sheet)
-        self._targets[key] = Target(launch, person)
+        self._targets[key] = ScoreTarget(launch, person)
         self._sent.pop(key, None)
         if work is not None and work.progress.steps:
             self.changed(work)
@@ -103,7 +107,7 @@ class Scores:
         brief = self._brief_of(work)
         where = "all steps" if brief.done else f"step {brief.step} of {brief.steps}"
         at = now().isoformat(timespec="milliseconds")
-        score = Score(max(0.0, brief.earned), brief.points, brief.done, f"{brief.title}: {where}", at)
+        score = LtiScore(max(0.0, brief.earned), brief.points, brief.done, f"{brief.title}: {where}", at)
         before = self._wanted.get(key)
         if before is not None and _same(before, score) and (key in self._tasks or self._sent.get(key) == before):
             return
@@ -127,7 +131,7 @@ class Scores:
                 score, target = self._wanted[key], self._targets[key]
                 try:
                     await asyncio.get_running_loop().run_in_executor(self._pool, self._post, target, score)
-                except (LtiException, LtiServiceException, RequestException, ValueError, KeyError) as error:
+                except (RequestException, ValueError, KeyError, TypeError) as error:
                     tries += 1
                     self._note_failure(target, key[1], error, tries)
                     await asyncio.sleep(wait_s)
@@ -142,11 +146,10 @@ class Scores:
         finally:
             self._tasks.pop(key, None)
 
-    def _note_failure(self, target: Target, sheet: str, error: Exception, tries: int) -> None:
+    def _note_failure(self, target: ScoreTarget, sheet: str, error: Exception, tries: int) -> None:
         """Tell the log every time, and the teacher at the first try and the last."""
-        status = (
-            f": the platform answered {error.response.status_code}" if isinstance(error, LtiServiceException) else ""
-        )
+        answer = error.response if isinstance(error, RequestException) else None
+        status = f": the platform answered {answer.status_code}" if answer is not None else ""
         log.warning("the score of a sheet could not be sent (try %d): %s%s", tries, type(error).__name__, status)
         if tries in (1, MOST_TRIES):
             said = (
@@ -156,29 +159,44 @@ class Scores:
             )
             self._audit.add("lti", "grade", _line(target, sheet, said), target.person.class_id)
 
-    def _post(self, target: Target, score: Score) -> None:
+    def _post(self, target: ScoreTarget, score: LtiScore) -> None:
         """Send a score; in a thread."""
-        grade = (
-            Grade()
-            .set_score_given(score.given)
-            .set_score_maximum(score.most)
-            .set_timestamp(score.at)
-            .set_activity_progress("Completed" if score.done else "InProgress")
-            .set_grading_progress("FullyGraded" if score.done else "Pending")
-            .set_user_id(target.launch.user)
-            .set_comment(score.comment)
-        )
+        platform, now_s = target.launch.platform, int(time.time())
+        body: dict[str, Any] = {
+            "scoreGiven": score.given,
+            "scoreMaximum": score.most,
+            "timestamp": score.at,
+            "activityProgress": "Completed" if score.done else "InProgress",
+            "gradingProgress": "FullyGraded" if score.done else "Pending",
+            "userId": target.launch.user,
+            "comment": score.comment,
+        }
+        asks = {
+            "iss": platform.client_id,
+            "sub": platform.client_id,
+            "aud": platform.auth_token_url,
+            "iat": now_s - 5,
+            "exp": now_s + 60,
+            "jti": new_secret(),
+        }
+        given = {"client_assertion": self._tool.sign(asks), "scope": SCORE}  # the right to send scores, and no other
         with Web() as web:
-            connector = ServiceConnector(self._tool.registration(target.launch.platform), web)
-            # the right to send scores, and no other
-            service = AssignmentsGradesService(connector, {"scope": [SCORE], "lineitem": target.launch.line_item})  # type: ignore[list-item]
-            service.put_grade(grade)
+            token = web.post(platform.auth_token_url, {**BY_SIGNATURE, **given})
+            token.raise_for_status()
+            headers = {"Authorization": f"Bearer {token.json()['access_token']}", "Content-Type": KIND}
+            web.post(_scores_of(target.launch.line_item), json=body, headers=headers).raise_for_status()
 
 
-def _same(one: Score, other: Score) -> bool:
+def _scores_of(line_item: str) -> str:
+    """Return where the scores of a column go: below its path, with its query."""
+    parts = urlsplit(line_item)
+    return parts._replace(path=f"{parts.path.rstrip('/')}/scores").geturl()
+
+
+def _same(one: LtiScore, other: LtiScore) -> bool:
     """Whether the platform would show the same."""
     return (one.given, one.done, one.comment) == (other.given, other.done, other.comment)
 
 
-def _line(target: Target, sheet: str, what: str) -> str:
+def _line(target: ScoreTarget, sheet: str, what: str) -> str:
     return f"the score of {target.person.name} at {sheet} was {what}"

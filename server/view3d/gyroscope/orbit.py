@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from core.format import format_short
-from server.view3d.layout import FloatArray
 from server.view3d.motion import exaggeration
+from server.view3d.solids import FloatArray
 
 WANTED_UM = 32.0
 """Amplitude that is well seen at the size of the schematic device, and that it has room for."""

@@ -6,12 +6,12 @@ combs. The sizes are chosen to be seen; the equations know none of them.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
-from server.view3d.gyroscope.solids import arc, beam, join, prism, rigid
-from server.view3d.layout import Box, FloatArray, Mesh, View, merge
-from server.view3d.marks import Place
-from server.view3d.suspension import Flexure
+from server.view3d.flexure import Flexure, beam, join, rigid
+from server.view3d.solids import Box, FloatArray, Mesh, Place, View, arc, circle, merge, prism
 
 GROUND_UM, LOW_UM, TOP_UM = 4.0, 14.0, 30.0
 """Heights of the ground, and of the lower and upper surface of moving parts."""
@@ -23,15 +23,15 @@ TIP_UM, STATOR_UM, BASE_UM, PITCH_UM, FINGER_UM = 260.0, 222.0, 313.0, 16.0, 4.0
 """Tips of moving and of fixed fingers, the base of the fixed ones, pitch and width."""
 DISC_UM, RIM_UM = 345.0, 359.0
 """Radius of the frame and of its rim."""
-APART_UM = 410.0
-"""Half the distance of the two masses of a pair."""
 BEAM_UM, TRUSS_UM = 4.0, 8.0
 COUPLING_UM = 60.0
+APART_UM = 410.0
+"""Half the distance of the two masses of a pair."""
 AXES = ("x", "y")
 
 
-class Parts:
-    """The parts of one gyroscope or of two on one frame.
+class Ground:
+    """The frame that carries one gyroscope or two.
 
     Parameters
     ----------
@@ -40,17 +40,20 @@ class Parts:
     """
 
     def __init__(self, axes: tuple[str, ...]) -> None:
-        self.pairs = [(axes[k], axes[k + 1]) for k in range(0, len(axes), 2)]
-        half = APART_UM * (len(self.pairs) - 1)
-        self.centres = [(x, 0.0) for x in ((-half, half) if half else (0.0,))]
+        self.centres = (0.0,) if len(axes) == 2 else (-APART_UM, APART_UM)
+
+    def mesh(self) -> Mesh:
+        """Return its surface."""
+        outline = circle(RIM_UM, 96)
+        outline[:, 0] += np.where(outline[:, 0] >= 0.0, 1.0, -1.0) * self.centres[-1]
+        return prism(outline, 0.0, GROUND_UM)
 
     def views(self) -> dict[str, View]:
         """Return the presets of the camera: x to the right, or up for a pair in a tall picture."""
         tall = -90 if len(self.centres) == 1 else 180
-        x, reach = self.centres[-1][0], RIM_UM + 16.0
+        first, x, reach = self.centres[0], self.centres[-1], RIM_UM + 16.0
         high = (0.0, TOP_UM)
         whole = ((-x - reach, x + reach), (-reach - 50.0, reach), high)
-        first = self.centres[0][0]
         combs = ((first + BAR_UM, first + BASE_UM + 15.0), (-FOLD_UM, FOLD_UM), high)
         beams = ((first + MASS_UM - 30.0, first + RETURN_UM + 15.0), (40.0, RETURN_UM - 20.0), high)
         return {
@@ -61,13 +64,6 @@ class Parts:
             "beams": (beams, (-90, 62), (-90, 62)),
         }
 
-    def ground(self) -> Mesh:
-        """Return the frame that carries all devices."""
-        angles = np.linspace(0.0, 2.0 * np.pi, 96, endpoint=False)
-        outline = RIM_UM * np.column_stack([np.cos(angles), np.sin(angles)])
-        outline[:, 0] += np.where(outline[:, 0] >= 0.0, 1.0, -1.0) * self.centres[-1][0]
-        return prism(outline, 0.0, GROUND_UM)
-
 
 def rim() -> Mesh:
     """Return the ring around a device."""
@@ -76,26 +72,21 @@ def rim() -> Mesh:
 
 def gas() -> Mesh:
     """Return the gas around a device."""
-    angles = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
-    return prism((DISC_UM - 4.0) * np.column_stack([np.cos(angles), np.sin(angles)]), GROUND_UM + 2.0, TOP_UM + 16.0)
+    return prism(circle(DISC_UM - 4.0, 48), GROUND_UM + 2.0, TOP_UM + 16.0)
 
 
 def mass() -> Flexure:
     """Return the proof mass: a plate with the holes that let the etch through."""
-    steps, hole = 3, 14.0
-    pitch = 2 * MASS_UM / steps
+    holes, hole = 3, 14.0
+    pitch = 2 * MASS_UM / holes
     middle, t = (LOW_UM + TOP_UM) / 2, TOP_UM - LOW_UM
-    boxes = []
-    for row in range(steps + 1):
-        y = -MASS_UM + row * pitch
-        low, high = max(-MASS_UM, y - (pitch - hole) / 2), min(MASS_UM, y + (pitch - hole) / 2)
-        boxes.append(Box((0.0, (low + high) / 2, middle), (2 * MASS_UM, high - low, t)))
-    for row in range(steps):
-        y = -MASS_UM + (row + 0.5) * pitch
-        for column in range(steps + 1):
-            x = -MASS_UM + column * pitch
-            low, high = max(-MASS_UM, x - (pitch - hole) / 2), min(MASS_UM, x + (pitch - hole) / 2)
-            boxes.append(Box(((low + high) / 2, y, middle), (high - low, hole, t)))
+    solid = (pitch - hole) / 2
+    edges = [-MASS_UM + number * pitch for number in range(holes + 1)]
+    spans = [(max(-MASS_UM, edge - solid), min(MASS_UM, edge + solid)) for edge in edges]
+    boxes = [Box((0.0, (low + high) / 2, middle), (2 * MASS_UM, high - low, t)) for low, high in spans]
+    for edge in edges[:-1]:
+        y = edge + pitch / 2
+        boxes += [Box(((low + high) / 2, y, middle), (high - low, hole, t)) for low, high in spans]
     return rigid(merge(boxes), np.eye(2))
 
 
@@ -106,18 +97,14 @@ def anchors() -> Mesh:
 
 
 def bars() -> Flexure:
-    """Return all bars with their fingers."""
-    return join([rigid(_bars(axis), along(axis)) for axis in AXES])
-
-
-def _bars(axis: str) -> Mesh:
-    """Return the bars that move along an axis."""
-    boxes, length = [], TIP_UM - BAR_UM - BAR_WIDTH_UM / 2
-    for arm in _arms(axis):
-        boxes.append(_box(arm, BAR_UM, 0.0, BAR_WIDTH_UM, 2 * BAR_LENGTH_UM, LOW_UM, TOP_UM))
-        sizes = (length, FINGER_UM, LOW_UM, TOP_UM)
-        boxes += [_box(arm, TIP_UM - length / 2, number * PITCH_UM, *sizes) for number in range(-3, 4)]
-    return merge(boxes)
+    """Return all bars with their fingers; each follows the mass along its axis alone."""
+    found, length = [], TIP_UM - BAR_UM - BAR_WIDTH_UM / 2
+    for axis in AXES:
+        for arm in _arms(axis):
+            bar = _box(arm, BAR_UM, 0.0, BAR_WIDTH_UM, 2 * BAR_LENGTH_UM, LOW_UM, TOP_UM)
+            fingers = _comb(arm, TIP_UM - length / 2, length, range(-3, 4))
+            found.append(rigid(merge([bar, *fingers]), along(axis)))
+    return join(found)
 
 
 def stators(axis: str) -> Mesh:
@@ -125,9 +112,13 @@ def stators(axis: str) -> Mesh:
     boxes, length = [], BASE_UM - STATOR_UM
     for arm in _arms(axis):
         boxes.append(_box(arm, BASE_UM, 0.0, 18.0, 8 * PITCH_UM, GROUND_UM, TOP_UM))
-        sizes = (length, FINGER_UM, LOW_UM, TOP_UM)
-        boxes += [_box(arm, STATOR_UM + length / 2, (number + 0.5) * PITCH_UM, *sizes) for number in range(-4, 4)]
+        boxes += _comb(arm, STATOR_UM + length / 2, length, np.arange(-3.5, 4.0))
     return merge(boxes)
+
+
+def _comb(arm: int, u: float, length: float, numbers: Iterable[float]) -> list[Box]:
+    """Return fingers with their middle at ``u`` along an arm, and so many pitches to its left."""
+    return [_box(arm, u, number * PITCH_UM, length, FINGER_UM, LOW_UM, TOP_UM) for number in numbers]
 
 
 def finger(axis: str, number: float, is_moving: bool) -> Box:

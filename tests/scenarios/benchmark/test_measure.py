@@ -26,11 +26,11 @@ DEMONSTRATED = "24de67b07cbee7a0d30a0b58d80c0cf17339ba99d35791fab9bdd4edea630901
 
 
 @pytest.fixture(scope="module")
-def table() -> results.Results:
+def table() -> results.BenchmarkResults:
     return measure([*registry.blocks("diagnose")], NAMES, DEMONSTRATION)
 
 
-def test_every_diagnoser_has_a_row_in_every_track_or_a_reason(table: results.Results) -> None:
+def test_every_diagnoser_has_a_row_in_every_track_or_a_reason(table: results.BenchmarkResults) -> None:
     there = {(row.unit, row.track) for row in table.rows}
     out = {(one.unit, one.track) for one in table.left_out}
     assert there | out == {(unit, name) for unit in registry.blocks("diagnose") for name in NAMES}
@@ -38,19 +38,19 @@ def test_every_diagnoser_has_a_row_in_every_track_or_a_reason(table: results.Res
     assert {unit for unit, _ in out} == {"axes_bank"} and all(one.reason for one in table.left_out)
 
 
-def test_cases_are_those_the_kept_table_was_measured_on(table: results.Results) -> None:
+def test_cases_are_those_the_kept_table_was_measured_on(table: results.BenchmarkResults) -> None:
     """Another digest says that devices, noise or diagnosers have changed: then the kept table is measured anew."""
     bits = results.hash_of([row.digest for row in sorted(table.rows, key=lambda row: (row.track, row.unit))])
     assert bits == DEMONSTRATED
 
 
-def test_a_diagnoser_alone_has_the_rows_it_has_beside_all_others(table: results.Results) -> None:
+def test_a_diagnoser_alone_has_the_rows_it_has_beside_all_others(table: results.BenchmarkResults) -> None:
     alone = measure(["imm"], ["known", "sensor"], DEMONSTRATION)
     assert alone.differences(table) == []
     assert [one.seed for one in alone.rows[0].cases] == [*DEMONSTRATION.cases["known"]]
 
 
-def test_results_read_back_are_the_same_and_any_change_is_named(table: results.Results) -> None:
+def test_results_read_back_are_the_same_and_any_change_is_named(table: results.BenchmarkResults) -> None:
     read = results.read(results.write(table), "FILE")
     assert read == table and table.differences(read) == []
     row = read.rows[0]
@@ -61,7 +61,7 @@ def test_results_read_back_are_the_same_and_any_change_is_named(table: results.R
     assert table.differences(read)[-1].endswith("is missing")
 
 
-def test_rates_of_false_alarms_are_those_asked_for(table: results.Results) -> None:
+def test_rates_of_false_alarms_are_those_asked_for(table: results.BenchmarkResults) -> None:
     """By their healthy runs no diagnoser alarms more often than once in so many samples."""
     for row in table.rows:
         assert row.calibration_samples == DEMONSTRATION.calibrations * HEALTHY
@@ -118,7 +118,7 @@ def test_overconfidence_ranks_below_honesty(name: str) -> None:
     """
     honest, sure = judged(name, 1.0), judged(name, 5.0)
     sure = sure.model_copy(update={"unit": "sure"})
-    found = results.Results.model_construct(rows=[sure, honest])
+    found = results.BenchmarkResults.model_construct(rows=[sure, honest])
     assert [row.unit for row in found.ranked(name)] == ["mmae", "sure"]
     assert sure.log_score.mean > honest.log_score.mean and sure.brier.mean > honest.brier.mean
     assert sure.truth_probability.mean > honest.truth_probability.mean

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from scenarios.campaign import batch
-from scenarios.campaign.outcome import Outcome, outcome
+from scenarios.campaign.outcome import RunOutcome, outcome
 from scenarios.campaign.sweep import Sweep
 from scenarios.edit import with_values
 from scenarios.library import get, library
@@ -25,7 +25,7 @@ ALONE = (
 """Scenarios with twins, commands that wait for conditions; and a scenario that trips."""
 
 
-def said(found: Outcome) -> str:
+def said(found: RunOutcome) -> str:
     return str(found.model_dump(exclude={"elapsed_s"}))
 
 

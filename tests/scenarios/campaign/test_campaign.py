@@ -18,7 +18,7 @@ from typing import Any
 import pytest
 
 from scenarios.campaign.campaign import Campaign, Stopped
-from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.outcome import RunOutcome
 from scenarios.campaign.sweep import Sweep
 from scenarios.run import run
 from scenarios.schema import Scenario
@@ -29,7 +29,7 @@ class Memory:
     """A run table that remembers its entries, and their number."""
 
     def __init__(self) -> None:
-        self.found: dict[str, Outcome] = {}
+        self.found: dict[str, RunOutcome] = {}
         self.puts: list[str] = []
 
     def have(self, keys: Sequence[str]) -> set[str]:
@@ -41,7 +41,7 @@ class Memory:
     def put(self, found: list[tuple[str, str]]) -> None:
         for key, entry in found:
             self.puts.append(key)
-            self.found.setdefault(key, Outcome.model_validate_json(entry))
+            self.found.setdefault(key, RunOutcome.model_validate_json(entry))
 
 
 def small(count: int = 6, samples: int = 1500) -> Sweep:
@@ -72,7 +72,7 @@ def test_processes_give_what_single_runs_give_and_nothing_is_run_twice() -> None
 
 def test_what_another_has_put_into_the_table_meanwhile_is_not_computed() -> None:
     sweep, table = small(20, 9000), Memory()
-    there = {key: Outcome(seed=seed) for key, _, seed in list(sweep.runs())[20:]}
+    there = {key: RunOutcome(seed=seed) for key, _, seed in list(sweep.runs())[20:]}
     assert Campaign(
         sweep, table, workers=1, on_progress=lambda done, _: table.found.update(there) if done == 1 else None
     ).run()
@@ -90,7 +90,7 @@ def test_a_run_that_cannot_be_carried_out_does_not_stop_the_others() -> None:
 def test_a_point_of_which_no_scenario_comes_does_not_stop_the_others() -> None:
     """Points are read when their runs are made: a faulty point is a result, and is not made again."""
     document = {**small().document, "grid": {"sensor.noise_um": [0.1, -1.0], "plant.model": ["linear", "none"]}}
-    table, error = Memory(), Outcome(seed=2).error
+    table, error = Memory(), RunOutcome(seed=2).error
     assert Campaign(Sweep(document), table, workers=1).run()
     said = [found.error for found in table.found.values()]
     assert len(said) == 24 and said.count(error) == 6

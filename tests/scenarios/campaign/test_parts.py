@@ -14,7 +14,7 @@ import pytest
 from core.errors import InputError
 from scenarios.campaign import parts as module
 from scenarios.campaign.batch import outcomes
-from scenarios.campaign.outcome import Outcome
+from scenarios.campaign.outcome import RunOutcome
 from scenarios.campaign.parts import ParquetParts
 from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
@@ -35,7 +35,7 @@ DOCUMENT: dict[str, Any] = {
 class Table:
     """A table of results that can be filled bit by bit."""
 
-    def __init__(self, found: dict[str, Outcome]) -> None:
+    def __init__(self, found: dict[str, RunOutcome]) -> None:
         self.found = dict(found)
         self.visible: set[str] = set()
         self.reads = 0
@@ -49,7 +49,7 @@ class Table:
 
 
 @pytest.fixture(scope="module")
-def computed() -> tuple[Sweep, dict[str, Outcome]]:
+def computed() -> tuple[Sweep, dict[str, RunOutcome]]:
     sweep = Sweep(DOCUMENT)
     runs = [(key, Scenario.load(point.document), seed) for key, point, seed in sweep.runs()]
     found = outcomes([(scenario, seed) for _, scenario, seed in runs])
@@ -58,7 +58,7 @@ def computed() -> tuple[Sweep, dict[str, Outcome]]:
 
 @pytest.fixture
 def made(
-    computed: tuple[Sweep, dict[str, Outcome]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    computed: tuple[Sweep, dict[str, RunOutcome]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> tuple[Sweep, ParquetParts, Table]:
     """A campaign of 36 runs in files of 10, read 4 at a time."""
     monkeypatch.setattr(module, "PART", 10)
@@ -164,7 +164,7 @@ def test_runs_are_counted_over_one_quantity_and_over_two(
 ) -> None:
     sweep, parts, table = made
     failed = sweep.key(0)
-    table.found = {**table.found, failed: Outcome(seed=1, error="severity: too large")}
+    table.found = {**table.found, failed: RunOutcome(seed=1, error="severity: too large")}
     table.show()
     parts.keep_up(table.read)
     survey = Survey(sweep, parts)

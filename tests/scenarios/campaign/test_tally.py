@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from scenarios.campaign.outcome import EVIDENCE, Outcome, outcome
+from scenarios.campaign.outcome import EVIDENCE, RunOutcome, outcome
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import Spread, receiver_operating_characteristic, tally
 from scenarios.edit import with_values
@@ -31,7 +31,7 @@ SWEEP = {
 
 
 @pytest.fixture(scope="module")
-def campaign() -> tuple[Sweep, dict[str, Outcome]]:
+def campaign() -> tuple[Sweep, dict[str, RunOutcome]]:
     sweep = Sweep(SWEEP)
     from scenarios.schema import Scenario
 
@@ -82,7 +82,7 @@ def test_an_outcome_counts_what_the_trace_shows() -> None:
     assert abs(called - np.sum(healthy < 0.5)) <= np.sum(np.abs(healthy - 0.5) < 0.06)
 
 
-def test_points_have_the_mean_and_deviation_of_their_runs(campaign: tuple[Sweep, dict[str, Outcome]]) -> None:
+def test_points_have_the_mean_and_deviation_of_their_runs(campaign: tuple[Sweep, dict[str, RunOutcome]]) -> None:
     sweep, outcomes = campaign
     points = tally(sweep, outcomes)
     assert [point.labels for point in points] == [{"sensor.noise_um": 0.05}, {"sensor.noise_um": 0.6}]
@@ -101,7 +101,7 @@ def test_points_have_the_mean_and_deviation_of_their_runs(campaign: tuple[Sweep,
     assert areas[0] > areas[1] > 0.5  # more noise, a worse detector
 
 
-def test_the_report_is_one_whole_file_that_loads_nothing(campaign: tuple[Sweep, dict[str, Outcome]]) -> None:
+def test_the_report_is_one_whole_file_that_loads_nothing(campaign: tuple[Sweep, dict[str, RunOutcome]]) -> None:
     sweep, outcomes = campaign
     text = campaign_report(sweep, tally(sweep, outcomes))
     assert "Noise &lt;small&gt;" in text and "<small>" not in text
@@ -113,7 +113,7 @@ def test_the_report_is_one_whole_file_that_loads_nothing(campaign: tuple[Sweep, 
     assert "6 of 6 runs" in text and "Receiver operating characteristic" in text
 
 
-def test_the_report_tells_few_errors_from_none(campaign: tuple[Sweep, dict[str, Outcome]]) -> None:
+def test_the_report_tells_few_errors_from_none(campaign: tuple[Sweep, dict[str, RunOutcome]]) -> None:
     """A share that is almost all keeps its digits, and counts are whole."""
     sweep, outcomes = campaign
     means = {"diagnosis.kalman.correct_fraction": 0.99997, "diagnosis.kalman.false_switches": 53.0}
@@ -122,7 +122,7 @@ def test_the_report_tells_few_errors_from_none(campaign: tuple[Sweep, dict[str, 
     assert text.count("<td>0.99997\u00a0±\u00a00</td>") == text.count("<td>53\u00a0±\u00a00</td>") == 2
 
 
-def test_partial_results_are_added_up(campaign: tuple[Sweep, dict[str, Outcome]]) -> None:
+def test_partial_results_are_added_up(campaign: tuple[Sweep, dict[str, RunOutcome]]) -> None:
     sweep, outcomes = campaign
     some = dict(list(outcomes.items())[:2])
     assert [point.runs for point in tally(sweep, some)] == [2, 0]
@@ -132,7 +132,7 @@ def test_partial_results_are_added_up(campaign: tuple[Sweep, dict[str, Outcome]]
 def test_a_run_that_cannot_be_carried_out_says_why_in_the_report() -> None:
     sweep = Sweep({"schema": 1, "scenario": "ch5-seven-step"})
     key = next(key for key, _, _ in sweep.runs())
-    points = tally(sweep, {key: Outcome(seed=1, error="severity: too large")})
+    points = tally(sweep, {key: RunOutcome(seed=1, error="severity: too large")})
     assert points[0].errors == ["severity: too large (1 runs)"]
     assert "severity: too large" in campaign_report(sweep, points)
 

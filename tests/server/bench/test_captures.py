@@ -12,7 +12,7 @@ from core.board.rows import Rows
 from server.bench import captures as module
 from server.bench.captures import AT_ONCE, MOST, MOST_SETS, Captured, Captures, CaptureSet
 from server.bench.journal import Branches
-from server.stream.view import View
+from server.stream.view import PictureCutter
 from server.stream.wire import Subscribe, TriggerSpec
 
 DT = 0.01
@@ -61,7 +61,7 @@ class Bench:
     def capture(self, kept: CaptureSet, tick: int, at: float) -> None:
         self.captures.found(kept, tick, at)
 
-    def look(self, *views: View) -> None:
+    def look(self, *views: PictureCutter) -> None:
         self.captures.follow()
         for view in views:
             view.picture(self)
@@ -86,7 +86,7 @@ def opened(
     before = round(window * BEFORE / WINDOW)
     what = Captured(signals, "a", spec.edge, level, spec.upper, spec.hysteresis, window, before)
     kept = bench.captures.open(what, columns)
-    return View(ask, columns, 0, DT, bench.end_tick, captures=kept), kept
+    return PictureCutter(ask, columns, 0, DT, bench.end_tick, captures=kept), kept
 
 
 def ticks_of(kept: CaptureSet) -> list[int]:
@@ -302,7 +302,7 @@ def test_a_frozen_view_of_a_scope_looks_at_its_captures_and_adds_none() -> None:
         type="subscribe", panel=1, signals=["a", "b"], mode="frozen", start_tick=35, end_tick=95, width=60,
         trigger=view.spec.trigger, window_ms=WINDOW * DT,
     )  # fmt: skip
-    standing = View(frozen, [0, 1], 0, DT, bench.end_tick, captures=kept)
+    standing = PictureCutter(frozen, [0, 1], 0, DT, bench.end_tick, captures=kept)
     bench.run(9000)
     bench.look(standing)
     assert ticks_of(kept) == [50, 150, 250]

@@ -11,7 +11,8 @@ from typing import Any
 
 import pytest
 
-from server.bench.engine import Engine, Workload
+from server.bench.bench import LiveBench
+from server.bench.engine import Engine
 from server.bench.watchdog import LATE_COUNTS_S, LOOK_S, SILENT_S, STUCK_S, Activity, Watchdog, _is_ready
 from server.metrics import Metrics
 from tests.server.bench.test_engine import Work, until
@@ -45,7 +46,7 @@ class Heard:
         self.stuck_benches: list[list[str]] = []
         self.recoveries = 0
 
-    def hung(self, running: Sequence[Workload], held: Sequence[str], why: str) -> None:
+    def hung(self, running: Sequence[LiveBench], held: Sequence[str], why: str) -> None:
         self.hangs.append(([work.id for work in running], list(held), why))
 
     def stuck(self, held: Sequence[str]) -> None:

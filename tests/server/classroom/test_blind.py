@@ -11,8 +11,8 @@ from core.board.commands import parse_command
 from core.device.drawn import device_of
 from scenarios.library import get
 from server.api.view3d import SUBPROTOCOL as SCENE
-from server.bench.hiding import STOPPED
 from server.classroom.access import DOORS, OPEN_WHILE_BLIND, SOCKET, Need
+from server.classroom.hiding import STOPPED
 from server.stream.hub import CLOSE_TURNED
 from tests.server.classroom.group import Somebody, advance, closed_with, join, open_class, the_teacher, watcher
 from tests.server.classroom.test_blind_doors import ENDING

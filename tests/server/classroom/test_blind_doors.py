@@ -17,8 +17,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from scenarios.library import get
-from server.bench import blind
 from server.bench.bench import LiveBench
+from server.classroom import blind
 from server.classroom.access import ALL, DOORS, OPEN_WHILE_BLIND, SOCKET, Need
 from server.classroom.classes import Classes
 from tests.server.classroom.group import Somebody, join, open_class, the_teacher

@@ -288,18 +288,3 @@ def test_a_refusal_to_join_says_what_to_do_and_gives_the_keys_to_its_field() -> 
     short = ErrorBody(code="invalid", message="needs 1 to 40 characters", field="name", hint="")
     page = join_page("/join", "ABCD", "", short)
     assert ">Name needs 1 to 40 characters.<" in page and re.search(r'name="name"[^>]* autofocus', page)
-
-
-def test_a_process_marks_its_ids_and_sends_the_codes_of_others_on(serve: Any) -> None:
-    with serve(shard="b", clock="manual") as live, live.anonymous(headers={"Origin": live.address}) as browser:
-        group = open_class(live)
-        code = group["code"].replace(" ", "").lower()
-        assert code.startswith("b") and len(code) == 12
-        assert join(live, group, "Ada").bench.startswith("b") and live.bench("first-look")["id"].startswith("b")
-        assert 'action="/join?shard=b"' in browser.get("/join").text
-        foreign = {"code": f"a{code[1:]}", "name": "Eve"}
-        sent = browser.post("/join", data=foreign)
-        assert (sent.status_code, sent.headers["location"]) == (307, "/join?shard=a")
-        assert browser.post("/join?shard=a", data=foreign).status_code == 403  # sent here all the same
-        own = browser.post("/join?shard=b", data={"code": code, "name": "Ben"})
-        assert (own.status_code, own.headers["location"]) == (303, "/")

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from server.bench import blind
+from server.classroom import blind
 from server.classroom.access import DOORS, Need, serves_blind
 from server.classroom.classes import Classes
 from tests.server.classroom.at_sheet import API, AtSheet
@@ -176,7 +176,7 @@ def cases(live: Live) -> Iterator[tuple[str, dict[str, Any]]]:
 
 def truth_of(live: Live, bench: str) -> str:
     """Return the hidden fault of a bench; no door reveals it."""
-    return str(live.service.benches.get(bench).hiding.blind.truth)
+    return str(live.service.benches.get(bench).view.rules.truth)
 
 
 def test_a_step_takes_the_answer_to_the_fault_that_it_has_hidden_and_no_other(
@@ -230,7 +230,7 @@ def test_no_two_names_and_no_two_steps_share_what_is_drawn(live: Live, cases: tu
         for step in ("first", "second"):
             bench = at.ask("POST", f"/sheets/{sheet}/steps/{step}/hide", status=201)["bench"]
             session = live.service.benches.get(bench)
-            drawn.add((session.board.spec.seed, session.hiding.blind.came_tick))
+            drawn.add((session.board.spec.seed, session.view.rules.came_tick))
             at.ask("DELETE", f"/benches/{bench}/blind")
             at.look()
     assert len(drawn) == 4

@@ -10,7 +10,7 @@ import pytest
 
 from core.board.stored import Stored, revived, stored
 from server.bench.bench import LiveBench
-from server.bench.watch import KeptWatch
+from server.bench.view import KeptWatch
 from server.classroom.sheet_watch import SheetWatch
 from server.clock import ManualClock
 from server.metrics import Metrics

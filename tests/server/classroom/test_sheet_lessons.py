@@ -170,7 +170,7 @@ def blind_diagnosis(at: AtSheet) -> None:
         assert at.step(name)["earned"] == 0.0
         at.bench = at.ask("POST", f"/sheets/{at.sheet}/steps/{name}/hide", status=201)["bench"]
         path = f"/api/v1/benches/{at.bench}/blind"
-        truth = at.live.service.benches.get(at.bench).hiding.blind.truth  # no door tells it
+        truth = at.live.service.benches.get(at.bench).view.rules.truth  # no door tells it
         assert at.live.http.post(f"{path}/answer", json={"said": truth, "confidence": 1.0}).json()["points"] == 100.0
         assert at.step(name)["earned"] == at.step(name)["points"]
     at.right("helps", "tone")

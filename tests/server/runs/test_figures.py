@@ -15,8 +15,7 @@ import pytest
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
-from server.runs.build_figures import build
-from server.runs.figures import Figures
+from server.runs.figures import ScenarioFigures, build
 
 FEW = ("first-look", "ch1-beam-width", "ch3-ffrls-b30")
 
@@ -119,13 +118,13 @@ def test_figures_are_made_when_the_gallery_is_opened_the_cards_in_sight_first(
 ) -> None:
     few(monkeypatch)
     drawn: list[str] = []
-    draw = Figures._draw
+    draw = ScenarioFigures._draw
 
-    async def noted(self: Figures, scenario: Any) -> dict[str, Any]:
+    async def noted(self: ScenarioFigures, scenario: Any) -> dict[str, Any]:
         drawn.append(scenario.id)
         return await draw(self, scenario)
 
-    monkeypatch.setattr(Figures, "_draw", noted)
+    monkeypatch.setattr(ScenarioFigures, "_draw", noted)
     with serve(figures=True) as live:
         live.bench("first-look", paused=True)
         assert live.http.get("/api/v1/gallery/first-look/figure").status_code == 404

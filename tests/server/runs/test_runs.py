@@ -17,7 +17,7 @@ from scenarios.edit import with_values
 from scenarios.library import get, library
 from scenarios.run import build, run
 from scenarios.schema import Scenario
-from server.runs.length import check_length
+from server.runs.queue import check_length
 from server.settings import Settings
 from server.store.models import RequestRow
 

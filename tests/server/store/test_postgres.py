@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -51,6 +52,16 @@ def test_a_database_serves_one_server_at_a_time(postgres_server: str, tmp_path: 
     first.close()
     second.claim()
     second.close()
+
+
+@pytest.mark.long
+def test_processes_that_start_at_once_migrate_once(postgres_server: str) -> None:
+    address = new_database(postgres_server, "at-once")
+    databases = [Database(address) for _ in range(4)]
+    with ThreadPoolExecutor(len(databases)) as threads:
+        list(threads.map(Database.migrate, databases))
+    for database in databases:
+        database.close()
 
 
 @pytest.mark.long

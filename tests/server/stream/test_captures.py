@@ -210,11 +210,11 @@ def test_many_subscriptions_cost_no_more_than_the_bench_has_for_captures(live: A
         assert 0 < sum(one.nbytes for one in kept()) <= session.captures.most_bytes
         assert all(message["is_short"] for message in told.values() if not message["captures"])
     # what captures and checkpoints may take, the history of 72 MB leaves free
-    beside = 2 * session.captures.most_bytes + session.track_bytes
+    beside = 2 * session.captures.most_bytes + session.memory.track_bytes
     counts = session.board.signals.outputs, len(session.board.signals.taps)
     left = History.ticks_within(72 - beside * 1e-6, *counts)
     assert session.history.capacity == History(*counts, left).capacity
-    assert left < History.ticks_within(72 - session.track_bytes * 1e-6, *counts)
+    assert left < History.ticks_within(72 - session.memory.track_bytes * 1e-6, *counts)
 
 
 def test_what_no_capture_has_is_refused_in_one_line(small: Any) -> None:

@@ -21,9 +21,8 @@ from server.settings import Settings
 from server.stream import client as client_module
 from server.stream.client import Client
 from server.stream.codec import Frame, decode
-from server.stream.hub import Hub
+from server.stream.hub import EVENT_STATUS_S, PAGES_AT_ONCE, Hub
 from server.stream.panel import Panel
-from server.stream.room import PAGES_AT_ONCE, STATUS_S
 from server.stream.wire import Subscribe
 
 
@@ -230,7 +229,7 @@ async def test_many_events_bring_the_status_now_and_then() -> None:
     seen = [event["seq"] for m in said if m["type"] == "events" for event in m["events"]]
     assert len(seen) == 100 and seen == list(range(seen[0], seen[0] + 100))
     statuses = sum(m["type"] == "status" for m in said)
-    assert 100 * 0.01 / STATUS_S <= statuses + 1 <= 100 * 0.01 / STATUS_S + 2
+    assert 100 * 0.01 / EVENT_STATUS_S <= statuses + 1 <= 100 * 0.01 / EVENT_STATUS_S + 2
 
 
 @on_loop

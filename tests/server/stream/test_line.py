@@ -15,7 +15,7 @@ from uvicorn.config import Config
 from uvicorn.server import ServerState
 from websockets.frames import Frame, Opcode
 
-from server.stream.line import Line, binary_head, ends_whole, short_text, text_message
+from server.stream.line import WebSocketLine, binary_head, ends_whole, short_text, text_message
 
 SIZES = st.one_of(st.integers(0, 130), st.sampled_from([65_535, 65_536]))
 OPCODES = st.sampled_from([Opcode.TEXT, Opcode.BINARY, Opcode.PING])
@@ -104,7 +104,7 @@ def test_who_breaks_the_rules_before_the_answer_is_cut(refused: bytes, caplog: p
     async def meet() -> Mock:
         config = Config(answer, interface="asgi3", log_config=None)
         config.load()
-        line, transport = Line(config, ServerState(), {}, asyncio.get_running_loop()), Mock()
+        line, transport = WebSocketLine(config, ServerState(), {}, asyncio.get_running_loop()), Mock()
         transport.get_extra_info.return_value = None
         transport.is_closing.side_effect = lambda: transport.abort.called
         line.connection_made(transport)

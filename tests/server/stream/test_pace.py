@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from server.stream.pace import BUSY, SLOWEST_S, Pace
+from server.stream.hub import BUSY, SLOWEST_S, Pace
 
 
 def settled(picture_s: float, other: float, rate_hz: float = 60.0) -> float:

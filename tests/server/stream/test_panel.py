@@ -13,7 +13,7 @@ from core.board.history import History
 from core.board.rows import Rows
 from server.stream.codec import FROZEN, TRIGGERED, WAITING, Picture
 from server.stream.panel import Panel
-from server.stream.view import Span, View
+from server.stream.view import PictureCutter, TickSpan
 from server.stream.wire import Subscribe, TriggerSpec
 
 DT = 0.01
@@ -32,7 +32,7 @@ class Cuts:
     def __init__(self, history: History) -> None:
         self._history = history
 
-    def picture(self, view: View) -> Picture:
+    def picture(self, view: PictureCutter) -> Picture:
         return view.picture(self._history)
 
 
@@ -42,12 +42,12 @@ def picture_of(one: Panel, history: History) -> Picture | None:
 
 def panel(head: int = 0, **fields: Any) -> Panel:
     spec = Subscribe(**{"type": "subscribe", "panel": 1, "signals": ["a"], "window_ms": 1.0, **fields})
-    return Panel(View(spec, [0], 0 if spec.trigger else None, DT, head), 1)
+    return Panel(PictureCutter(spec, [0], 0 if spec.trigger else None, DT, head), 1)
 
 
 @given(st.integers(0, 10**6), st.integers(2, 10**5), st.integers(1, 4096))
 def test_a_rolling_span_covers_its_window_in_whole_columns(head: int, window: int, width: int) -> None:
-    span = Span.ending(head, window, width)
+    span = TickSpan.ending(head, window, width)
     step = (span.end - span.start) // span.columns
     assert span.start + step * span.columns == span.end
     assert span.start % step == 0
@@ -58,7 +58,7 @@ def test_a_rolling_span_covers_its_window_in_whole_columns(head: int, window: in
 
 @given(st.integers(-1000, 10**6), st.integers(1, 10**5), st.integers(1, 4096))
 def test_a_frozen_span_covers_what_was_asked(start: int, length: int, width: int) -> None:
-    span = Span.between(start, start + length, width)
+    span = TickSpan.between(start, start + length, width)
     step = (span.end - span.start) // span.columns
     assert span.start <= start < span.start + step
     assert start + length <= span.end
@@ -194,7 +194,7 @@ def test_pages_that_show_the_same_share_one_picture() -> None:
     history = History(1, 1, 20_000)
     fill(history, sine(500))
     spec = Subscribe(type="subscribe", panel=1, signals=["a"], window_ms=1.0)
-    view = View(spec, [0], None, DT, 0)
+    view = PictureCutter(spec, [0], None, DT, 0)
     first, second = Panel(view, 1), Panel(view, 3)
     shown = picture_of(first, history)
     assert shown is not None and picture_of(second, history) is shown

@@ -9,20 +9,20 @@ from core.device.geometry import Geometry
 from core.plant.linear import Linear
 from core.plant.planar import Planar
 from server.view3d.colours import ATTENTION, MOVING, blend, in_batch
-from server.view3d.layout import UM_PER_UNIT, Layout
 from server.view3d.motion import (
     TURN_EXAGGERATIONS,
     WANTED_TURN_UM,
     WANTED_UM,
     caption,
-    closed_share,
     exaggeration,
     moment,
     warning,
 )
 from server.view3d.page import cameras
-from server.view3d.pose import combs_of
-from server.view3d.suspension import flexure
+from server.view3d.part import UM_PER_UNIT
+from server.view3d.resonator.layout import Layout
+from server.view3d.resonator.resonator import combs_of
+from server.view3d.resonator.suspension import flexure
 
 LAYOUT = Layout(Geometry())
 
@@ -47,15 +47,13 @@ def test_moving_fingers_stand_between_fixed_ones() -> None:
 
 
 def test_slow_motion_is_true_and_fast_motion_is_strobed() -> None:
-    slow = moment(1000, 50.0, 200.0, 0.0)  # 4 periods a second
-    assert (slow.tick, slow.is_strobed) == (999, False)
-    assert not moment(1000, None, 1e5, 0.0).is_strobed
+    assert moment(1000, 50.0, 200.0, 0.0) == (999, False)  # 4 periods a second
+    assert moment(1000, None, 1e5, 0.0) == (999, False)
     ticks = [moment(100_000 + 1667 * n, 50.0, 1e5, n / 60) for n in range(120)]
-    assert all(one.is_strobed for one in ticks)
-    for n, one in enumerate(ticks):
-        assert 0 <= 100_000 + 1667 * n - 1 - one.tick <= 50
+    for n, (tick, is_strobed) in enumerate(ticks):
+        assert is_strobed and 0 <= 100_000 + 1667 * n - 1 - tick <= 50
     # The phase shown runs slowly and evenly: 0.8 turns a second.
-    phase = np.unwrap([2 * np.pi * one.tick / 50.0 for one in ticks]) / (2 * np.pi)
+    phase = np.unwrap([2 * np.pi * tick / 50.0 for tick, _ in ticks]) / (2 * np.pi)
     assert phase[60] - phase[0] == pytest.approx(0.8, abs=0.05)
 
 
@@ -92,11 +90,9 @@ def test_what_is_not_as_in_nature_is_said() -> None:
 
 def test_a_comb_warns_before_stability_is_lost() -> None:
     """A tenth of the gap, where the earliest fold is, already takes a third of the colour; contact takes it all."""
-    assert closed_share(-0.21, 2.1) == pytest.approx(0.1)
-    assert closed_share(3.0, 2.1) == 1.0
-    assert warning(0.0) == 0.0 and warning(1.0) == 1.0
-    assert warning(0.1) > 0.3
-    assert blend(MOVING, ATTENTION, warning(0.0)) == MOVING and blend(MOVING, ATTENTION, warning(1.0)) == ATTENTION
+    assert warning(0.0, 2.1) == 0.0 and warning(2.1, 2.1) == warning(3.0, 2.1) == 1.0
+    assert warning(-0.21, 2.1) == pytest.approx(0.1**0.5) and warning(0.21, 2.1) > 0.3
+    assert blend(MOVING, ATTENTION, 0.0) == MOVING and blend(MOVING, ATTENTION, 1.0) == ATTENTION
 
 
 def test_fingers_are_off_centre_by_shift_and_rotation() -> None:
@@ -114,7 +110,7 @@ def test_colours_of_a_batch_are_linear() -> None:
 
 @pytest.mark.parametrize("name", ["whole", "top", "side", "fingers", "beams"])
 def test_cameras_look_at_the_device(name: str) -> None:
-    view = cameras(LAYOUT)[name]
+    view = cameras(LAYOUT.views())[name]
     low, high = (UM_PER_UNIT * np.array(end) for end in zip(*view["box"], strict=True))
     assert (low <= high).all() and (high[:2] <= (LAYOUT.half_length_um, LAYOUT.half_width_um)).all()
     if name in ("whole", "top", "side"):

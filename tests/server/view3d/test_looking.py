@@ -11,10 +11,10 @@ import pytest
 import zstandard
 from websockets.exceptions import ConnectionClosed
 
-from server.view3d.gyroscope.pose import GyroscopeObserver
-from server.view3d.layout import UM_PER_UNIT
-from server.view3d.pose import Observer
-from server.view3d.viewers import observer_of
+from server.view3d.gyroscope.gyroscope import GyroscopeModel
+from server.view3d.part import UM_PER_UNIT
+from server.view3d.resonator.resonator import ResonatorModel
+from server.view3d.viewers import device_of
 from tests.server.classroom.group import watcher
 from tests.server.view3d.test_view3d import join
 
@@ -49,11 +49,11 @@ def test_a_pose_is_that_of_the_tick(live: Any) -> None:
         ticks=900,
     )
     for tick, severity in ((250, None), (400, 0.2), (600, None), (800, 0.4)):
-        # an observer that starts now: the log gives the parameters
-        observer = observer_of(session)
-        assert isinstance(observer, Observer)
-        pose = observer.pose(tick)
-        factor = observer._factor
+        # a device that is drawn from now on: the log gives the parameters
+        device = device_of(session)
+        assert isinstance(device, ResonatorModel)
+        pose = device.pose(tick)
+        factor = device._factor
         assert pose.displacement_um == pytest.approx(factor * sample(session, "plant.displacement", tick), rel=1e-6)
         assert pose.reference_um == pytest.approx(factor * sample(session, "model.displacement", tick), rel=1e-6)
         winner = int(sample(session, "kalman.winner", tick))
@@ -62,8 +62,8 @@ def test_a_pose_is_that_of_the_tick(live: Any) -> None:
         assert pose.estimate_um == pytest.approx(factor * estimate, rel=1e-6)
         assert [fault.params.severity for fault in pose.faults] == ([] if severity is None else [severity])
         assert pose.when == f"at {tick * session.dt_ms:.3f}\u00a0ms"
-    assert observer.pose(session.history.end_tick) == observer.pose(None) == observer.pose(-1)
-    assert observer.pose().when == ""
+    assert device.pose(session.history.end_tick) == device.pose(None) == device.pose(-1)
+    assert device.pose().when == ""
 
 
 def test_a_pose_has_the_light_of_then(live: Any) -> None:
@@ -72,9 +72,9 @@ def test_a_pose_has_the_light_of_then(live: Any) -> None:
     session = stepped(live, (300, ideal), scenario="ch2-dual-beam", set=alone, ticks=500)
 
     def light(tick: int | None) -> list[bool]:
-        observer = observer_of(session)
-        assert isinstance(observer, Observer)
-        return [beam.is_through for beam in observer.pose(tick).lasers]
+        device = device_of(session)
+        assert isinstance(device, ResonatorModel)
+        return [beam.is_through for beam in device.pose(tick).lasers]
 
     assert light(250) == [True, True]
     assert light(450) == light(None) == []
@@ -82,14 +82,14 @@ def test_a_pose_has_the_light_of_then(live: Any) -> None:
 
 def test_a_gyroscope_is_shown_as_it_was(live: Any) -> None:
     session = stepped(live, scenario="gyro-adaptive", ticks=3000)
-    observer = observer_of(session)
-    assert isinstance(observer, GyroscopeObserver)
+    device = device_of(session)
+    assert isinstance(device, GyroscopeModel)
     for tick in (1200, 2345):
-        pose = observer.pose(tick)
+        pose = device.pose(tick)
         x, y = (sample(session, f"plant.{axis}", tick) for axis in session.board.spec.axes[:2])
-        np.testing.assert_allclose(pose.places[0], np.array(observer._factors) * (x, y), rtol=1e-6)
+        np.testing.assert_allclose(pose.places[0], np.array(device._factors) * (x, y), rtol=1e-6)
         assert pose.when.startswith("at ") and "strobe" not in pose.caption
-    assert observer.pose(10**9).when == ""
+    assert device.pose(10**9).when == ""
 
 
 def moments(page: Any, enough: Callable[[list[str]], bool], seen: Callable[[Any], bool] = lambda _: False) -> list[str]:
@@ -130,21 +130,20 @@ def test_only_the_page_that_looks_is_moved_and_it_comes_back(live: Any) -> None:
     with join(live, {"id": session.id}) as page, join(live, {"id": session.id}) as other:
         assert moments(page, bool) == moments(other, bool) == [""]
         assert until_moved(live, session, page) == []
-        shared = at_rest(live, show._scene)
+        shared = at_rest(live, show._scenes[None][0])
         look(page, 250)
         moments(page, lambda said: said[-1:] == ["at 5.000 ms"])
-        (looked, (own, _)) = next(iter(show._own.items()))
-        assert looked.tick == 250
-        assert own._shuttle.position[0] == pytest.approx(own._shown.displacement_um / UM_PER_UNIT, rel=1e-5)
+        (own,) = (scene for looked, (scene, _) in show._scenes.items() if looked is not None and looked.tick == 250)
+        assert own.nodes["/shuttle"].position[0] == pytest.approx(own._shown.displacement_um / UM_PER_UNIT, rel=1e-5)
         assert own._shown.displacement_um != shared.displacement_um
-        assert show._scene._shown == shared and shared.when == ""
+        assert show._scenes[None][0]._shown == shared and shared.when == ""
         assert until_moved(live, session, other) == []
-        shared = at_rest(live, show._scene)
+        shared = at_rest(live, show._scenes[None][0])
         look(page, None)
         assert moments(page, bool) == [""]
         assert own._shown == shared
-        assert show.watchers == 2 and len(show._own) == 1
-    live.wait(lambda: not show._own and show._scene is None)  # no scene stays open without a page
+        assert show.watchers == 2 and len(show._scenes) == 2
+    live.wait(lambda: not show._scenes)  # no scene stays open without a page
 
 
 def test_a_tick_that_the_history_has_not_leaves_the_page_with_now(live: Any) -> None:
@@ -159,11 +158,11 @@ def test_a_tick_that_the_history_has_not_leaves_the_page_with_now(live: Any) -> 
         page.send(b"\x81" * 40)
         look(page, 100)
         moments(page, lambda said: said[-1:] == ["at 2.000 ms"])
-        assert len(show._own) == 1
+        assert len(show._scenes) == 2
         live.http.delete(f"/api/v1/benches/{session.id}")
         with pytest.raises(ConnectionClosed):
             moments(page, lambda _: False)
-    assert not show._own
+    assert not show._scenes
 
 
 def test_watchers_look_too_and_a_fault_that_is_hidden_ends_it(live: Any) -> None:

@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from core.device.frame import Damage, stiffness
 from core.device.geometry import Geometry
-from server.view3d.layout import UM_PER_UNIT, Layout
-from server.view3d.suspension import BEAM_RINGS, TRUSS_RINGS, Flexure, flexure
+from server.view3d.flexure import Flexure
+from server.view3d.resonator.layout import Layout
+from server.view3d.resonator.suspension import BEAM_RINGS, TRUSS_RINGS, flexure
 
 LAYOUT = Layout(Geometry())
 STIFF = Layout(Geometry(truss_width_um=60.0))
@@ -35,7 +36,7 @@ def centre(values: NDArray[np.float64], rows: NDArray[np.bool_]) -> NDArray[np.f
 def test_beams_between_stiff_trusses_bend_as_guided_beams(side: int) -> None:
     """Shuttle shifted by v, trusses by v/2: u = (v/2)(3s^2 - 2s^3) from the anchor, flat at both ends."""
     v, part = 10.0, flexure(STIFF, side)
-    shift = part.bent(v, 0.0, 0.0)[:, 0] * UM_PER_UNIT - part.rest[:, 0]
+    shift = part.bent(v, 0.0)[:, 0] - part.rest[:, 0]
     s = np.linspace(0.0, 1.0, BEAM_RINGS)
     curve = v / 2 * (3 * s**2 - 2 * s**3)
     for x in INNER:

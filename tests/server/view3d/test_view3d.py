@@ -20,7 +20,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from server.view3d.viewers import build_scene, observer_of
+from server.view3d.viewers import build_scene, device_of
 
 VISER = "viser-v1.1.1"
 MOST_MESSAGES, MOST_VALUES = 40, 40_000
@@ -53,9 +53,9 @@ def arrive(socket_: Any, messages: int, live: Any = None) -> None:
 def drawn(live: Any, bench: dict[str, Any]) -> Iterator[tuple[Any, Callable[[], Any]]]:
     """Return a scene of a bench of its own, and what shows the bench in it."""
     session = live.service.benches.get(bench["id"])
-    scene, observer = build_scene(session), observer_of(session)
+    device, scene = build_scene(session)
     try:
-        yield scene, lambda: scene.show(observer.pose())
+        yield scene, lambda: scene.show(device.pose())
     finally:
         scene.close()
 
@@ -86,11 +86,11 @@ def test_the_scene_moves_while_somebody_watches(live: Any) -> None:
     with join(live, bench) as page:
         assert page.subprotocol == VISER
         arrive(page, 10, live)
-        path = show._scene.path
+        path = show._scenes[None][0].path
         with join(live, bench) as second:
             arrive(second, 5, live)
-            assert show.watchers == 2 and show._scene.path == path
-    live.wait(lambda: show._scene is None and not path.parent.exists())  # the scene is open without a page
+            assert show.watchers == 2 and show._scenes[None][0].path == path
+    live.wait(lambda: not show._scenes and not path.parent.exists())  # the scene is open without a page
 
 
 def test_a_paused_bench_sends_nothing(live: Any) -> None:
@@ -117,7 +117,8 @@ def test_the_scene_is_on_no_port_and_its_socket_is_for_this_user_alone(live: Any
     with join(live, bench) as page:
         arrive(page, 1)
         assert listening() <= before
-        path = live.service.viewers.show_of(live.service.benches.get(bench["id"]))._scene.path
+        show = live.service.viewers.show_of(live.service.benches.get(bench["id"]))
+        path = show._scenes[None][0].path
         assert path.is_socket()
         folder = path.parent.stat()
         assert folder.st_mode & 0o777 == 0o700 and folder.st_uid == os.getuid()
@@ -177,7 +178,7 @@ def test_nothing_stays_behind(live: Any) -> None:
     for _ in range(4):
         with join(live, bench) as page:
             arrive(page, 1)
-        live.wait(lambda: show._scene is None)
+        live.wait(lambda: not show._scenes)
         live.wait(lambda: not any(thread.name.startswith("websockets") for thread in threading.enumerate()))
         threads.append(threading.active_count())
     live.wait(lambda: threading.active_count() <= threads[0] + 1)
@@ -190,26 +191,29 @@ def test_faults_and_motion_reach_the_parts(live: Any) -> None:
         def shown() -> float:
             live.advance(seconds=0.05)
             show()
-            return float(scene._shuttle.position[0])
+            return float(scene.nodes["/shuttle"].position[0])
 
         shown()
-        assert not scene._added and not scene._film.visible
-        color, film = tuple(scene._beams[0].color), scene._film.opacity
+        film, (plus, minus) = scene.nodes["/film"], (scene.nodes[f"/beams/{side}"] for side in ("plus", "minus"))
+        assert not scene.added and not film.visible
+        color, opacity = tuple(plus.color), film.opacity
         for fault in ("added_mass", "stiffness", "damping"):
             live.command(bench["id"], fault=fault, severity=0.2)
         assert len({shown() for _ in range(8)}) > 5
-        assert len(scene._marks.labels) == 3
-        assert {node.name for node in scene._added} >= {"/shuttle/added-mass", "/labels/0"}
-        assert scene._film.visible and scene._film.opacity != film
-        assert tuple(scene._beams[0].color) == tuple(scene._beams[1].color) != color
+        marks = dict(scene.added)
+        assert set(marks) == {"/shuttle/added-mass", "/labels/0", "/labels/1", "/labels/2"}
+        shown()
+        assert all(scene.added[name] is node for name, node in marks.items())  # they are not sent again
+        assert film.visible and film.opacity != opacity
+        assert tuple(plus.color) == tuple(minus.color) != color
         live.command(bench["id"], heal="all")
         shown()
-        assert not scene._added and not scene._film.visible and tuple(scene._beams[0].color) == color
+        assert not scene.added and not film.visible and tuple(plus.color) == color
 
 
 def pose_of(live: Any, bench: dict[str, Any]) -> tuple[Any, Any]:
     session = live.service.benches.get(bench["id"])
-    return session, observer_of(session).pose()
+    return session, device_of(session).pose()
 
 
 def test_a_shuttle_in_the_plane_shifts_turns_and_warns(live: Any) -> None:

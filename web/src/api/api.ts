@@ -56,6 +56,7 @@ export const api = {
   positiveReal: (numerator: number[], denominator: number[]) =>
     data(client.POST("/api/v1/theory/positive-real", { body: { numerator, denominator } })),
   persistency: (body: ExcitationSource) => data(client.POST("/api/v1/theory/persistency", { body })),
+  qrCode: (text: string) => data(client.POST("/api/v1/qr", { body: { text } })),
   instabilityMap: (body: MapSource) => data(client.POST("/api/v1/theory/instability-map", { body })),
   readout: (bench_id: string, name: string) =>
     data(client.GET("/api/v1/benches/{bench_id}/readouts/{name}", at({ bench_id, name }))),

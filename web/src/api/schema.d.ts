@@ -104,30 +104,6 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/benches/{bench_id}/diagnosers/{name}/aliases": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Map Bench Aliases
-         * @description Map the response of every hypothesis to the tones of the drive, and name those with the same response.
-         */
-        get: operations["map_bench_aliases"];
-        put?: never;
-        /**
-         * Get Aliases
-         * @description Report the hypotheses of a list that look alike under the drive.
-         */
-        post: operations["get_aliases"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
     "/api/v1/scenarios": {
         parameters: {
             query?: never;
@@ -249,13 +225,13 @@ export interface paths {
         };
         /**
          * List Benches
-         * @description List the live benches without the benches of students, which their class lists; a student sees the own bench.
+         * @description List the live benches of the teacher; a class lists the benches of its students. A student gets the own bench.
          */
         get: operations["list_benches"];
         put?: never;
         /**
          * Create Bench
-         * @description Make a bench and let it run; a student's takes the place of the one before.
+         * @description Make a bench and start it; the new bench of a student replaces the earlier one.
          */
         post: operations["create_bench"];
         delete?: never;
@@ -488,7 +464,7 @@ export interface paths {
         };
         /**
          * Region
-         * @description Map where the shuttle pulls in, for a voltage held on it.
+         * @description Map where the shuttle pulls in while a voltage is held on it.
          */
         get: operations["region"];
         put?: never;
@@ -573,6 +549,30 @@ export interface paths {
         get: operations["find_turn"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/benches/{bench_id}/diagnosers/{name}/aliases": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Map Bench Aliases
+         * @description Map the response of every hypothesis to the tones of the drive, and name those with the same response.
+         */
+        get: operations["map_bench_aliases"];
+        put?: never;
+        /**
+         * Get Aliases
+         * @description Report the hypotheses of a list that look alike under the drive.
+         */
+        post: operations["get_aliases"];
         delete?: never;
         options?: never;
         head?: never;
@@ -826,7 +826,7 @@ export interface paths {
         put?: never;
         /**
          * Start Recording
-         * @description Begin to record: now, or when a condition holds, with some of the past; `ticks: 0` keeps the past alone.
+         * @description Begin to record now, or when a condition holds, with some of the past; `ticks: 0` keeps only the past.
          */
         post: operations["start_recording"];
         delete?: never;
@@ -910,7 +910,7 @@ export interface paths {
         put?: never;
         /**
          * Replay Recording
-         * @description Play a recording on a bench of its own: the same streams; commands start, pause, step, seek, loop, time_scale.
+         * @description Play a recording on a new bench, which takes the commands start, pause, step, seek, loop and time_scale.
          */
         post: operations["replay_recording"];
         delete?: never;
@@ -968,7 +968,7 @@ export interface paths {
         };
         /**
          * Get Trace
-         * @description Return a span of the past; the board does not stop for it.
+         * @description Return a span of the past; the bench keeps running.
          */
         get: operations["get_trace"];
         put?: never;
@@ -1032,7 +1032,7 @@ export interface paths {
         };
         /**
          * Compare Finished Runs
-         * @description Put finished runs side by side: figures, differences from the first run, and the signals that all have.
+         * @description Compare finished runs: their figures, the differences from the first run, and their common signals.
          */
         get: operations["compare_finished_runs"];
         put?: never;
@@ -1052,7 +1052,7 @@ export interface paths {
         };
         /**
          * Compare Traces
-         * @description Return one signal of several finished runs, to be laid over each other.
+         * @description Return one signal of several finished runs, for one plot.
          */
         get: operations["compare_traces"];
         put?: never;
@@ -1072,7 +1072,7 @@ export interface paths {
         };
         /**
          * Get Run
-         * @description Return how far a run is, and its summary once it is done.
+         * @description Return the progress of a run, and its summary once it is done.
          */
         get: operations["get_run"];
         put?: never;
@@ -1244,7 +1244,7 @@ export interface paths {
         };
         /**
          * Get Sweep
-         * @description Return how far a campaign is.
+         * @description Return the progress of a campaign.
          */
         get: operations["get_sweep"];
         put?: never;
@@ -1396,7 +1396,7 @@ export interface paths {
         put?: never;
         /**
          * Find Threshold
-         * @description Look headless where a claim begins to hold; it does not disturb the live benches.
+         * @description Search by headless runs where a claim begins to hold; live benches are not disturbed.
          */
         post: operations["find_threshold"];
         delete?: never;
@@ -1669,7 +1669,7 @@ export interface paths {
         post?: never;
         /**
          * Delete Link
-         * @description Delete a link; benches opened by it stay, people who watch by it are gone.
+         * @description Delete a link; benches that it opened stay, and persons who watch by it are disconnected.
          */
         delete: operations["delete_link"];
         options?: never;
@@ -1818,7 +1818,7 @@ export interface paths {
         put?: never;
         /**
          * Open Class
-         * @description Open a class; its code is in the answer.
+         * @description Open a class; the answer contains its code.
          */
         post: operations["open_class"];
         delete?: never;
@@ -1904,7 +1904,7 @@ export interface paths {
         };
         /**
          * List Members
-         * @description Show every student: name, bench, state, verdict and truth, a small trace.
+         * @description List the students of a class with name, bench, state, verdict, truth and a small trace.
          */
         get: operations["list_members"];
         put?: never;
@@ -1927,7 +1927,7 @@ export interface paths {
         post?: never;
         /**
          * Remove Member
-         * @description Send a student away: the session ends at once, the bench is closed.
+         * @description Remove a student from a class: the session ends at once, and the bench is closed.
          */
         delete: operations["remove_member"];
         options?: never;
@@ -1985,7 +1985,7 @@ export interface paths {
         get?: never;
         /**
          * Show Bench
-         * @description Show a bench to all students of a class; they see it, change nothing, and keep their own benches.
+         * @description Show a bench to all students of a class; they cannot change it, and they keep their own benches.
          */
         put: operations["show_bench"];
         post?: never;
@@ -2093,9 +2093,29 @@ export interface paths {
         put?: never;
         /**
          * Change Driver
-         * @description Change who drives a bench, or ask for it.
+         * @description Change the driver of a bench, or request the bench.
          */
         post: operations["change_driver"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/qr": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Draw Qr Code
+         * @description Draw the QR code of an address.
+         */
+        post: operations["draw_qr_code"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2165,7 +2185,7 @@ export interface paths {
         put?: never;
         /**
          * Hide For Class
-         * @description Give students a new bench each, with a device and a hidden fault of their own.
+         * @description Make a new bench for each student; device and hidden fault differ from student to student.
          */
         post: operations["hide_for_class"];
         /**
@@ -2249,7 +2269,7 @@ export interface paths {
         put?: never;
         /**
          * Begin Game
-         * @description Begin the bench of a game, in place of the bench before; it hides the values of the game.
+         * @description Begin the bench of a game, which replaces the earlier bench and hides the values of the game.
          */
         post: operations["begin_game"];
         delete?: never;
@@ -2377,7 +2397,7 @@ export interface paths {
         put?: never;
         /**
          * Close Vote
-         * @description Take no more answers.
+         * @description Close a vote, which then takes no more answers.
          */
         post: operations["close_vote"];
         delete?: never;
@@ -2416,7 +2436,7 @@ export interface paths {
         get?: never;
         /**
          * Count Hands
-         * @description Take the hands that were counted in the room.
+         * @description Store the numbers of hands that were counted in the room.
          */
         put: operations["count_hands"];
         post?: never;
@@ -2523,7 +2543,7 @@ export interface paths {
         };
         /**
          * Get Sheet
-         * @description Show a sheet as far as the caller has come.
+         * @description Return a sheet up to the step that is open for the caller.
          */
         get: operations["get_sheet"];
         put?: never;
@@ -2879,22 +2899,22 @@ export interface components {
             floor: number;
             /**
              * Residuals
-             * @description Signals of the residuals, below the name of the diagnoser
+             * @description Signals of the residuals, without the name of the diagnoser
              */
             residuals: string[];
             /**
              * Weighed
-             * @description What the prior is, in words
+             * @description Meaning of the prior, in words
              */
             weighed: string;
             /**
              * Evidence
-             * @description What log_likelihood is, in LaTeX; empty for that of the normal density
+             * @description Formula of log_likelihood in LaTeX; empty for the normal density
              */
             evidence: string;
             /**
              * Gain Units
-             * @description Of the rows of each gain
+             * @description Units of the rows of each gain
              */
             gain_units: string[];
             /** Models */
@@ -2955,13 +2975,19 @@ export interface components {
          * @description Hypotheses and a drive; the defaults are the hypotheses of the diagnoser and the drive of the bench.
          */
         AliasSource: {
-            /** Hypotheses */
+            /**
+             * Hypotheses
+             * @description Null: the hypotheses of the diagnoser
+             */
             hypotheses?: components["schemas"]["Hypothesis"][] | null;
-            /** Tones */
+            /**
+             * Tones
+             * @description Null: the tones of the bench
+             */
             tones?: components["schemas"]["DriveTone"][] | null;
             /**
              * Within Um
-             * @description Distance below which two count as coincident
+             * @description Two responses that differ by less count as equal
              * @default 0
              */
             within_um?: number;
@@ -2977,7 +3003,7 @@ export interface components {
             distance_um: number[];
             /**
              * Pair
-             * @description Index into pairs_named
+             * @description Position of the pair in pairs_named, for each frequency
              */
             pair: number[];
             /** Pairs Named */
@@ -3073,7 +3099,7 @@ export interface components {
          * @description The changes of a bench by a set.
          */
         Applied: {
-            /** @description Null: the bench had these values already */
+            /** @description The command that set the values; null: none was needed */
             result: components["schemas"]["CommandResult"] | null;
             /**
              * Left Out
@@ -3169,7 +3195,7 @@ export interface components {
             seed: number;
             /**
              * Hand In
-             * @description How the bank is set; empty: as by default
+             * @description Settings of the bank; left out: the defaults
              * @default {}
              */
             hand_in?: {
@@ -3481,7 +3507,7 @@ export interface components {
         BenchName: {
             /**
              * Name
-             * @description Empty: by the title of its scenario alone
+             * @description Name of the bench; empty: only the title of its scenario
              */
             name: string;
         };
@@ -3498,7 +3524,7 @@ export interface components {
             tracks: string[];
             /**
              * Command
-             * @description What computes its table anew
+             * @description Command that computes the table again
              */
             command: string;
         };
@@ -3515,19 +3541,19 @@ export interface components {
             tracks: string[];
             /**
              * Command
-             * @description What computes its table anew
+             * @description Command that computes the table again
              */
             command: string;
             /**
              * Version
-             * @description Of the code the table was computed with
+             * @description Version of the code that computed the table
              */
             version: string;
             /** Seeds */
             seeds: string;
             /**
              * Cases
-             * @description Of each track
+             * @description Number of cases of each track
              */
             cases: number;
             /**
@@ -3537,12 +3563,12 @@ export interface components {
             commitment: string;
             /**
              * False Alarm Samples
-             * @description Mean samples between false alarms that thresholds are set for
+             * @description Mean samples between false alarms, to which thresholds are set
              */
             false_alarm_samples: number;
             /**
              * Within Samples
-             * @description Delays of `found_within`
+             * @description Delays, in samples, that the entries of `found_within` belong to
              */
             within_samples: number[];
             /** Results */
@@ -3551,7 +3577,7 @@ export interface components {
             left_out: components["schemas"]["LeftOut"][];
             /**
              * Costs
-             * @description Of each diagnoser, on the machine that computed the table
+             * @description Cost of each diagnoser, on the machine that computed the table
              */
             costs: {
                 [key: string]: components["schemas"]["Cost"];
@@ -3586,12 +3612,12 @@ export interface components {
             rule: string;
             /**
              * Hidden
-             * @description How many have not answered yet
+             * @description Number of students who have not answered yet
              */
             hidden: number;
             /**
              * Answers
-             * @description Oldest first, including faults that are still hidden
+             * @description Answers and truths, oldest first, also of faults still hidden
              */
             answers: components["schemas"]["Answer"][];
         };
@@ -3600,16 +3626,16 @@ export interface components {
          * @description The hidden fault of a bench, and the answers before.
          */
         Blindness: {
-            /** @description Null while nothing is hidden */
+            /** @description The hidden fault to find; null while no fault is hidden */
             question: components["schemas"]["HiddenQuestion"] | null;
             /**
              * Rule
-             * @description How points are counted
+             * @description Rule of the points, in words
              */
             rule: string;
             /**
              * Answers
-             * @description Oldest first, each with the truth
+             * @description Earlier answers with the truth, oldest first
              */
             answers: components["schemas"]["Answer"][];
         };
@@ -3672,7 +3698,7 @@ export interface components {
             static_gain_um_per_v: number;
             /**
              * Band
-             * @description Meaning of the band
+             * @description Meaning of the band, in words
              */
             band: string;
         };
@@ -3683,7 +3709,7 @@ export interface components {
         BodeOf: {
             /**
              * Device
-             * @description Catalogue id, and values written over it
+             * @description Id of the catalogue, and values that replace its values
              * @default {}
              */
             device?: {
@@ -3691,7 +3717,7 @@ export interface components {
             };
             /**
              * Environment
-             * @description Temperature, pressure, humidity
+             * @description Temperature, pressure, humidity; left out: the usual values
              * @default {}
              */
             environment?: {
@@ -3714,7 +3740,7 @@ export interface components {
             points?: number;
             /**
              * Seed
-             * @description Of the devices drawn for the band
+             * @description Seed of the devices that are drawn for the band
              * @default 1
              */
             seed?: number;
@@ -3833,11 +3859,11 @@ export interface components {
          * @description A unit that can be used.
          */
         CheckedUnit: {
-            /** @description As the catalogue would have it */
+            /** @description Card of the unit, as in the catalogue */
             card: components["schemas"]["BlockCard"];
             /**
              * Operations
-             * @description Most operations of a sample
+             * @description Largest number of operations for one sample
              */
             operations: number;
             /**
@@ -3853,7 +3879,7 @@ export interface components {
         Chosen: {
             /**
              * Only
-             * @description Ids that match, such as ch5-*
+             * @description Pattern of ids, such as ch5-*
              * @default *
              */
             only?: string;
@@ -3879,7 +3905,7 @@ export interface components {
             version: string;
             /**
              * Tick
-             * @description Ticks that are measured
+             * @description Number of ticks that are measured
              */
             tick: number;
             /**
@@ -3889,17 +3915,17 @@ export interface components {
             ends_at: number;
             /**
              * Is Over
-             * @description Whether the run has come to its end; until then nothing is ticked or crossed
+             * @description Whether the run has ended; until then no claim is marked as met or missed
              */
             is_over: boolean;
             /**
              * Reason
-             * @description Why nothing is measured; empty if it is
+             * @description Why no figure is measured; empty otherwise
              */
             reason: string;
             /**
              * Verdict
-             * @description Null until the run has come to its end
+             * @description Verdict on all claims; null until the run has ended
              */
             verdict: ("reproduced" | "reproduced by tuning" | "reproduced, by a PID too" | "reproduced by tuning, by a PID too" | "partly" | "not reproduced" | "ours") | null;
             /** Claims */
@@ -4049,13 +4075,13 @@ export interface components {
             absolute?: number;
             /**
              * Relative
-             * @description And that share of its largest value in the first
+             * @description Further tolerance, as a share of the peak in the first
              * @default 0
              */
             relative?: number;
             /**
              * Tolerances
-             * @description Tolerance of some signals instead
+             * @description Tolerances of single signals in place of both
              * @default {}
              */
             tolerances?: {
@@ -4063,7 +4089,7 @@ export interface components {
             };
             /**
              * Align
-             * @description Equal ticks, or first upon first
+             * @description Compare equal ticks, or ticks from the start
              * @default tick
              * @enum {string}
              */
@@ -4185,7 +4211,7 @@ export interface components {
             symmetric: boolean;
             /**
              * Eigenvalues
-             * @description Of the symmetric part, smallest first
+             * @description Eigenvalues of the symmetric part, smallest first
              */
             eigenvalues: number[];
             /**
@@ -4201,7 +4227,7 @@ export interface components {
         Design: {
             /**
              * Device
-             * @description Catalogue id, and values written over it
+             * @description Id of the catalogue, and values that replace its values
              * @default {}
              */
             device?: {
@@ -4209,7 +4235,7 @@ export interface components {
             };
             /**
              * Environment
-             * @description Temperature, pressure, humidity
+             * @description Temperature, pressure, humidity; left out: the usual values
              * @default {}
              */
             environment?: {
@@ -4237,7 +4263,7 @@ export interface components {
             };
             /**
              * Plants
-             * @description Plants that suit it
+             * @description Plants that can be used with this device
              */
             plants: string[];
         };
@@ -4300,7 +4326,7 @@ export interface components {
         };
         /**
          * Differs
-         * @description A parameter whose value is not the same in two sets; null: it is not in one of them, or left to its block.
+         * @description A parameter with different values in two sets; null: the set has no value, or leaves it to the block.
          */
         Differs: {
             /** Path */
@@ -4358,7 +4384,7 @@ export interface components {
          * @description The users of the bench now.
          */
         Drives: {
-            /** @description Null while it is one person */
+            /** @description Persons who have the bench open; null while there is only one */
             company: components["schemas"]["Company"] | null;
         };
         /**
@@ -4368,13 +4394,13 @@ export interface components {
         DrivingTurn: {
             /**
              * Do
-             * @description ask the driver for the bench; hand it over to a person, or refuse a request; take it (the teacher, or a student who handed over the own bench); leave it: the next person who gives a command drives
+             * @description ask: request the bench from its driver. hand_over: let a person drive. refuse: decline a request. take: drive at once (the teacher, or a student who handed over the own bench). leave: the next person who gives a command drives
              * @enum {string}
              */
             do: "ask" | "hand_over" | "refuse" | "take" | "leave";
             /**
              * To
-             * @description Id of the person who gets it, or is refused
+             * @description Id of the person who is to drive, or whose request is declined
              * @default
              */
             to?: string;
@@ -4386,7 +4412,7 @@ export interface components {
         Ended: {
             /**
              * Ids
-             * @description All that have ended when left out
+             * @description Null: all that have ended
              */
             ids?: string[] | null;
         };
@@ -4429,7 +4455,7 @@ export interface components {
             source: string;
             /**
              * Figures
-             * @description Those it has: a transfer function has no mass, no comb pulls it in
+             * @description Figures of this device; a transfer function has no mass, for example
              */
             figures: components["schemas"]["Figure"][];
             /**
@@ -4441,14 +4467,14 @@ export interface components {
             };
             /**
              * Geometry
-             * @description The drawing, complete; null without one
+             * @description All numbers of the drawing; null: it has no drawing
              */
             geometry: {
                 [key: string]: number;
             } | null;
             /**
              * Sensitivities
-             * @description Change of each parameter in percent for one step of a number of the drawing
+             * @description For each number of the drawing: change of each parameter, in percent, for one step of it
              */
             sensitivities: {
                 [key: string]: {
@@ -4500,14 +4526,20 @@ export interface components {
         };
         /**
          * EventList
-         * @description Events behind a number; ``lost`` of them are older than the bench keeps.
+         * @description Events after a number.
          */
         EventList: {
             /** Events */
             events: components["schemas"]["Event"][];
-            /** Last */
+            /**
+             * Last
+             * @description Number of the newest event of the bench
+             */
             last: number;
-            /** Lost */
+            /**
+             * Lost
+             * @description Number of events after the number that the bench no longer keeps
+             */
             lost: number;
         };
         /**
@@ -4526,7 +4558,7 @@ export interface components {
             relative: number;
             /**
              * Condition
-             * @description Null: infinite
+             * @description Largest over smallest eigenvalue; null: infinite
              */
             condition: number | null;
             /** Exciting */
@@ -4575,22 +4607,22 @@ export interface components {
             expected: string;
             /**
              * Expected Words
-             * @description The same for readers, with a unit and its prefix
+             * @description The expected value in words, with its unit
              */
             expected_words: string;
             /**
              * Verdict
-             * @description The word of the measured value; before a run, the word if the expectation holds
+             * @description Verdict on the value; before a run, if the expectation holds
              */
             verdict: ("reproduced" | "reproduced by tuning" | "reproduced, by a PID too" | "reproduced by tuning, by a PID too" | "partly" | "not reproduced" | "ours") | null;
             /**
              * Fitted
-             * @description Fields of the scenario that were chosen so that it agrees
+             * @description Fields of the scenario chosen so that the figure agrees with the text
              */
             fitted: string[];
             /**
              * Reason
-             * @description Why nothing is said by comparing it with the open loop
+             * @description Why there is no comparison with the open loop
              */
             reason: string;
             /** Note */
@@ -4599,29 +4631,29 @@ export interface components {
             measured?: number | null;
             /**
              * Open Loop
-             * @description With the open loop in place of the controller
+             * @description Figure with the open loop in place of the controller
              */
             open_loop?: number | null;
             /**
              * Pid
-             * @description With the comparator in its place, where the claim is against a PID
+             * @description Figure with a PID in its place, where the claim is against a PID
              */
             pid?: number | null;
             /**
              * Comparator
-             * @description Name of that PID: the best of its family on the healthy device
+             * @description Name of this PID, the best of its family on the healthy device
              * @default
              */
             comparator?: string;
             /**
              * Pid Too
-             * @description Whether that PID meets the claim too; until a run, as declared
+             * @description Whether this PID meets the claim too; before a run, as declared
              * @default false
              */
             pid_too?: boolean;
             /**
              * Ok
-             * @description Null until it has been run
+             * @description Whether the expectation holds; null before a run
              */
             ok?: boolean | null;
         };
@@ -4692,7 +4724,7 @@ export interface components {
             tick: number;
             /**
              * Samples
-             * @description Until it said the truth again, or the truth changed
+             * @description Samples until the verdict was true again, or the truth changed
              */
             samples: number;
         };
@@ -4744,7 +4776,7 @@ export interface components {
             is_making: boolean;
             /**
              * Problem
-             * @description What went wrong last, in one line
+             * @description Last error, in one line; empty without an error
              */
             problem: string;
         };
@@ -4803,7 +4835,7 @@ export interface components {
             command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
             /**
              * Members
-             * @description Ids of students; null: all of them
+             * @description Ids of students; null: the whole class
              */
             members?: string[] | null;
         };
@@ -4814,35 +4846,35 @@ export interface components {
         ForkFrom: {
             /**
              * Snapshot
-             * @description A snapshot of the bench; null: this moment, or the tick
+             * @description Id of a snapshot to fork from; null: the tick, or the present
              */
             snapshot?: string | null;
             /**
              * Tick
-             * @description A tick of the past, computed again; null: the snapshot
+             * @description A past tick, computed again; null: the snapshot
              */
             tick?: number | null;
             /**
              * Before
-             * @description Leave out the commands at that very tick
+             * @description Leave out the commands at this tick
              * @default false
              */
             before?: boolean;
             /**
              * Window Ticks
-             * @description Ticks before it that are computed too, for its panels
+             * @description Earlier ticks that are computed again for its panels
              * @default 20000
              */
             window_ticks?: number;
             /**
              * Paused
-             * @description It waits, and may seek other ticks until something is done on it
+             * @description Start paused; the fork may seek other ticks until its first change
              * @default false
              */
             paused?: boolean;
             /**
              * Name
-             * @description Its name, in addition to its title
+             * @description Name of the fork, in addition to the title of its scenario
              * @default
              */
             name?: string;
@@ -4875,12 +4907,12 @@ export interface components {
             verdict: ("reproduced" | "reproduced by tuning" | "reproduced, by a PID too" | "reproduced by tuning, by a PID too" | "partly" | "not reproduced" | "ours") | null;
             /**
              * Demo
-             * @description Made for first visits and lectures
+             * @description Whether the scenario is for first visits and lectures
              */
             demo: boolean;
             /**
              * Topics
-             * @description Device, controllers, diagnosers and faults it is about
+             * @description Titles of its device, controllers, diagnosers and faults
              */
             topics: string[];
             /**
@@ -4890,7 +4922,7 @@ export interface components {
             figure: string | null;
             /**
              * Problem
-             * @description Why it has no figure, if it cannot be made
+             * @description Why the figure cannot be made; empty otherwise
              */
             problem: string;
             /**
@@ -4900,12 +4932,12 @@ export interface components {
             study: string | null;
             /**
              * Run
-             * @description Its run: trace, report, thumbnail and script are at /runs/{id}/...
+             * @description Id of its run; trace, report, thumbnail and script are at /runs/{id}/...
              */
             run: string | null;
             /**
              * State
-             * @description new until it has been requested, then the state of a run
+             * @description new before the first request, then the state of the run
              */
             state: string;
             /** Progress */
@@ -4937,24 +4969,24 @@ export interface components {
             task: string;
             /**
              * Rule
-             * @description How points are counted
+             * @description Rule of the points, in words
              */
             rule: string;
             /** Equations */
             equations: components["schemas"]["EquationCard"][];
             /**
              * Attempts
-             * @description How often one person may hand in at one seed
+             * @description Number of answers that one person may hand in at one seed
              */
             attempts: number;
             /**
              * Hand In
-             * @description The values of the answer
+             * @description Fields of the answer
              */
             hand_in: components["schemas"]["ParameterCard"][];
             /**
              * Live
-             * @description What of it can be set on the bench while it runs
+             * @description Fields that can be set on the live bench
              */
             live: string[];
         };
@@ -5000,10 +5032,13 @@ export interface components {
         };
         /**
          * Hand
-         * @description Whether a hand is up.
+         * @description The hand of a student.
          */
         Hand: {
-            /** Raised */
+            /**
+             * Raised
+             * @description Whether the hand is raised
+             */
             raised: boolean;
         };
         /**
@@ -5015,7 +5050,7 @@ export interface components {
             seed: number;
             /**
              * Hand In
-             * @description Missing fields have their defaults
+             * @description Fields of the answer; left out: the defaults
              */
             hand_in: {
                 [key: string]: number | string;
@@ -5036,17 +5071,17 @@ export interface components {
         Heal: {
             /**
              * At Sample
-             * @description sample at which it takes effect
+             * @description the sample at which the command takes effect
              */
             at_sample?: number | null;
             /**
              * At Ms
-             * @description device time at which it takes effect
+             * @description the device time at which the command takes effect
              */
             at_ms?: number | null;
             /**
              * When
-             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
+             * @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on
              */
             when?: string | null;
             /** Heal */
@@ -5105,12 +5140,12 @@ export interface components {
         Hide: {
             /**
              * Seed
-             * @description The same one hides the same fault, but for students of a class
+             * @description Equal seeds hide equal faults, except in a class
              */
             seed: number;
             /**
              * Shows
-             * @description The diagnosers may be looked at: whether to trust them is the question
+             * @description Show the diagnosers; the question is then whether to trust them
              * @default false
              */
             shows?: boolean;
@@ -5130,13 +5165,13 @@ export interface components {
             };
             /**
              * Shows
-             * @description The diagnosers may be looked at: whether to trust them is the question
+             * @description Show the diagnosers; the question is then whether to trust them
              * @default false
              */
             shows?: boolean;
             /**
              * Members
-             * @description Ids of students; null: all of them
+             * @description Ids of students; null: the whole class
              */
             members?: string[] | null;
         };
@@ -5147,7 +5182,7 @@ export interface components {
         HypothesesSource: {
             /**
              * Device
-             * @description Catalogue id, and values written over it
+             * @description Id of the catalogue, and values that replace its values
              * @default {}
              */
             device?: {
@@ -5160,12 +5195,12 @@ export interface components {
             hypotheses: components["schemas"]["Hypothesis"][];
             /**
              * Tones
-             * @description V and Hz
+             * @description Amplitudes in V, frequencies in Hz
              */
             tones: components["schemas"]["Line"][];
             /**
              * Noise Um
-             * @description Noise that could hide a difference
+             * @description Noise that can hide a difference
              * @default 0
              */
             noise_um?: number;
@@ -5177,7 +5212,7 @@ export interface components {
         Hypothesis: {
             /**
              * Name
-             * @description short name, without spaces or dots
+             * @description a short name, without spaces or dots
              */
             name: string;
             /**
@@ -5276,17 +5311,17 @@ export interface components {
         Inject: {
             /**
              * At Sample
-             * @description sample at which it takes effect
+             * @description the sample at which the command takes effect
              */
             at_sample?: number | null;
             /**
              * At Ms
-             * @description device time at which it takes effect
+             * @description the device time at which the command takes effect
              */
             at_ms?: number | null;
             /**
              * When
-             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
+             * @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on
              */
             when?: string | null;
             /** Fault */
@@ -5304,7 +5339,7 @@ export interface components {
             profile?: components["schemas"]["Profile"];
             /**
              * Parameters
-             * @description what else the fault lets one choose
+             * @description the other parameters of the fault, by name
              * @default {}
              */
             parameters?: {
@@ -5324,7 +5359,7 @@ export interface components {
             growth: number[][];
             /**
              * Critical Gain Constant
-             * @description Limit under a constant; null: none on the map
+             * @description Limit of the gain under a constant; null: beyond the map
              */
             critical_gain_constant: number | null;
         };
@@ -5340,7 +5375,7 @@ export interface components {
         };
         /**
          * Joined
-         * @description A session, for a program: send it as a bearer. Browsers join by the page and get a cookie.
+         * @description A session for a program, which sends it as a bearer token; browsers join by the page and get a cookie.
          */
         Joined: {
             /** Id */
@@ -5416,7 +5451,7 @@ export interface components {
             summary: string;
             /**
              * Minutes
-             * @description Planned
+             * @description Planned length in minutes
              */
             minutes: number;
             /** Cues */
@@ -5437,7 +5472,7 @@ export interface components {
             summary: string;
             /**
              * Minutes
-             * @description Planned
+             * @description Planned length in minutes
              */
             minutes: number;
             /** Cues */
@@ -5605,22 +5640,22 @@ export interface components {
         MakeSafe: {
             /**
              * At Sample
-             * @description sample at which it takes effect
+             * @description the sample at which the command takes effect
              */
             at_sample?: number | null;
             /**
              * At Ms
-             * @description device time at which it takes effect
+             * @description the device time at which the command takes effect
              */
             at_ms?: number | null;
             /**
              * When
-             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
+             * @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on
              */
             when?: string | null;
             /**
              * Make Safe
-             * @description why, in words
+             * @description the reason, in words
              */
             make_safe: string;
         };
@@ -5773,7 +5808,7 @@ export interface components {
         Me: {
             /**
              * Id
-             * @description As the company of a bench names people
+             * @description Id of the user, as in the company of a bench
              */
             id: string;
             /**
@@ -5785,12 +5820,12 @@ export interface components {
             name: string;
             /**
              * Bench
-             * @description The bench of a student or a watcher; the teacher has all of them
+             * @description Id of the bench of a student or a watcher; null for the teacher
              */
             bench: string | null;
             /**
              * Class Id
-             * @description The class of a student
+             * @description Id of the class of a student
              */
             class_id?: string | null;
             /** Class Name */
@@ -5803,17 +5838,17 @@ export interface components {
             hand?: boolean;
             /**
              * Shown
-             * @description A bench that the teacher shows to all; a student sees it
+             * @description Id of the bench that the teacher shows to the class of a student
              */
             shown?: string | null;
             /**
              * Lent
-             * @description A bench of the teacher that a student was handed, and drives
+             * @description Id of the bench of the teacher that a student drives
              */
             lent?: string | null;
             /**
              * Layout
-             * @description Id of the layout given to all last; /me/layout has it
+             * @description Id of the last layout given to the class; /me/layout returns it
              */
             layout?: string | null;
             /** @description The open question to the class of a student */
@@ -5859,7 +5894,7 @@ export interface components {
         };
         /**
          * Members
-         * @description The students of a class in the order in which they came, each with a picture of the bench.
+         * @description The students of a class in the order in which they joined, each with a small picture of the bench.
          */
         Members: {
             /** Members */
@@ -5867,11 +5902,12 @@ export interface components {
         };
         /**
          * Minutes
-         * @description How long a code lets students in.
+         * @description The lifetime of a code.
          */
         Minutes: {
             /**
              * Minutes
+             * @description Minutes for which the code is valid
              * @default 120
              */
             minutes?: number;
@@ -5885,12 +5921,12 @@ export interface components {
             name: string;
             /**
              * Residual Um
-             * @description For each displacement measured
+             * @description One residual for each measured displacement
              */
             residual_um: number[];
             /**
              * Covariance Um2
-             * @description Of the residuals, row by row
+             * @description Covariance of the residuals, row by row
              */
             covariance_um2: number[][] | null;
             /** Log Likelihood */
@@ -5903,7 +5939,7 @@ export interface components {
             recorded: number;
             /**
              * Missed Sigma
-             * @description Root of the square that its diagnoser weighs, over its covariance
+             * @description Residuals in standard deviations: the root of the square by which the diagnoser judges
              */
             missed_sigma: number;
             /**
@@ -5931,7 +5967,7 @@ export interface components {
             sentences: components["schemas"]["Sentence"][];
             /**
              * After
-             * @description Number before the first of them: the number of the request, 0 after a jump
+             * @description Number before the first sentence: the number of the request, 0 after a jump
              */
             after: number;
             /**
@@ -5941,7 +5977,7 @@ export interface components {
             last: number;
             /**
              * Jumps
-             * @description How often the bench was reset or went back; sentences before a jump are void
+             * @description Number of resets and returns to the past, which make earlier sentences void
              */
             jumps: number;
         };
@@ -5954,12 +5990,12 @@ export interface components {
             vote: string;
             /**
              * Answer
-             * @description Position among the answers
+             * @description Position of the answer in the list, from 0
              */
             answer: number;
             /**
              * At Ms
-             * @description The moment guessed, where one is asked for
+             * @description Guessed moment of device time, ms; null: no guess
              */
             at_ms?: number | null;
         };
@@ -5977,34 +6013,38 @@ export interface components {
             };
             /**
              * Set
-             * @description Values by dotted path, written over the scenario
+             * @description Values by dotted path; they replace values of the scenario
              * @default {}
              */
             set?: {
                 [key: string]: unknown;
             };
-            /** Seed */
+            /**
+             * Seed
+             * @description Null: the seed of the scenario
+             */
             seed?: number | null;
             /**
              * Paused
+             * @description Start paused
              * @default false
              */
             paused?: boolean;
             /**
              * Keep
-             * @description Keep it open, however long it is unused
+             * @description Never close the bench for being unused; for the teacher alone
              * @default false
              */
             keep?: boolean;
             /**
              * Time Scale
-             * @description Device seconds per wall second; null: as fast as possible. Unless given, the device's own
+             * @description Device seconds per wall second; null: as fast as possible; left out: usual for the device
              * @default 0.002
              */
             time_scale?: number | null;
             /**
              * Quiet Lead
-             * @description Run as fast as possible to two seconds, at the time scale, before the first command of the scenario that waits for a tick; from there on at the time scale. After a reset again; a time_scale command ends it. Bits are the same
+             * @description Run as fast as possible until two seconds of wall time before the first command of the scenario that waits for a tick, and at the time scale from there on. A reset begins this again, and a time_scale command ends it. The bits stay the same
              * @default false
              */
             quiet_lead?: boolean;
@@ -6019,13 +6059,13 @@ export interface components {
             bench?: components["schemas"]["NewBench"];
             /**
              * Hours
-             * @description Until it ends and its students are forgotten
+             * @description Hours until the class ends and its students are deleted
              * @default 8
              */
             hours?: number;
             /**
              * Minutes
-             * @description How long the first code lets students in
+             * @description Minutes for which the first code is valid
              * @default 120
              */
             minutes?: number;
@@ -6037,7 +6077,7 @@ export interface components {
         NewLabel: {
             /**
              * Label
-             * @description At most 120 characters; empty takes the name away
+             * @description Name of at most 120 characters; empty removes the name
              */
             label: string;
         };
@@ -6050,7 +6090,7 @@ export interface components {
             name: string;
             /**
              * Layout
-             * @description As the page writes it; null: the built-in one of this name
+             * @description Layout as the page writes it; null: the built-in layout of this name
              */
             layout?: {
                 [key: string]: unknown;
@@ -6063,7 +6103,7 @@ export interface components {
         NewLink: {
             /**
              * Bench
-             * @description Id of a live bench; the commands to it are kept
+             * @description Id of a live bench, whose commands are kept
              */
             bench?: string | null;
             /**
@@ -6075,19 +6115,20 @@ export interface components {
             } | null;
             /**
              * Layout
-             * @description Layout of the page, its cursors in it
+             * @description Layout of the page, with its cursors
              */
             layout?: {
                 [key: string]: unknown;
             } | null;
             /**
              * Title
-             * @description The scenario's title unless given
+             * @description Title of the link; empty: the title of the scenario
              * @default
              */
             title?: string;
             /**
              * Note
+             * @description Note for readers
              * @default
              */
             note?: string;
@@ -6106,13 +6147,16 @@ export interface components {
             };
             /**
              * Set
-             * @description Values by dotted path, written over the scenario
+             * @description Values by dotted path; they replace values of the scenario
              * @default {}
              */
             set?: {
                 [key: string]: unknown;
             };
-            /** Seed */
+            /**
+             * Seed
+             * @description Null: the seed of the scenario
+             */
             seed?: number | null;
             /**
              * Label
@@ -6122,13 +6166,13 @@ export interface components {
             label?: string;
             /**
              * All
-             * @description Also run the controllers that never drive, and keep all signals, also of sensors that are never in use; no figure and no digest depends on it
+             * @description Also run controllers that never drive, and keep all signals, even of sensors that are never in use; no figure and no digest depends on it
              * @default false
              */
             all?: boolean;
             /**
              * Seeds
-             * @description "A:B", both included; earlier scripts send a list of the first seed and the one behind the last, which is read too
+             * @description "A:B", both included; earlier scripts send a list of the first seed and the seed after the last
              */
             seeds?: (string | number[]) | null;
         };
@@ -6137,7 +6181,10 @@ export interface components {
          * @description A sheet as Markdown.
          */
         NewSheet: {
-            /** Text */
+            /**
+             * Text
+             * @description Markdown text with a TOML head
+             */
             text: string;
         };
         /**
@@ -6172,7 +6219,7 @@ export interface components {
         };
         /**
          * NewThreshold
-         * @description The scenario, the claim and the number that are looked at.
+         * @description A scenario, a claim, and the number whose threshold is searched.
          */
         NewThreshold: {
             /** Metric */
@@ -6204,7 +6251,7 @@ export interface components {
             } | null;
             /**
              * Bench
-             * @description Instead: a live bench, whose scenario it is, as it began
+             * @description Id of a live bench with the scenario, in place of it
              * @default
              */
             bench?: string;
@@ -6216,7 +6263,7 @@ export interface components {
         NewVote: {
             /**
              * Class Id
-             * @description Without one, hands are raised in the room
+             * @description Id of the class; null: by raised hands
              */
             class_id?: string | null;
             /** Text */
@@ -6225,15 +6272,15 @@ export interface components {
             answers: string[];
             /**
              * Diagnoser
-             * @description Whose lanes the answers are, by the names of hypotheses
+             * @description Id of a diagnoser, whose hypotheses are the answers
              * @default
              */
             diagnoser?: string;
-            /** @description Within which a moment is guessed, too */
+            /** @description Span of device time in which a moment is guessed; null: no guess */
             when?: components["schemas"]["Span"] | null;
             /**
              * Right
-             * @description One of the answers, shown with the votes
+             * @description The right answer, which is shown with the counts; empty: none
              * @default
              */
             right?: string;
@@ -6245,12 +6292,13 @@ export interface components {
         NewWatcher: {
             /**
              * Hours
+             * @description Hours until the link ends
              * @default 4
              */
             hours?: number;
             /**
              * Link
-             * @description Id of a link to an experiment by which people watch without the token
+             * @description Id of a shared link by which people may watch without the token
              */
             link?: string | null;
         };
@@ -6267,22 +6315,22 @@ export interface components {
             unit: string;
             /**
              * Value
-             * @description Null where the record does not tell
+             * @description Null where the record does not show it
              */
             value: number | null;
             /**
              * Error
-             * @description Standard error; without a value the most it may be, null if unknown
+             * @description Standard error of the value; without a value, the most that the noise may be; null if unknown
              */
             error: number | null;
             /**
              * Reason
-             * @description Why there is no value, and how to get one
+             * @description Why there is no value, and how to get one; empty with a value
              */
             reason: string;
             /**
              * True
-             * @description The noise of the angular rate itself; a sensor adds its own
+             * @description Noise of the angular rate itself; the noise of a sensor adds to it
              */
             true: number;
         };
@@ -6305,7 +6353,7 @@ export interface components {
         OnBench: {
             /**
              * Bench
-             * @description Without one, a fresh bench is made
+             * @description Id of a bench; null: a new bench is made
              */
             bench?: string | null;
         };
@@ -6411,11 +6459,14 @@ export interface components {
          * @description The outcome of a command to many benches.
          */
         Outcomes: {
-            /** Done */
+            /**
+             * Done
+             * @description Number of students for whom it was done
+             */
             done: number;
             /**
              * Failed
-             * @description Name and reason of each that refused
+             * @description Name of each student for whom it was refused, and the reason
              */
             failed: string[];
         };
@@ -6690,7 +6741,7 @@ export interface components {
             least_real: number | null;
             /**
              * At
-             * @description Frequency where it is; null: at infinity
+             * @description Frequency of the smallest real part; null: at infinity
              */
             at: number | null;
             /** Reasons */
@@ -6720,7 +6771,7 @@ export interface components {
             };
             /**
              * Geometry
-             * @description The numbers of the first device drawn that the process moved
+             * @description Numbers of the first drawn device that the process changes
              */
             geometry: {
                 [key: string]: number;
@@ -6756,6 +6807,25 @@ export interface components {
              * @default 0.5
              */
             duty?: number;
+        };
+        /**
+         * QrCode
+         * @description The code of an address.
+         */
+        QrCode: {
+            /**
+             * Image
+             * @description PNG as a data URL: dark on white, with its margin, 8 pixels for each module
+             */
+            image: string;
+        };
+        /**
+         * QrText
+         * @description An address.
+         */
+        QrText: {
+            /** Text */
+            text: string;
         };
         /**
          * Question
@@ -6809,17 +6879,20 @@ export interface components {
             record_s: number;
             /**
              * Octaves
-             * @description Octaves with a pair, by rising averaging time
+             * @description Octaves with at least one pair, by rising averaging time
              */
             octaves: components["schemas"]["Octave"][];
             /** Figures */
             figures: components["schemas"]["NoiseFigure"][];
             /**
              * From S
-             * @description The shortest averaging time of the fit; 0 without one
+             * @description Shortest averaging time of the fit; 0 without a fit
              */
             from_s: number;
-            /** To S */
+            /**
+             * To S
+             * @description Longest averaging time of the fit; 0 without a fit
+             */
             to_s: number;
         };
         /**
@@ -6948,7 +7021,7 @@ export interface components {
         };
         /**
          * Removed
-         * @description How many were removed.
+         * @description The number of removed runs or campaigns.
          */
         Removed: {
             /** Removed */
@@ -6961,12 +7034,13 @@ export interface components {
         Replay: {
             /**
              * Speed
-             * @description Multiple of the pace it was recorded at
+             * @description Speed as a multiple of the recorded pace
              * @default 1
              */
             speed?: number;
             /**
              * Paused
+             * @description Start paused
              * @default false
              */
             paused?: boolean;
@@ -7003,17 +7077,17 @@ export interface components {
         ResetTrip: {
             /**
              * At Sample
-             * @description sample at which it takes effect
+             * @description the sample at which the command takes effect
              */
             at_sample?: number | null;
             /**
              * At Ms
-             * @description device time at which it takes effect
+             * @description the device time at which the command takes effect
              */
             at_ms?: number | null;
             /**
              * When
-             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
+             * @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on
              */
             when?: string | null;
             /**
@@ -7255,9 +7329,15 @@ export interface components {
          * @description The presumed fault of the device, and the confidence.
          */
         Said: {
-            /** Said */
+            /**
+             * Said
+             * @description Name of the hypothesis
+             */
             said: string;
-            /** Confidence */
+            /**
+             * Confidence
+             * @description Probability, in the opinion of the user, that it is right
+             */
             confidence: number;
         };
         /**
@@ -7277,7 +7357,7 @@ export interface components {
             claim: string;
             /**
              * Verdict
-             * @description If all expectations hold; it follows from the rows
+             * @description Verdict if all expectations hold; it follows from the rows
              */
             verdict: ("reproduced" | "reproduced by tuning" | "reproduced, by a PID too" | "reproduced by tuning, by a PID too" | "partly" | "not reproduced" | "ours") | null;
             /** Samples */
@@ -7332,7 +7412,7 @@ export interface components {
             toml: string;
             /**
              * Warnings
-             * @description What of its claims is not read, or cannot be judged
+             * @description Parts of its claims that are not read or cannot be judged
              */
             warnings: string[];
         };
@@ -7355,7 +7435,7 @@ export interface components {
             false_switches: number;
             /**
              * Last False Switches
-             * @description The newest of them
+             * @description The newest false switches
              * @default []
              */
             last_false_switches?: components["schemas"]["FalseSwitch"][];
@@ -7457,17 +7537,17 @@ export interface components {
         Set: {
             /**
              * At Sample
-             * @description sample at which it takes effect
+             * @description the sample at which the command takes effect
              */
             at_sample?: number | null;
             /**
              * At Ms
-             * @description device time at which it takes effect
+             * @description the device time at which the command takes effect
              */
             at_ms?: number | null;
             /**
              * When
-             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
+             * @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on
              */
             when?: string | null;
             /** Set */
@@ -7480,7 +7560,10 @@ export interface components {
          * @description The name of a set.
          */
         SetName: {
-            /** Name */
+            /**
+             * Name
+             * @description Name, which no other set may have
+             */
             name: string;
         };
         /**
@@ -7525,10 +7608,10 @@ export interface components {
             steps: number;
             /**
              * Own
-             * @description A user opened it; the others belong to the library
+             * @description Whether a user opened the sheet; all others belong to the library
              */
             own: boolean;
-            /** @description How far the caller has come */
+            /** @description Progress of the caller; null: not begun */
             work: components["schemas"]["SheetBrief"] | null;
         };
         /**
@@ -7536,11 +7619,14 @@ export interface components {
          * @description A sheet for the students of a class.
          */
         SheetForAll: {
-            /** Sheet */
+            /**
+             * Sheet
+             * @description Id of a sheet
+             */
             sheet: string;
             /**
              * Members
-             * @description Ids of students; null: all of them
+             * @description Ids of students; null: the whole class
              */
             members?: string[] | null;
         };
@@ -7604,7 +7690,10 @@ export interface components {
          * @description The bench that all are to see.
          */
         Shown: {
-            /** Bench */
+            /**
+             * Bench
+             * @description Id of a live bench
+             */
             bench: string;
         };
         /**
@@ -7684,12 +7773,12 @@ export interface components {
         };
         /**
          * Some
-         * @description Whose benches it concerns.
+         * @description The students whose benches start.
          */
         Some: {
             /**
              * Members
-             * @description Ids of students; null: all of them
+             * @description Ids of students; null: the whole class
              */
             members?: string[] | null;
         };
@@ -7736,7 +7825,7 @@ export interface components {
         SpreadOf: {
             /**
              * Device
-             * @description Catalogue id, and values written over it
+             * @description Id of the catalogue, and values that replace its values
              * @default {}
              */
             device?: {
@@ -7744,7 +7833,7 @@ export interface components {
             };
             /**
              * Environment
-             * @description Temperature, pressure, humidity
+             * @description Temperature, pressure, humidity; left out: the usual values
              * @default {}
              */
             environment?: {
@@ -7799,7 +7888,7 @@ export interface components {
             tick: number;
             /**
              * Digest
-             * @description Of the bits up to this tick; the same each time
+             * @description Digest of the bits up to this tick, equal each time
              */
             digest: string;
         };
@@ -7863,7 +7952,10 @@ export interface components {
          * @description An answer: a number with its unit, or the id of an option.
          */
         StepAnswer: {
-            /** Answer */
+            /**
+             * Answer
+             * @description Number with its unit, or id of an option
+             */
             answer: string;
         };
         /**
@@ -8002,27 +8094,27 @@ export interface components {
             points: components["schemas"]["PointTally"][];
             /**
              * Found
-             * @description Points that have runs, on all pages
+             * @description Number of points with runs, on all pages
              */
             found: number;
             /**
              * Runs
-             * @description Runs in these results; until the campaign has ended, `sweep.done` may be ahead
+             * @description Runs in these results; `sweep.done` may be larger until the campaign ends
              */
             runs: number;
             /**
              * Figures
-             * @description Figures that a run has
+             * @description Names of the figures of a run
              */
             figures: string[];
             /**
              * Quantities
-             * @description Possible axes of a count of runs: numeric axes, seed, figures
+             * @description Quantities to count runs over: numeric axes, the seed and figures
              */
             quantities: string[];
             /**
              * Words
-             * @description Diagnosers by their titles and hypotheses in words, by their names
+             * @description Titles of diagnosers and hypotheses in words, by their names
              */
             words: {
                 [key: string]: string;
@@ -8078,6 +8170,7 @@ export interface components {
         SweptSine: {
             /**
              * Amplitude V
+             * @description Amplitude of each tone, V
              * @default 2
              */
             amplitude_v?: number;
@@ -8095,13 +8188,19 @@ export interface components {
             cycles?: number;
             /**
              * Settle
-             * @description Time constants waited before
+             * @description Time constants waited before each tone is measured
              * @default 12
              */
             settle?: number;
-            /** Start Hz */
+            /**
+             * Start Hz
+             * @description Lowest frequency; null: a quarter of the natural frequency
+             */
             start_hz?: number | null;
-            /** Stop Hz */
+            /**
+             * Stop Hz
+             * @description Highest frequency; null: twice the natural frequency
+             */
             stop_hz?: number | null;
         };
         /**
@@ -8111,17 +8210,17 @@ export interface components {
         Switch: {
             /**
              * At Sample
-             * @description sample at which it takes effect
+             * @description the sample at which the command takes effect
              */
             at_sample?: number | null;
             /**
              * At Ms
-             * @description device time at which it takes effect
+             * @description the device time at which the command takes effect
              */
             at_ms?: number | null;
             /**
              * When
-             * @description '<signal> > <value>' or '<signal> < <value>', watched from at_sample on
+             * @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on
              */
             when?: string | null;
             /** Switch */
@@ -8362,7 +8461,7 @@ export interface components {
             signals: string[];
             /**
              * Trigger
-             * @description The signal that triggers
+             * @description Name of the signal that triggers
              */
             trigger: string;
             /** Edge */
@@ -8384,7 +8483,7 @@ export interface components {
             captures: components["schemas"]["CaptureMark"][];
             /**
              * Is Short
-             * @description Memory leaves room for no more of them
+             * @description Whether memory limits the number of captures
              */
             is_short: boolean;
         };
@@ -8411,17 +8510,17 @@ export interface components {
         Turn: {
             /**
              * Tick
-             * @description The first sample with the verdict there is; none in what is kept
+             * @description First sample with the present verdict; null if that sample is no longer kept
              */
             tick: number | null;
             /**
              * Before
-             * @description The verdict before it; empty without a change
+             * @description Verdict before that sample; empty without a change
              */
             before: string;
             /**
              * Since
-             * @description The first sample kept
+             * @description First sample that is kept
              */
             since: number;
         };
@@ -8468,7 +8567,7 @@ export interface components {
         UnitDraft: {
             /**
              * Name
-             * @description Small letters, digits and _, a letter first
+             * @description Small letters, digits and _, first a letter
              */
             name: string;
             /** Source */
@@ -8487,7 +8586,7 @@ export interface components {
             title: string;
             /**
              * Origin
-             * @description A text to begin with, the library, the folder of this server, or a file it was started with
+             * @description Starter text, library, folder of this server, or file given at its start
              * @enum {string}
              */
             origin: "starter" | "library" | "folder" | "command line";
@@ -8506,7 +8605,7 @@ export interface components {
             units: components["schemas"]["UnitEntry"][];
             /**
              * Refusal
-             * @description Why this person may not bring units of their own; empty: they may
+             * @description Why the caller may not use own units; empty: allowed
              */
             refusal: string;
         };
@@ -8543,7 +8642,7 @@ export interface components {
             title: string;
             /**
              * Origin
-             * @description A text to begin with, the library, the folder of this server, or a file it was started with
+             * @description Starter text, library, folder of this server, or file given at its start
              * @enum {string}
              */
             origin: "starter" | "library" | "folder" | "command line";
@@ -8572,12 +8671,12 @@ export interface components {
         };
         /**
          * Variant
-         * @description How the second bench differs.
+         * @description The difference between a bench and its variant.
          */
         Variant: {
             /**
              * Set
-             * @description Values by dotted path; a whole table may be one
+             * @description Values by dotted path; a value may be a whole table
              * @default {}
              */
             set?: {
@@ -8585,7 +8684,7 @@ export interface components {
             };
             /**
              * Repeat
-             * @description The commands to this bench are repeated, to its tick; there it pauses
+             * @description Repeat the commands to this bench up to its tick, and pause there
              * @default false
              */
             repeat?: boolean;
@@ -8697,7 +8796,7 @@ export interface components {
             until: string;
             /**
              * Path
-             * @description Path of the address; only its hash is kept
+             * @description Path of the address, shown once; the server keeps only a hash
              */
             path?: string | null;
         };
@@ -8714,9 +8813,15 @@ export interface components {
          * @description The editable fields of a link.
          */
         Words: {
-            /** Title */
+            /**
+             * Title
+             * @description Null: as before
+             */
             title?: string | null;
-            /** Note */
+            /**
+             * Note
+             * @description Null: as before
+             */
             note?: string | null;
         };
         /**
@@ -9438,6 +9543,8 @@ export type PortCard = components['schemas']['PortCard'];
 export type PositiveRealReport = components['schemas']['PositiveRealReport'];
 export type ProcessSpread = components['schemas']['ProcessSpread'];
 export type Profile = components['schemas']['Profile'];
+export type QrCode = components['schemas']['QrCode'];
+export type QrText = components['schemas']['QrText'];
 export type Question = components['schemas']['Question'];
 export type Rank = components['schemas']['Rank'];
 export type RateReadout = components['schemas']['RateReadout'];
@@ -9560,7 +9667,7 @@ export interface operations {
     get_catalog: {
         parameters: {
             query?: {
-                /** @description Family of blocks, such as control or faults; all unless given */
+                /** @description Family of blocks, such as control or faults; left out: all families */
                 family?: string | null;
             };
             header?: never;
@@ -9704,81 +9811,6 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ProcessSpread"];
-                };
-            };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
-        };
-    };
-    map_bench_aliases: {
-        parameters: {
-            query?: {
-                /** @description One tone as large as the reference; those it has unless given */
-                frequency_hz?: number | null;
-            };
-            header?: never;
-            path: {
-                /** @description Id of a diagnoser or a read-out; of a twin's: <twin>:<id> */
-                name: string;
-                /** @description Id of a bench */
-                bench_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["AliasMap"];
-                };
-            };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
-        };
-    };
-    get_aliases: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                /** @description Id of the diagnoser; of a twin's: <twin>:<id> */
-                name: string;
-                /** @description Id of a bench */
-                bench_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["AliasSource"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["AliasReport"];
                 };
             };
             /** @description Refused or failed */
@@ -10277,9 +10309,9 @@ export interface operations {
     list_events: {
         parameters: {
             query?: {
-                /** @description Number of the last known one */
+                /** @description Number of the last known entry */
                 after?: number;
-                /** @description At most so many */
+                /** @description Largest number of entries */
                 limit?: number | null;
             };
             header?: never;
@@ -10450,9 +10482,9 @@ export interface operations {
     list_narration: {
         parameters: {
             query?: {
-                /** @description Number of the last known one */
+                /** @description Number of the last known entry */
                 after?: number;
-                /** @description The numbers of the answer before */
+                /** @description Number of jumps in the last answer */
                 jumps?: number | null;
             };
             header?: never;
@@ -10627,12 +10659,12 @@ export interface operations {
     explain_sample: {
         parameters: {
             query?: {
-                /** @description The sample; the last one unless given */
+                /** @description Tick of the sample; the last one unless given */
                 tick?: number | null;
             };
             header?: never;
             path: {
-                /** @description Id of a diagnoser or a read-out; of a twin's: <twin>:<id> */
+                /** @description Id of a diagnoser or a read-out; on a twin: <twin>:<id> */
                 name: string;
                 /** @description Id of a bench */
                 bench_id: string;
@@ -10664,12 +10696,12 @@ export interface operations {
     find_turn: {
         parameters: {
             query?: {
-                /** @description The sample; the last one unless given */
+                /** @description Tick of the sample; the last one unless given */
                 tick?: number | null;
             };
             header?: never;
             path: {
-                /** @description Id of a diagnoser or a read-out; of a twin's: <twin>:<id> */
+                /** @description Id of a diagnoser or a read-out; on a twin: <twin>:<id> */
                 name: string;
                 /** @description Id of a bench */
                 bench_id: string;
@@ -10698,12 +10730,87 @@ export interface operations {
             };
         };
     };
+    map_bench_aliases: {
+        parameters: {
+            query?: {
+                /** @description Frequency of one tone as large as the reference; left out: its own tones */
+                frequency_hz?: number | null;
+            };
+            header?: never;
+            path: {
+                /** @description Id of a diagnoser or a read-out; on a twin: <twin>:<id> */
+                name: string;
+                /** @description Id of a bench */
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AliasMap"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_aliases: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description Id of the diagnoser; of a diagnoser on a twin: <twin>:<id> */
+                name: string;
+                /** @description Id of a bench */
+                bench_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["AliasSource"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AliasReport"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     get_readout: {
         parameters: {
             query?: never;
             header?: never;
             path: {
-                /** @description Id of a diagnoser or a read-out; of a twin's: <twin>:<id> */
+                /** @description Id of a diagnoser or a read-out; on a twin: <twin>:<id> */
                 name: string;
                 /** @description Id of a bench */
                 bench_id: string;
@@ -11132,7 +11239,7 @@ export interface operations {
             query?: {
                 /** @description Id of another set */
                 other?: string | null;
-                /** @description Id of a bench, whose values of now are compared */
+                /** @description Id of a bench, whose present values are compared */
                 bench?: string | null;
             };
             header?: never;
@@ -11434,13 +11541,13 @@ export interface operations {
             query?: {
                 /** @description Format of the answer */
                 format?: "csv" | "parquet" | "npz" | "mat";
-                /** @description Names, one each time, or several between commas; all unless given */
+                /** @description Names of signals, repeated or separated by commas; left out: all signals */
                 signals?: string[];
-                /** @description The first tick; the oldest unless given */
+                /** @description The first tick; left out: the oldest tick */
                 start_tick?: number | null;
-                /** @description The one behind the last */
+                /** @description The tick after the last */
                 end_tick?: number | null;
-                /** @description Every so many ticks */
+                /** @description Keep one tick of every so many */
                 every?: number;
             };
             header?: never;
@@ -11477,15 +11584,15 @@ export interface operations {
     get_trace: {
         parameters: {
             query?: {
-                /** @description Names, one each time, or several between commas; all unless given */
+                /** @description Names of signals, repeated or separated by commas; left out: all signals */
                 signals?: string[];
-                /** @description The first tick; the oldest unless given */
+                /** @description The first tick; left out: the oldest tick */
                 start_tick?: number | null;
-                /** @description The tick behind the last; to the newest unless given */
+                /** @description The tick after the last; left out: up to the newest tick */
                 end_tick?: number | null;
-                /** @description Columns of the picture; each has its smallest and its largest value */
+                /** @description Number of columns; each has the smallest and the largest value of its ticks */
                 columns?: number;
-                /** @description A file with every sample */
+                /** @description File with every sample; left out: columns */
                 format?: ("csv" | "parquet" | "npz" | "mat") | null;
             };
             header?: never;
@@ -11634,7 +11741,7 @@ export interface operations {
     compare_finished_runs: {
         parameters: {
             query: {
-                /** @description Runs, the one to compare with first */
+                /** @description Ids of runs; the first is the reference */
                 ids: string[];
             };
             header?: never;
@@ -11666,11 +11773,11 @@ export interface operations {
     compare_traces: {
         parameters: {
             query: {
-                /** @description Runs, the one to compare with first */
+                /** @description Ids of runs; the first is the reference */
                 ids: string[];
                 /** @description Name of a signal */
                 signal: string;
-                /** @description Columns of the picture; each has its smallest and its largest value */
+                /** @description Number of columns; each has the smallest and the largest value of its ticks */
                 columns?: number;
             };
             header?: never;
@@ -11804,13 +11911,13 @@ export interface operations {
             query?: {
                 /** @description Format of the answer */
                 format?: "csv" | "parquet" | "npz" | "mat";
-                /** @description Names, one each time, or several between commas; all unless given */
+                /** @description Names of signals, repeated or separated by commas; left out: all signals */
                 signals?: string[];
-                /** @description The first tick; the oldest unless given */
+                /** @description The first tick; left out: the oldest tick */
                 start_tick?: number | null;
-                /** @description The one behind the last */
+                /** @description The tick after the last */
                 end_tick?: number | null;
-                /** @description Every so many ticks */
+                /** @description Keep one tick of every so many */
                 every?: number;
             };
             header?: never;
@@ -12186,13 +12293,13 @@ export interface operations {
     get_sweep_points: {
         parameters: {
             query?: {
-                /** @description Points to pass over */
+                /** @description Number of points to skip */
                 offset?: number;
-                /** @description Points at most, of the points with runs. All if left out */
+                /** @description Largest number of points; left out: all */
                 limit?: number | null;
-                /** @description An axis, a figure, runs, ok or tripped */
+                /** @description Order: an axis, a figure, runs, ok or tripped */
                 sort?: string;
-                /** @description The largest first */
+                /** @description Whether the largest values come first */
                 descending?: boolean;
             };
             header?: never;
@@ -12227,9 +12334,9 @@ export interface operations {
     get_sweep_distribution: {
         parameters: {
             query: {
-                /** @description An axis that is a number, the seed, or a figure */
+                /** @description A numeric axis, the seed, or a figure */
                 x: string;
-                /** @description Another one; none for a histogram */
+                /** @description A second quantity; empty for a histogram */
                 y?: string;
             };
             header?: never;
@@ -12264,9 +12371,9 @@ export interface operations {
     get_sweep_picture: {
         parameters: {
             query?: {
-                /** @description A figure; none for the figure that varies most */
+                /** @description A figure; empty: the figure that varies most */
                 figure?: string;
-                /** @description A number that varies, for the axis across */
+                /** @description The varied number on the horizontal axis */
                 across?: string;
             };
             header?: never;
@@ -12511,7 +12618,7 @@ export interface operations {
     get_gallery: {
         parameters: {
             query?: {
-                /** @description Ids of cards in sight: their figures come first */
+                /** @description Ids of the visible cards, whose figures are made first */
                 first?: string[];
             };
             header?: never;
@@ -12834,7 +12941,7 @@ export interface operations {
     list_links: {
         parameters: {
             query?: {
-                /** @description Links of this kind alone */
+                /** @description Kind of the listed links; left out: all kinds */
                 kind?: ("experiment" | "layout") | null;
             };
             header?: never;
@@ -13094,7 +13201,7 @@ export interface operations {
             path: {
                 /** @description Id of a lecture */
                 lecture_id: string;
-                /** @description Number of the cue, from 0 */
+                /** @description Number of the cue, from 1 */
                 number: number;
             };
             cookie?: never;
@@ -13782,6 +13889,39 @@ export interface operations {
             };
         };
     };
+    draw_qr_code: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["QrText"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["QrCode"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
     get_blind: {
         parameters: {
             query?: never;
@@ -14082,7 +14222,7 @@ export interface operations {
     get_game: {
         parameters: {
             query?: {
-                /** @description Each student of a class has a game of their own at it */
+                /** @description Seed of the game, which differs from student to student */
                 seed?: number;
             };
             header?: never;
@@ -14225,7 +14365,7 @@ export interface operations {
     get_class_game: {
         parameters: {
             query?: {
-                /** @description Each student of a class has a game of their own at it */
+                /** @description Seed of the game, which differs from student to student */
                 seed?: number;
             };
             header?: never;
@@ -15119,7 +15259,7 @@ export interface operations {
     get_class_audit: {
         parameters: {
             query?: {
-                /** @description At most so many */
+                /** @description Largest number of entries */
                 limit?: number;
             };
             header?: never;
@@ -15154,7 +15294,7 @@ export interface operations {
     get_bench_audit: {
         parameters: {
             query?: {
-                /** @description At most so many */
+                /** @description Largest number of entries */
                 limit?: number;
             };
             header?: never;

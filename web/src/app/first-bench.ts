@@ -24,7 +24,8 @@ export async function openFirstBench(): Promise<void> {
   const named = benchInAddress();
   if (!named) return openOwnBench();
   await broughtBack(named);
-  openBench(named, true); // a closed bench shows its own notice
+  // meanwhile another bench may have been opened: a lecture of this tab that is left at once goes back to its own
+  if (benchInAddress() === named) openBench(named, true); // a closed bench shows its own notice
 }
 
 /** Open the experiment of a link on a fresh bench, with its layout. */
@@ -73,7 +74,7 @@ export async function openOwnBench(): Promise<void> {
 export async function comeBack(): Promise<void> {
   if (!may("teach")) return useMe.getState().me?.role === "student" ? follow() : undefined;
   const id = benchInAddress();
-  if (id && (await broughtBack(id))) showBench(id);
+  if (id && (await broughtBack(id)) && benchInAddress() === id) showBench(id);
 }
 
 /** Whether a bench is live; a bench that the server has closed is opened again first. */

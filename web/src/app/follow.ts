@@ -3,13 +3,14 @@ import { create } from "zustand";
 import { api } from "../api/api";
 import { askMe, givenLayout, placeOf, useMe } from "../api/me";
 import { sheets } from "../api/sheets";
+import { storageName } from "../api/storage-name";
 import type { SharedLayout } from "../bench/dock";
 import { openBench } from "../bench/open-bench";
 import { setPage, useView } from "../bench/view-store";
 import { showSheet } from "../panels/sheet/begin";
 import { isBuiltIn, setLayout, showGiven } from "./layouts";
 
-const TAKEN = "combbench.layout.given";
+const TAKEN = storageName("combbench.layout.given");
 
 /** The layout that the teacher has given to this page, and the layout before it. */
 export const useGiven = create<{ given: { name: string; before: string } | undefined }>(() => ({ given: undefined }));

@@ -64,6 +64,14 @@ it("says in one line that a view is hidden, and opens a tool in its place", asyn
   expect(within(hiddenView).queryByRole("region")).not.toBeInTheDocument();
 });
 
+it("leaves the traces between cursors 140 px beside the letters of the axes; the figures scroll", () => {
+  connect(hidden);
+  show("view3d");
+  const traces = () => screen.getByRole("group", { name: /^Plot/ }).parentElement?.style.flex;
+  expect(screen.getByRole("region", { name: "3D, hidden" })).toHaveTextContent("Measure instead:");
+  expect(traces()).toMatch(/^1 0 calc\(140px \+/);
+});
+
 it("sweeps the device in place of the lanes, and has the lanes back after the answer", async () => {
   const board = connect(hidden);
   const { user } = show("lanes");

@@ -51,7 +51,10 @@ export function HiddenView({ view, question }: { view: ViewName; question: Quest
   return (
     <section className="view" aria-label={`${VIEW[view].title}, hidden`}>
       <Group flex="none" gap="4px 6px" p="6px 10px" style={{ borderBottom: "1px solid var(--line)" }}>
-        <p className="note">{`${VIEW[view].title}: hidden until ${question.game ? "the game is over" : "you answer"}. Measure instead:`}</p>
+        <p className="note">
+          {`${VIEW[view].title}: hidden until ${question.game ? "the game is over" : "you answer"}.`}
+          <span className="if-wide"> Measure instead:</span>
+        </p>
         {tools.map(({ view: tool, words }) => (
           <Button
             key={tool}

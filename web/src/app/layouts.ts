@@ -1,6 +1,7 @@
 import type { DockviewApi, SerializedDockview } from "dockview-react";
 import { api } from "../api/api";
 import { hasAxes } from "../api/fits";
+import { storageName } from "../api/storage-name";
 import { bringBack, dockNow, forgetClosed, inFront, restoreLayout, type SharedLayout, useDock } from "../bench/dock";
 import { inAddress } from "../bench/open-bench";
 import type { PanelName } from "../bench/panel-views";
@@ -38,9 +39,10 @@ let wide = true;
 let coming: { shared: SharedLayout; name: string } | undefined;
 
 const kind = () => (axes ? "axes." : "");
-const LIST = () => `combbench.layouts.${kind()}own`;
+const LIST = () => storageName(`combbench.layouts.${kind()}own`);
 const room = () => (wide ? "" : "narrow.");
-const storageKey = (name: string) => `combbench.layout.4.${kind()}${isBuiltIn(name) ? room() : "own."}${name}`;
+const storageKey = (name: string) =>
+  storageName(`combbench.layout.4.${kind()}${isBuiltIn(name) ? room() : "own."}${name}`);
 
 export const isBuiltIn = (name: string): name is LayoutName => name in BUILT_IN;
 

@@ -132,9 +132,11 @@ it.each(
   const shown = { ...bench, axes: kind.only === "axes" ? ["x", "y"] : [], diagnosers: {}, faults: [], events: [] };
   const board = connect({ ...shown, blind: question } as never);
   mount(<PanelBody view={view as ViewName} params={{}} setParams={() => undefined} />);
-  expect(screen.getByText(`${kind.title}: hidden until you answer. Measure instead:`)).toBeVisible();
+  const hidden = screen.getByRole("region", { name: `${kind.title}, hidden` });
+  expect(hidden).toBeVisible();
+  expect(hidden).toHaveTextContent(`${kind.title}: hidden until you answer. Measure instead:`);
   board.status({ blind: playing } as never);
-  expect(screen.getByText(`${kind.title}: hidden until the game is over. Measure instead:`)).toBeVisible();
+  expect(hidden).toHaveTextContent(`${kind.title}: hidden until the game is over. Measure instead:`);
   expect(server.requests).toEqual([]);
 });
 

@@ -66,7 +66,7 @@ it("makes no link while a fault is hidden", async () => {
 
 it("lets people watch by the link for some hours, says so, and ends it", async () => {
   const until = "2026-01-01T00:00:00Z";
-  server.on("POST", "/benches/:id/watchers", { id: "w1", until, path: "/?link=ab3kmn7x&shard=b" });
+  server.on("POST", "/benches/:id/watchers", { id: "w1", until, path: "/?link=ab3kmn7x" });
   server.on("DELETE", "/benches/:id/watchers/w1");
   const { user, sheet } = await open();
   expect(await sheet.findByText(/must enter the access token/)).toBeVisible();
@@ -75,7 +75,7 @@ it("lets people watch by the link for some hours, says so, and ends it", async (
   server.on("GET", "/benches/:id/watchers", { watchers: [{ id: "w1", until }] });
   await user.click(sheet.getByRole("button", { name: "Let people watch" }));
   expect(await sheet.findByText(/All others watch this bench live/)).toBeVisible();
-  expect(sheet.getByRole("textbox", { name: "Link" })).toHaveValue("http://localhost:3000/?link=ab3kmn7x&shard=b");
+  expect(sheet.getByRole("textbox", { name: "Link" })).toHaveValue("http://localhost:3000/?link=ab3kmn7x");
   expect(server.asked("POST", `/benches/${bench.id}/watchers`)[0].body).toEqual({ hours: 2, link: LINK.id });
   const list = within(await sheet.findByRole("list", { name: "Links by which people watch this bench" }));
   server.on("GET", "/benches/:id/watchers", { watchers: [] });

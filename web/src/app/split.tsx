@@ -1,8 +1,9 @@
 import { useLocalStorage, useSplitter } from "@mantine/hooks";
 import type { ReactNode } from "react";
+import { storageName } from "../api/storage-name";
 import styles from "./split.module.css";
 
-const KEPT = "combbench.split";
+const KEPT = storageName("combbench.split");
 const USUAL = 45;
 const [LEAST, MOST] = [15, 85];
 /** The step of an arrow key, percent. */

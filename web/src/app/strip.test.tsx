@@ -5,6 +5,7 @@ import { useNarrator } from "../bench/narrator";
 import { useView } from "../bench/view-store";
 import { server } from "../testing/fake-server";
 import { connect } from "../testing/fake-transport";
+import { resize } from "../testing/jsdom-gaps";
 import { logEntry } from "../testing/log-entry";
 import { recordedAnswer, recordedBench } from "../testing/recorded";
 import { be, mount } from "../testing/render";
@@ -112,4 +113,40 @@ it("offers a watcher neither hints nor the time", () => {
   connect(bench);
   mount(<Strip />);
   expect(regions()).toEqual(["What happens now"]);
+});
+
+const verdict = {
+  ...sentence,
+  text: "At 20.300 ms the bank now favours mass +5 % (98 %). Correct; first chosen at 20.26 ms. The model misses by 5 nm.",
+};
+
+/** Lay a caption out: every sentence takes a line of 18 px. */
+function lineUp(caption: HTMLElement) {
+  const spans = [...caption.getElementsByTagName("span")];
+  for (const [i, span] of spans.entries()) span.getBoundingClientRect = () => ({ bottom: 18 * (i + 1) }) as DOMRect;
+  (caption.firstElementChild as HTMLElement).style.lineHeight = "18px";
+  resize(400, 36);
+}
+
+it("ends no caption within a sentence: the sentences without room are on demand", async () => {
+  const board = connect(bench);
+  const { user } = mount(<Strip />);
+  board.say({ type: "narration", after: 0, sentences: [verdict] } as never);
+  const place = region("What happens now") as HTMLElement;
+  lineUp(place);
+  const caption = within(place);
+  expect(caption.getByText(/^At 20\.300 ms the bank/)).toBeVisible();
+  expect(caption.getByText(/^Correct; first chosen at 20\.26 ms\.$/)).toBeVisible();
+  expect(caption.getByText(/^The model misses/)).not.toBeVisible();
+  await user.click(caption.getByRole("button", { name: "More" }));
+  expect(caption.getByText(/^The model misses/)).toBeVisible();
+  await user.click(caption.getByRole("button", { name: "Less" }));
+  expect(caption.getByText(/^The model misses/)).not.toBeVisible();
+});
+
+it("shows the first sentence of a caption whole, and has no button where all have room", () => {
+  const board = connect(bench);
+  mount(<Strip />);
+  board.say(tell);
+  expect(within(region("What happens now") as HTMLElement).getAllByRole("button")).toHaveLength(1);
 });

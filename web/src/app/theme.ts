@@ -79,6 +79,7 @@ export const theme = createTheme({
     // the usual sizes: a place that needs another one says so
     Button: { defaultProps: { size: "compact-sm", variant: "default" } },
     ActionIcon: { defaultProps: { variant: "subtle" } },
+    Autocomplete: SMALL,
     NativeSelect: SMALL,
     Select: SMALL,
     TextInput: SMALL,

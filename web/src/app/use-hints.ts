@@ -1,10 +1,11 @@
 import { useEffect, useMemo, useState } from "react";
 import { useShallow } from "zustand/react/shallow";
+import { storageName } from "../api/storage-name";
 import { useBench } from "../stream/bench-store";
 import { type Hints, hintsOf } from "./hints";
 
-const DISMISSED = "combbench.hint.seen";
-const DONE = "combbench.hints.done";
+const DISMISSED = storageName("combbench.hint.seen");
+const DONE = storageName("combbench.hints.done");
 
 export interface TickedHints extends Hints {
   done: ReadonlySet<string>;

@@ -2,6 +2,7 @@ import { create } from "zustand";
 import { api } from "../api/api";
 import { ApiError, unless } from "../api/client";
 import { lectures } from "../api/lectures";
+import { storageName } from "../api/storage-name";
 import type { Cue, Lecture } from "../api/types";
 import { useBench } from "../stream/bench-store";
 import { jump } from "../ui/hover";
@@ -11,7 +12,7 @@ import { openBench } from "./open-bench";
 import { showError, showing } from "./send";
 import { setPage, useView } from "./view-store";
 
-const KEPT = "combbench.lecture";
+const KEPT = storageName("combbench.lecture");
 
 interface LectureStore {
   lecture: Lecture | undefined;
@@ -92,7 +93,8 @@ async function put(lecture: Lecture, at: number): Promise<void> {
     throw error;
   });
   jump.to("live");
-  useView.setState({ sample: undefined });
+  // on a phone the vote of the cue before leaves the place to the lanes
+  useView.setState(({ extra }) => ({ sample: undefined, extra: extra === "vote" ? "" : extra }));
   if (bench.id !== stage || bench.id !== useBench.getState().bench?.id) openBench(bench.id, true);
   if (stage && bench.id !== stage) await remove(stage);
   useLecture.setState({ at, tick, stage: bench.id });

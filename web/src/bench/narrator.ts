@@ -1,12 +1,13 @@
 import { create } from "zustand";
 import { useMe } from "../api/me";
+import { storageName } from "../api/storage-name";
 import type { Sentence } from "../api/types";
 import { useBench } from "../stream/bench-store";
 import { jump } from "../ui/hover";
 import { send } from "./send";
 import { useVote } from "./vote";
 
-const STORED = "combbench.narrator";
+const STORED = storageName("combbench.narrator");
 
 interface NarratorStore {
   /** Whether a line under the panels says what happens; so it is at the first visit. */

@@ -1,5 +1,6 @@
 import { api } from "../api/api";
 import { may, useMe } from "../api/me";
+import { storageName } from "../api/storage-name";
 import { useBench } from "../stream/bench-store";
 import { stream } from "../stream/stream";
 import { alarm, announce } from "./announce";
@@ -7,8 +8,8 @@ import { send } from "./send";
 import { useView } from "./view-store";
 
 const PARAMETER = "bench";
-const OWN = "combbench.own";
-const MINE = "combbench.mine";
+const OWN = storageName("combbench.own");
+const MINE = storageName("combbench.mine");
 
 /** The bench, link or layout that the address names. */
 export function inAddress(name: "bench" | "link" | "layout"): string | undefined {

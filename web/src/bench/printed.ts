@@ -2,10 +2,11 @@ import { useEffect } from "react";
 import { create } from "zustand";
 import { api } from "../api/api";
 import { useAnswer } from "../api/queries";
+import { storageName } from "../api/storage-name";
 import type { PrintedMark } from "../api/types";
 import { useBench } from "../stream/bench-store";
 
-const KEPT = "combbench.printed";
+const KEPT = storageName("combbench.printed");
 
 interface PrintedStore {
   /** The printed marks of the figure of the bench on the page. */

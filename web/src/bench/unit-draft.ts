@@ -1,5 +1,6 @@
 import { create } from "zustand";
 import { createJSONStorage, persist } from "zustand/middleware";
+import { storageName } from "../api/storage-name";
 
 /** A text that was on a bench, or was left for another. */
 export interface UnitVersion {
@@ -28,7 +29,7 @@ const MOST_CHARACTERS = 1_000_000;
 /** The unit in the editor, and the versions of each name; this browser keeps them. */
 export const useDraft = create<DraftStore>()(
   persist((): DraftStore => ({ name: "", source: "", asYouType: true, tried: "", versions: {} }), {
-    name: "combbench.unit",
+    name: storageName("combbench.unit"),
     storage: createJSONStorage(() => localStorage),
     merge: (kept, fresh) => {
       const known = { ...fresh, ...(kept as Partial<DraftStore>) };

@@ -1,12 +1,13 @@
 import { create } from "zustand";
 import { isInFrame } from "../api/session";
+import { storageName } from "../api/storage-name";
 import { addressOf, EARLIER, type PageName, placeOf } from "./places";
 
 const LAYOUT_NAMES = ["lecture", "lab", "research"] as const;
 
 export type LayoutName = (typeof LAYOUT_NAMES)[number];
 
-const CHOSEN = "combbench.layout.chosen";
+const CHOSEN = storageName("combbench.layout.chosen");
 
 /** The instance on the bench that the block card shows, such as "plant" or "diagnosers.kalman". */
 type CardId = string;

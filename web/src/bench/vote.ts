@@ -6,7 +6,7 @@ import { votes } from "../api/votes";
 import { useBench } from "../stream/bench-store";
 import { announce } from "./announce";
 import { showPanel } from "./dock";
-import { cueNow } from "./lecture";
+import { cueNow, useLecture } from "./lecture";
 import { showing } from "./send";
 
 /** The vote that the teacher's page is at. */
@@ -14,9 +14,12 @@ export const useVote = create<{ vote: Vote | undefined }>(() => ({ vote: undefin
 
 export const showVote = (vote: Vote | undefined): void => useVote.setState({ vote });
 
+/** The question that the lecture of this tab asked last, with the beginning of the lecture. */
+const ASKED = "combbench.asked";
+
 /**
- * Open the vote of the cue, once; the panel says how it goes, and asks again if that is wanted. Where several classes are
- * there, it asks who votes.
+ * Open the vote of the cue, once in a lecture; the panel says how it goes, and asks again if that is wanted. Where several
+ * classes are there, it asks who votes.
  */
 export const askCue = showing(async () => {
   const vote = cueNow()?.vote;
@@ -25,10 +28,15 @@ export const askCue = showing(async () => {
   const [groups, open] = await Promise.all([classes.all(), votes.all()]);
   const class_id = groups[0]?.id ?? null;
   const { text, diagnoser = "", when = null, right } = vote;
-  const isAsked = open.some((one) => one.class_id === class_id && (one.state === "open" || one.question.text === text));
+  const asked = `${useLecture.getState().began} ${text}`;
+  const isLast = sessionStorage.getItem(ASKED) === asked;
+  const isAsked = open.some(
+    (one) => one.class_id === class_id && (one.state === "open" || (isLast && one.question.text === text)),
+  );
   if (groups.length > 1 || isAsked) return;
   const answers = diagnoser ? (useBench.getState().bench?.diagnosers[diagnoser]?.names ?? []) : (vote.answers ?? []);
   await votes.open({ class_id, text, answers, diagnoser, when, right });
+  sessionStorage.setItem(ASKED, asked);
   await queryClient.invalidateQueries({ queryKey: ["votes"] });
   announce(`The vote is open: ${text}`);
 });

@@ -152,4 +152,5 @@ export function pathTitle(path: string): string {
   return of ? `${metricTitle(last)} · ${of}` : metricTitle(last);
 }
 
-const HEAD = ["schema", "id", "title", "source", "summary", "claim", "verdict", "metrics"];
+/** Parts of a scenario that are about it. */
+export const HEAD = ["schema", "id", "title", "source", "summary", "claim", "verdict", "metrics"];

@@ -5,6 +5,7 @@ import { api } from "../api/api";
 import { showError } from "../bench/send";
 import { formatCount } from "../ui/format";
 import { type Job, stateText } from "./jobs";
+import { OwnValues } from "./own-values";
 import styles from "./runs.module.css";
 import type { Chosen } from "./use-chosen";
 
@@ -86,6 +87,11 @@ export function JobList({ jobs, chosen, onChoose, onChanged }: JobListProps) {
             >
               <b className="cut">{job.title}</b>
               <span className="cut">{job.about}</span>
+              {job.kind === "run" && (
+                <span className={`cut ${styles.own}`}>
+                  <OwnValues run={job.run} />
+                </span>
+              )}
               <span
                 className={styles.state}
                 data-state={job.state}

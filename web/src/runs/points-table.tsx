@@ -4,7 +4,7 @@ import { formatNumber, formatSpread } from "../ui/format";
 import { metricScale } from "../ui/metric-name";
 import { labelScale, labelText } from "./points";
 import styles from "./runs.module.css";
-import { type Order, PAGE } from "./use-points";
+import { PAGE, type Points } from "./use-points";
 
 interface Column {
   id: string;
@@ -13,18 +13,12 @@ interface Column {
   say(point: PointTally): string;
 }
 
-interface PointsTableProps {
+interface PointsTableProps extends Pick<Points, "isPage" | "page" | "setPage" | "order" | "setOrder"> {
   /** All points, or the points of a page in the chosen order. */
   points: PointTally[];
   metrics: string[];
   /** Points on all pages. */
   found: number;
-  isPage: boolean;
-  /** The first is 1. */
-  page: number;
-  setPage(page: number): void;
-  order: Order | undefined;
-  setOrder(order: Order): void;
 }
 
 /** One row for each point; a click on a heading sorts by it. */

@@ -14,6 +14,7 @@ import { TableHead } from "../ui/table-head";
 import { ReportButton, ScriptButton } from "./file-buttons";
 import { runName } from "./jobs";
 import { NameField } from "./name-field";
+import { OwnValues } from "./own-values";
 import styles from "./runs.module.css";
 
 const DIGITS = 6;
@@ -64,6 +65,9 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
           {hasTrace && ` · ${formatCount(summary.ticks, "tick")} of ${formatShort(summary.dt_s, "s")}`} · took{" "}
           {formatSi(summary.elapsed_s, "s", 3)}
         </small>
+        <p className="note">
+          <OwnValues run={run} />
+        </p>
         <NameField
           label={run.label ?? ""}
           title={run.title || run.scenario_id}

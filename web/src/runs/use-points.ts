@@ -19,7 +19,7 @@ export interface Order {
   down: boolean;
 }
 
-interface Points extends Omit<Answer<SweepPoints>, "value"> {
+export interface Points extends Omit<Answer<SweepPoints>, "value"> {
   value: SweepPoints | undefined;
   /** Whether the points are one page of many. */
   isPage: boolean;

@@ -26,6 +26,7 @@ document.head.innerHTML = '<base href="/" />'; // as the page has it
 
 beforeEach(() => {
   vi.stubGlobal("fetch", server.fetch);
+  server.on("POST", "/qr", { image: "data:," });
   vi.spyOn(console, "error").mockImplementation(() => undefined);
 });
 

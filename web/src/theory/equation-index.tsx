@@ -67,20 +67,34 @@ function Families({ families }: { families: ReturnType<typeof found> }) {
         {family.name}
       </Box>
       <ul>
-        {family.entries.map((entry) => (
-          <Row key={entry.blocks.join() + entry.equation.label + entry.equation.latex} entry={entry} />
-        ))}
+        {family.entries.map((entry, i) => {
+          const blocks = entry.blocks.join(", ");
+          return (
+            <Row
+              key={blocks + entry.equation.label + entry.equation.latex}
+              entry={entry}
+              blocks={blocks === family.entries[i - 1]?.blocks.join(", ") ? "" : blocks}
+            />
+          );
+        })}
       </ul>
     </section>
   ));
 }
 
-const Row = memo(function Row({ entry: { blocks, equation } }: { entry: Entry }) {
+interface RowProps {
+  entry: Entry;
+  /** Names of the blocks; empty below an equation of the same blocks. */
+  blocks: string;
+}
+
+/** An equation; the name of its family is in the heading above it. */
+const Row = memo(function Row({ entry: { family, equation }, blocks }: RowProps) {
   return (
-    <li className={styles.row}>
+    <li className={styles.row} data-more={blocks === ""}>
       <Box display="grid" fz="sm">
-        <b>{blocks.join(", ")}</b>
-        <span>{equation.label.replaceAll("_", " ")}</span>
+        {blocks && <b>{blocks}</b>}
+        {equation.label !== family && <span>{equation.label.replaceAll("_", " ")}</span>}
         {equation.source && <small>{equation.source}</small>}
       </Box>
       {equation.printed ? (

@@ -92,6 +92,21 @@ it("counts the equations, finds those with several words, and those with errata"
   expect(window.location.pathname).toBe("/theory/no%20such%20thing");
 });
 
+it("names a family above its equations and a block above its own, and neither again", async () => {
+  const blocks = catalog.blocks.filter(({ family, name }) => family === "reference" || name === "mrac");
+  server.on("GET", "/catalog", { blocks });
+  mount(<EquationIndex />);
+  const of = async (family: string) => {
+    const section = within(await screen.findByRole("region", { name: family }));
+    return section.getAllByRole("listitem").map((row) => row.firstElementChild?.textContent);
+  };
+  for (const text of await of("reference")) expect(text).not.toMatch(/reference/);
+  const [first, ...others] = await of("control");
+  expect(first).toMatch(/^Direct MRAC/);
+  expect(others.length).toBeGreaterThan(0);
+  for (const text of others) expect(text).not.toMatch(/MRAC/);
+});
+
 it("opens at the equations that the address names", async () => {
   const [block] = catalog.blocks.filter(({ family }) => family === "control");
   openPlace("theory", `${block.title} ${block.equations[0].label}`);

@@ -47,7 +47,7 @@ def policy(answer: Any) -> str:
     return str(answer.headers["content-security-policy"])
 
 
-MODULES = ("server.classroom.lti", "pylti1p3")
+MODULES = ("server.classroom.lti", "jwt")
 
 
 def loaded() -> list[str]:

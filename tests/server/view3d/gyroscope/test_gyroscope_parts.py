@@ -5,13 +5,23 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from server.view3d.flexure import RINGS, beam
 from server.view3d.gyroscope import parts
-from server.view3d.gyroscope.body import FRONT, turning
+from server.view3d.gyroscope.gyroscope import FRONT, turning
 from server.view3d.gyroscope.orbit import WANTED_UM, caption, full_scale, magnified, met
-from server.view3d.gyroscope.parts import ANCHOR_UM, AXES, BAR_UM, BASE_UM, MASS_UM, RETURN_UM, STATOR_UM, TIP_UM, Parts
-from server.view3d.gyroscope.solids import RINGS, beam
-from server.view3d.layout import UM_PER_UNIT
+from server.view3d.gyroscope.parts import (
+    ANCHOR_UM,
+    AXES,
+    BAR_UM,
+    BASE_UM,
+    MASS_UM,
+    RETURN_UM,
+    STATOR_UM,
+    TIP_UM,
+    Ground,
+)
 from server.view3d.page import cameras
+from server.view3d.part import units
 
 PAIR = ("x", "y", "partner_x", "partner_y")
 REACH_UM = 1.2 * WANTED_UM
@@ -54,7 +64,7 @@ def test_nothing_collides_at_the_largest_motion() -> None:
         moving = parts.bars()
         carried = np.abs(moving.follow[:, a, a]) > 0.0
         fingers = carried & (np.abs(moving.rest[:, a]) > TIP_UM - 1.0)
-        fixed = parts.stators(axis).vertices * UM_PER_UNIT
+        fixed = parts.stators(axis).vertices
         tips = fixed[np.abs(fixed[:, a]) < STATOR_UM + 1.0]
         gaps = np.abs(moving.rest[fingers][:, None, 1 - a] - tips[None, :, 1 - a])
         assert fingers.sum() == 56 and len(tips) == 64
@@ -110,7 +120,7 @@ def test_half_the_ring_is_a_round_rate_with_room_above() -> None:
 @pytest.mark.parametrize(("share", "angle"), [(0.5, 0.0), (-0.25, -0.75 * np.pi), (1.0, 0.5 * np.pi)])
 def test_the_arc_goes_the_way_the_frame_turns(share: float, angle: float) -> None:
     """Counter-clockwise from the front for a positive rate, half the ring for the whole scale."""
-    vertices = turning(share).vertices * UM_PER_UNIT
+    vertices = turning(share).vertices
     start, tip = vertices[0], vertices[-5]
     assert np.arctan2(start[1], start[0]) == pytest.approx(FRONT)
     assert np.arctan2(tip[1], tip[0]) == pytest.approx(angle + np.copysign(0.11, share))
@@ -125,10 +135,10 @@ def test_what_is_not_as_in_nature_is_said() -> None:
 
 @pytest.mark.parametrize("axes", [PAIR[:2], PAIR])
 def test_every_camera_of_the_page_looks_at_the_device(axes: tuple[str, ...]) -> None:
-    layout = Parts(axes)
-    ground = layout.ground().vertices
+    layout = Ground(axes)
+    ground = units(layout.mesh().vertices)
     low, high = ground.min(0), ground.max(0)
-    views = cameras(layout)
+    views = cameras(layout.views())
     assert list(views) == ["whole", "top", "side", "fingers", "beams"]
     for name, view in views.items():
         box = np.array(view["box"])

@@ -13,12 +13,11 @@ import pytest
 
 from server.bench.description import period_of
 from server.view3d.colours import SILICON
-from server.view3d.gyroscope import pose as pose_module
-from server.view3d.gyroscope.body import ABOVE_UM
+from server.view3d.gyroscope import gyroscope
+from server.view3d.gyroscope.gyroscope import ABOVE_UM, FORCE_UM
 from server.view3d.gyroscope.parts import APART_UM, TOP_UM
-from server.view3d.gyroscope.scene import FORCE_UM
-from server.view3d.layout import UM_PER_UNIT
-from server.view3d.viewers import build_scene, observer_of
+from server.view3d.part import UM_PER_UNIT
+from server.view3d.viewers import build_scene, device_of
 
 SINGLE: dict[str, Any] = {
     "schema": 1,
@@ -51,13 +50,13 @@ def factors(caption: str) -> tuple[float, float]:
 
 @contextmanager
 def drawn(live: Any, scenario: dict[str, Any], ticks: int) -> Iterator[tuple[Any, dict[str, Any], Any, Any]]:
-    """Return bench, session, scene and observer of a bench after some ticks."""
+    """Return bench, session, scene and device of a bench after some ticks."""
     bench = live.bench(scenario, paused=True)
     live.command(bench["id"], "step", ticks=ticks)
     session = live.service.benches.get(bench["id"])
-    scene = build_scene(session)
+    device, scene = build_scene(session)
     try:
-        yield bench, session, scene, observer_of(session)
+        yield bench, session, scene, device
     finally:
         scene.close()
 
@@ -68,37 +67,37 @@ def middle(handle: Any) -> Any:
 
 
 def test_the_mass_is_where_the_signals_say_by_the_factors_of_the_caption(live: Any) -> None:
-    with drawn(live, SINGLE, 5000) as (bench, session, scene, observer):
+    with drawn(live, SINGLE, 5000) as (bench, session, scene, device):
         for ticks in (1, 7, 11):
             live.command(bench["id"], "step", ticks=ticks)
-            pose = observer.pose()
+            pose = device.pose()
             scene.show(pose)
             x, y = (session.board.value(f"plant.{axis}") for axis in "xy")
             fx, fy = factors(pose.caption)
             assert fx == 5.0 < fy
             assert pose.places == (pytest.approx((x * fx, y * fy), rel=1e-5),)
-            (plate, _), _, (dot, _) = scene._bodies[0]._moving
+            plate, dot = scene.nodes["/first/plate"], scene.nodes["/first/dot"]
             np.testing.assert_allclose(middle(plate)[:2], (x * fx, y * fy), atol=1e-3)
             np.testing.assert_allclose(middle(dot), (x * fx, y * fy, TOP_UM + ABOVE_UM), atol=1e-3)
-            orbit = scene._bodies[0]._orbit.points
+            orbit = scene.nodes["/first/orbit"].points
             np.testing.assert_allclose(orbit[-1, 1] * UM_PER_UNIT, (x * fx, y * fy, TOP_UM + ABOVE_UM), atol=1e-3)
             assert 0.9 * 5.0 * fx < np.abs(orbit[..., 0]).max() * UM_PER_UNIT < 1.05 * 5.0 * fx
         assert period_of(session) == pytest.approx(1e5 / 3925.29, rel=1e-3)
-        assert (scene._rate.text, pose.turn) == ("rate +100\u00a0deg/s", 0.5)
-        assert not scene._force.visible and "not to scale" in scene._caption.text
+        assert (scene.nodes["/rate"].text, pose.turn) == ("rate +100\u00a0deg/s", 0.5)
+        assert not scene.nodes["/force"].visible and "not to scale" in scene.nodes["/caption"].text
 
 
 def test_a_fast_motion_is_strobed_evenly(live: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     now = [100.0]
-    monkeypatch.setattr(pose_module, "time", SimpleNamespace(monotonic=lambda: now[0]))
+    monkeypatch.setattr(gyroscope, "time", SimpleNamespace(monotonic=lambda: now[0]))
     bench = live.bench(SINGLE, time_scale=1.0)
     session = live.service.benches.get(bench["id"])
-    observer, poses = observer_of(session), []
+    device, poses = device_of(session), []
     live.advance(seconds=0.5)
     for _ in range(40):
         live.advance(seconds=1.25 / 40)
         now[0] += 1.25 / 40
-        pose = observer.pose()
+        pose = device.pose()
         assert pose.caption.endswith("strobe")
         poses.append(pose.places[0][0])
     # one period in 1.25 s: both ends of the swing, and no jumps between neighbours
@@ -108,66 +107,72 @@ def test_a_fast_motion_is_strobed_evenly(live: Any, monkeypatch: pytest.MonkeyPa
 
 
 def test_two_stand_side_by_side_and_the_force_that_follows_is_an_arrow(live: Any) -> None:
-    with drawn(live, PAIR, 9000) as (bench, session, scene, observer):
+    with drawn(live, PAIR, 9000) as (bench, session, scene, device):
         seen = set()
+        arrow, words = scene.nodes["/force"], scene.nodes["/force-words"]
         for _ in range(6):
             live.command(bench["id"], "step", ticks=5)
-            pose = observer.pose()
+            pose = device.pose()
             scene.show(pose)
             fx, fy = factors(pose.caption)
             signals = [session.board.value(f"plant.{axis}") for axis in ("x", "y", "partner_x", "partner_y")]
             np.testing.assert_allclose(np.ravel(pose.places), np.multiply(signals, (fx, fy, fx, fy)), rtol=1e-5)
             force = session.board.value("drive.y.force")
             assert np.sign(pose.force) == np.sign(force) and abs(pose.force) <= 1.0
-            shaft = scene._force.vertices[:, 1] * UM_PER_UNIT
+            shaft = arrow.vertices[:, 1] * UM_PER_UNIT
             assert np.ptp(shaft) == pytest.approx(FORCE_UM * abs(pose.force), rel=1e-4)
             assert shaft[3] == pytest.approx(FORCE_UM * pose.force, rel=1e-4)
             seen.add(np.sign(force))
-        assert seen == {1.0, -1.0} and scene._force.visible and "µN" in scene._force_words.text
-        assert [body.centre for body in scene._bodies] == [(-APART_UM, 0.0), (APART_UM, 0.0)]
-        assert pose.turn == -0.5 and scene._rate.text.startswith("rate \u221250")
+        assert seen == {1.0, -1.0} and arrow.visible and "µN" in words.text
+        bodies = [scene.nodes[f"/{name}"].position * UM_PER_UNIT for name in ("first", "partner")]
+        np.testing.assert_allclose(bodies, [(-APART_UM, 0.0, 0.0), (APART_UM, 0.0, 0.0)])
+        assert pose.turn == -0.5 and scene.nodes["/rate"].text.startswith("rate \u221250")
         live.command(bench["id"], "switch", controller="open_loop_rate")
         live.command(bench["id"], "step", ticks=5)
-        scene.show(observer.pose())
-        assert observer.pose().force is None and not scene._force.visible and not scene._force_words.visible
+        scene.show(device.pose())
+        assert device.pose().force is None and not arrow.visible and not words.visible
 
 
 def test_a_frame_is_a_handful_of_messages_and_none_when_nothing_moves(live: Any) -> None:
-    for scenario, most in ((SINGLE, 12), (PAIR, 24)):
-        with drawn(live, scenario, 9000) as (bench, _, scene, observer):
-            scene.show(observer.pose())
+    for scenario, bodies, most in ((SINGLE, 1, 12), (PAIR, 2, 24)):
+        with drawn(live, scenario, 9000) as (bench, _, scene, device):
+            scene.show(device.pose())
             sent: list[Any] = []
             server = scene._server._websock_server
             queue = server.queue_message
             server.queue_message = lambda message, queue=queue, sent=sent: (sent.append(message), queue(message))
-            scene.show(observer.pose())
+            scene.show(device.pose())
             assert not sent
             for _ in range(5):
                 live.command(bench["id"], "step", ticks=7)
                 sent.clear()
-                scene.show(observer.pose())
+                scene.show(device.pose())
                 assert 5 <= len(sent) <= most
                 values = sum(np.size(value) for message in sent for value in vars(message).get("updates", {}).values())
-                assert values < 4000 * len(scene._bodies)
+                assert values < 4000 * bodies
 
 
 def test_faults_reach_the_parts_of_the_first(live: Any) -> None:
-    with drawn(live, PAIR, 100) as (bench, _, scene, observer):
-        first, partner = scene._bodies
-        scene.show(observer.pose())
-        assert not scene._added and not first._gas.visible
+    with drawn(live, PAIR, 100) as (bench, _, scene, device):
+        first, partner = (
+            {part: scene.nodes[f"/{name}/{part}"] for part in ("gas", "flexures-x", "flexures-y")}
+            for name in ("first", "partner")
+        )
+        scene.show(device.pose())
+        assert not scene.added and not first["gas"].visible
         for fault in ("added_mass", "stiffness", "damping", "sensor_bias"):
             live.command(bench["id"], "inject", fault=fault, severity=0.2)
         live.command(bench["id"], "step", ticks=2)
-        scene.show(observer.pose())
-        assert {node.name for node in scene._added} >= {"/first/mass/added-mass", "/labels/3"}
-        assert first._gas.visible and not partner._gas.visible
-        for axis in "xy":
-            assert tuple(first._flexures[axis][0].color) != SILICON == tuple(partner._flexures[axis][0].color)
+        scene.show(device.pose())
+        assert {node.name for node in scene.added.values()} >= {"/first/mass/added-mass", "/labels/3"}
+        assert first["gas"].visible and not partner["gas"].visible
+        for beams in ("flexures-x", "flexures-y"):
+            assert tuple(first[beams].color) != SILICON == tuple(partner[beams].color)
         live.command(bench["id"], "heal", faults="all")
         live.command(bench["id"], "step", ticks=2)
-        scene.show(observer.pose())
-        assert not scene._added and not first._gas.visible and tuple(first._flexures["x"][0].color) == SILICON
+        scene.show(device.pose())
+        assert not scene.added and not first["gas"].visible
+        assert tuple(first["flexures-x"].color) == SILICON
 
 
 def test_the_page_has_the_cameras_of_a_gyroscope(live: Any) -> None:

@@ -5,7 +5,7 @@ import { connect } from "../../testing/fake-transport";
 import { recordedAnswer, recordedBench } from "../../testing/recorded";
 import { be, mount } from "../../testing/render";
 import { DeviceSelect } from "./device-select";
-import { SensorSelect } from "./sensor-select";
+import { SensorSelect } from "./header";
 
 const { bench, events } = await recordedBench("first-look");
 const gyroscope = await recordedBench("gyroscope");

@@ -1,12 +1,17 @@
+import { Box, Button } from "@mantine/core";
+import { IconArrowLeft } from "@tabler/icons-react";
 import { useMay } from "../../api/me";
+import { feeds, useSensor } from "../../bench/sensor";
+import { setPage } from "../../bench/view-store";
+import { useBench } from "../../stream/bench-store";
 import { BenchMenu } from "./bench-menu";
 import { CompanyMenu } from "./company";
 import { ControllerSelect } from "./controller-select";
 import { DeviceClock } from "./device-clock";
 import { DeviceSelect } from "./device-select";
 import styles from "./header.module.css";
+import { HeaderSelect, useLockedWhileHidden } from "./header-select";
 import { RunControls } from "./run-controls";
-import { SensorSelect } from "./sensor-select";
 import { StateBadge } from "./state-badge";
 import { TimeScaleControl } from "./time-scale-control";
 import { Tools } from "./tools";
@@ -32,6 +37,35 @@ export function Header() {
       <CompanyMenu />
       <Visitor />
       <Tools />
+    </header>
+  );
+}
+
+/** Which sensor feeds the controllers. */
+export function SensorSelect() {
+  const { kind, sensors, use } = useSensor();
+  const locked = useLockedWhileHidden();
+  const choices = sensors.filter(feeds).map(({ name, title, summary }) => ({ value: name, title, about: summary }));
+  return (
+    <HeaderSelect label="Sensor" value={kind} choices={choices} locked={locked} onChoose={(name) => void use(name)} />
+  );
+}
+
+/** The strip along the top of the other pages: the bench by its name and state, and the way back to it. */
+export function PageHeader() {
+  const title = useBench((s) => s.bench?.title);
+  return (
+    <header className={`${styles.header} ${styles.plain}`}>
+      <img src="./comb.svg" alt="" width="22" height="22" />
+      <h1 className={styles.title}>CombBench</h1>
+      <Button leftSection={<IconArrowLeft size={15} />} onClick={() => setPage("bench")}>
+        Back to the bench
+      </Button>
+      <Box component="strong" className="cut" fw={560}>
+        {title ?? "No bench"}
+      </Box>
+      <StateBadge />
+      <Visitor />
     </header>
   );
 }

@@ -4,7 +4,7 @@ import { setPage, useView } from "../../bench/view-store";
 import { connect } from "../../testing/fake-transport";
 import { recordedBench } from "../../testing/recorded";
 import { mount } from "../../testing/render";
-import { PageHeader } from "./page-header";
+import { PageHeader } from "./header";
 
 const { bench } = await recordedBench("first-look");
 

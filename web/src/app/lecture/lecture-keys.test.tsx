@@ -74,6 +74,32 @@ it("R runs the bench, W asks why, A opens the vote and X reveals it", async () =
   await vi.waitFor(() => expect(server.asked("POST", `/votes/${open.id}/reveal`)).toHaveLength(1));
 });
 
+it("asks the vote of a cue once in a lecture, and anew in the next one", async () => {
+  begin();
+  const { user } = mount(<Page />);
+  await user.keyboard("a");
+  await vi.waitFor(() => expect(server.asked("POST", "/votes")).toHaveLength(1));
+  server.on("GET", "/votes", {
+    votes: [{ ...revealed, class_id: null, question: { ...revealed.question, text: vote.text } }],
+  });
+  const asked = () => server.asked("GET", "/votes").length;
+  const before = asked();
+  await user.keyboard("a");
+  await vi.waitFor(() => expect(asked()).toBeGreaterThan(before));
+  expect(server.asked("POST", "/votes")).toHaveLength(1);
+  act(() => useLecture.setState({ began: 2 }));
+  await user.keyboard("a");
+  await vi.waitFor(() => expect(server.asked("POST", "/votes")).toHaveLength(2));
+});
+
+it("takes the vote off a phone with the next cue", async () => {
+  begin();
+  useView.setState({ extra: "vote" });
+  const { user } = mount(<Page />);
+  await user.keyboard("{PageDown}");
+  await vi.waitFor(() => expect(useView.getState().extra).toBe(""));
+});
+
 it("lists every key of the lecture in the sheet of keys, and the other use of such a key not at all", async () => {
   begin();
   const { user } = mount(<Page />);

@@ -2,6 +2,7 @@ import { Box, Button, Group } from "@mantine/core";
 import { type ReactNode, useEffect, useState } from "react";
 import { lectures } from "../../api/lectures";
 import { useAsked } from "../../api/queries";
+import { storageName } from "../../api/storage-name";
 import type { Cue, Lecture } from "../../api/types";
 import { plannedTo, useLecture } from "../../bench/lecture";
 import { EmptyState } from "../../ui/empty-state";
@@ -10,7 +11,7 @@ import styles from "./lecture.module.css";
 import { LECTURE_KEYS } from "./lecture-keys";
 import { ClockFace, Notes, useMinutesSince } from "./notes";
 
-const CHANNEL = "combbench.lecture";
+const CHANNEL = storageName("combbench.lecture");
 const PARAMETER = "notes";
 
 /** The place of the lecture, for the window of the speaker. */

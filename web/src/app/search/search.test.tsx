@@ -81,6 +81,14 @@ it("says when nothing has all words", async () => {
   expect(await screen.findByText("Nothing has all these words.")).toBeVisible();
 });
 
+it("opens the first entry with Enter, also after letters that came before the field", async () => {
+  const { option } = await open();
+  for (const key of "scores") fireEvent.keyDown(document.body, { key });
+  await option(/^Scores/);
+  fireEvent.keyDown(screen.getByRole("textbox", { name: "Search" }), { key: "Enter", code: "Enter" });
+  expect(window.location.pathname).toBe("/scores");
+});
+
 it("takes letters that are typed before it has the keyboard, which are no keys of the page then", async () => {
   await open();
   fireEvent.keyDown(document.body, { key: "n" });

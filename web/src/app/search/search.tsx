@@ -1,6 +1,6 @@
 import { createSpotlight, Spotlight } from "@mantine/spotlight";
 import { IconSearch } from "@tabler/icons-react";
-import { useEffect, useState } from "react";
+import { type KeyboardEvent as KeyDown, useEffect, useState } from "react";
 import { find } from "./find";
 import styles from "./search.module.css";
 import { useEntries } from "./use-entries";
@@ -43,12 +43,19 @@ export function Search() {
         aria-label="Search"
         placeholder="Panel, scenario, equation, device, setting or place"
         leftSection={<IconSearch size={18} />}
+        onKeyDown={openFirst}
       />
       <Spotlight.ActionsList>
         <Found asked={asked} />
       </Spotlight.ActionsList>
     </Spotlight.Root>
   );
+}
+
+/** Enter opens the first entry where none is chosen yet, as after letters that came before the field. */
+function openFirst({ key, currentTarget }: KeyDown) {
+  const entries = [...(currentTarget.closest("[role=dialog]")?.querySelectorAll<HTMLElement>("[data-action]") ?? [])];
+  if (key === "Enter" && !entries.some((entry) => entry.dataset.selected)) entries[0]?.click();
 }
 
 function Found({ asked }: { asked: string }) {

@@ -5,6 +5,7 @@ import type { Driver } from "driver.js";
 import { create } from "zustand";
 import { api } from "../../api/api";
 import { unless } from "../../api/client";
+import { storageName } from "../../api/storage-name";
 import { announce } from "../../bench/announce";
 import { type Before, stepAside, stepBack } from "../../bench/aside";
 import { lectureRuns } from "../../bench/lecture";
@@ -19,7 +20,7 @@ import { forgetRun, type Tour, type TourStep } from "./tours";
 export const TOUR_PX = 700;
 /** The longest wait for the condition of a step; the step appears then in any case. */
 const PATIENCE_MS = 12_000;
-const SEEN = "combbench.tours.seen";
+const SEEN = storageName("combbench.tours.seen");
 
 /** Whether a tour is under way. */
 export const useTour = create<{ runs: boolean }>(() => ({ runs: false }));

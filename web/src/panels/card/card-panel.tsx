@@ -1,8 +1,13 @@
 import { Box, Button, NativeSelect } from "@mantine/core";
-import { IconChevronLeft } from "@tabler/icons-react";
+import { IconChevronLeft, IconPencil } from "@tabler/icons-react";
 import { useMay } from "../../api/me";
+import { useAnswer } from "../../api/queries";
+import type { BlockCard } from "../../api/types";
+import { units } from "../../api/units";
 import { useCatalog } from "../../api/use-catalog";
 import { showPanel } from "../../bench/dock";
+import { editCopy, editOwn } from "../../bench/edit-unit";
+import { sourceOnBench } from "../../bench/unit-values";
 import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
@@ -11,7 +16,6 @@ import { Weaknesses } from "../../ui/weaknesses";
 import { BlockEquation } from "./block-equation";
 import { Values } from "./block-values";
 import { CatalogueMissing } from "./catalogue-missing";
-import { EditUnit } from "./edit-unit";
 import { useInstances } from "./instances";
 import { LiveValues } from "./live-values";
 
@@ -76,5 +80,24 @@ export function CardPanel() {
         </CatalogueMissing>
       )}
     </section>
+  );
+}
+
+/** The way from a block to its text: an own unit is edited, a unit of the library is copied. */
+function EditUnit({ block: { family, name } }: { block: BlockCard }) {
+  const teaches = useMay("teach");
+  const isOwn = useBench((s) => sourceOnBench(s.bench?.parameters, name) !== undefined);
+  const { value } = useAnswer(teaches ? ["texts of units"] : undefined, units.all);
+  if (!teaches || !value || value.refusal) return null;
+  const canCopy = value.units.some((one) => one.family === family && one.name === name);
+  if (!isOwn && !canCopy) return null;
+  return (
+    <Button
+      variant="subtle"
+      leftSection={<IconPencil size={14} />}
+      onClick={() => (isOwn ? editOwn(name) : void editCopy(name))}
+    >
+      {isOwn ? "Edit" : "Edit a copy"}
+    </Button>
   );
 }

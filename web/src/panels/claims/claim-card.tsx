@@ -4,13 +4,17 @@ import { useMay } from "../../api/me";
 import type { Claim, ClaimList } from "../../api/types";
 import { addScope } from "../../bench/dock";
 import { placeIn } from "../../bench/printed";
+import { useBusy } from "../../bench/use-busy";
+import { fileStem } from "../../picture/picture";
 import { Figure } from "../../ui/figure";
 import { keepUnits } from "../../ui/format";
+import { pngOf, saveFile } from "../../ui/save-file";
 import { Verdict } from "../../ui/verdict";
 import { partnersOf } from "./claim-signals";
 import { claimWords, stateWords } from "./claim-words";
 import styles from "./claims.module.css";
-import { SlideButtons } from "./slide-buttons";
+import { slideSvg } from "./slide";
+import { slideTraces } from "./slide-traces";
 import { ThresholdView } from "./threshold-view";
 
 const ICONS = {
@@ -97,5 +101,32 @@ export function ClaimCard({ claim, list, isOpen, onOpen }: ClaimCardProps) {
         {isOpen && <ThresholdView claim={claim} />}
       </Box>
     </li>
+  );
+}
+
+const RATIO = 1.5;
+
+/** The claim as one slide, in one click. */
+function SlideButtons({ claim, list }: { claim: Claim; list: ClaimList }) {
+  const [isMaking, during] = useBusy();
+  const keep = (kind: "png" | "svg") =>
+    during(async () => {
+      const svg = slideSvg(claim, list, await slideTraces(claim, list));
+      const content = kind === "png" ? await pngOf(svg, RATIO) : new Blob([svg], { type: "image/svg+xml" });
+      saveFile(`${fileStem(`${list.scenario_id}-${claim.metric}`)}-slide.${kind}`, content);
+    });
+  return (
+    <Button.Group>
+      {(["png", "svg"] as const).map((kind) => (
+        <Button
+          key={kind}
+          disabled={isMaking}
+          title="One slide, 16:9: the words as printed, the traces over the marks, and the result"
+          onClick={() => void keep(kind)}
+        >
+          {kind === "png" ? "Slide PNG" : "SVG"}
+        </Button>
+      ))}
+    </Button.Group>
   );
 }

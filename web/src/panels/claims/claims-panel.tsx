@@ -1,13 +1,15 @@
 import { Box, Checkbox } from "@mantine/core";
 import { useState } from "react";
+import { api } from "../../api/api";
+import { type Answer, useAnswer, useLast } from "../../api/queries";
 import type { ClaimList } from "../../api/types";
-import { showPrinted, usePrinted } from "../../bench/printed";
+import { showPrinted, usePrinted, useRun } from "../../bench/printed";
 import { useBench } from "../../stream/bench-store";
+import { useBoardState } from "../../stream/freshness";
 import { EmptyState } from "../../ui/empty-state";
 import { formatSi } from "../../ui/format";
 import { Verdict } from "../../ui/verdict";
 import { ClaimCard } from "./claim-card";
-import { useClaims } from "./use-claims";
 
 /** The claims of the scenario of the bench: printed, expected, and measured so far. */
 export function ClaimsPanel() {
@@ -78,3 +80,24 @@ function Progress({ list: { tick, ends_at, is_over, reason } }: { list: ClaimLis
     </>
   );
 }
+
+const EVERY_MS = 1000;
+
+/** The claims of the bench on the page, measured anew while it runs and has not come to the end of its run. */
+function useClaims(): Answer<ClaimList> {
+  const run = useRun();
+  const id = useBench((s) => s.bench?.id) ?? "";
+  const isRunning = useBoardState() === "running";
+  const tick = useBench((s) => (s.bench?.state === "running" ? undefined : s.bench?.tick));
+  const answer = useAnswer(
+    run && ["claims", ...run, tick],
+    () => api.claims(id),
+    (found) => (isRunning || (found && tick !== undefined && isBehind(found, tick)) ? EVERY_MS : undefined),
+  );
+  const last = useLast(answer.value);
+  return { ...answer, value: answer.value ?? (last?.bench_id === id ? last : undefined) };
+}
+
+/** Whether the server still measures samples of the past. */
+const isBehind = ({ tick, ends_at, is_over, reason }: ClaimList, now: number): boolean =>
+  reason === "" && !is_over && tick < Math.min(now, ends_at);

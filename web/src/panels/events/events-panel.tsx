@@ -1,18 +1,20 @@
 import { ActionIcon, Box, SegmentedControl } from "@mantine/core";
 import { IconGitBranch } from "@tabler/icons-react";
 import { useState } from "react";
+import { classes } from "../../api/classes";
 import { useMay } from "../../api/me";
+import { useAnswer } from "../../api/queries";
 import type { LogEntry } from "../../api/types";
 import { useClasses } from "../../api/use-classes";
 import { eventTone } from "../../bench/flag-words";
 import { goOnWithout } from "../../bench/past";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
-import { formatMoment } from "../../ui/format";
+import { formatMoment, formatTick } from "../../ui/format";
 import { jump } from "../../ui/hover";
+import { Stale } from "../../ui/stale";
 import { CopyMenu } from "./copy-menu";
 import styles from "./events.module.css";
-import { WhoDid } from "./who-did";
 
 const SHOWN = 300;
 
@@ -92,5 +94,35 @@ function Events() {
           </Box>
         ))}
     </ol>
+  );
+}
+
+const EVERY_MS = 3000;
+
+/** Actions of users on a bench, drivers and arrivals, newest first; the list outlives the bench. */
+function WhoDid({ bench }: { bench: string }) {
+  const { value, error, since, again } = useAnswer(
+    ["bench-audit", bench],
+    () => classes.benchAudit(bench),
+    () => EVERY_MS,
+  );
+  return (
+    <>
+      <Stale error={error} since={since} onRetry={again} />
+      {value?.length === 0 && <EmptyState title="Nothing yet">Actions on this bench are listed here.</EmptyState>}
+      <ol className={styles.list} aria-label="Who did what, newest first">
+        {value?.map(({ at, actor, text, tick }) => (
+          <li key={`${at} ${actor} ${text}`} className={styles.did}>
+            <time className="note" dateTime={at}>
+              {new Date(at).toLocaleTimeString()}
+            </time>
+            <span className={styles.text}>
+              <b>{actor}</b>: {text}
+            </span>
+            <small>{tick !== null && formatTick(tick)}</small>
+          </li>
+        ))}
+      </ol>
+    </>
   );
 }

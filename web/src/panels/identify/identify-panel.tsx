@@ -1,12 +1,13 @@
 import { Box, Button, Group } from "@mantine/core";
-import { useState } from "react";
+import { useEffect, useRef, useState } from "react";
 import { api } from "../../api/api";
 import type { Identification } from "../../api/types";
 import { useBusy } from "../../bench/use-busy";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
+import { formatChange, formatSpread, formatTick } from "../../ui/format";
 import { NumberField } from "../../ui/number-field";
-import { IdentifiedTable } from "./identified-table";
+import { TableHead } from "../../ui/table-head";
 import styles from "./identify.module.css";
 import { SweepBode } from "./sweep-bode";
 
@@ -60,5 +61,51 @@ export function IdentifyPanel() {
         </EmptyState>
       )}
     </Box>
+  );
+}
+
+type Found = Identification["found"];
+type Key = keyof Found;
+
+const ROWS: { label: string; value: Key; error: Key; unit: string }[] = [
+  { label: "Peak", value: "f_peak_hz", error: "f_peak_error_hz", unit: "Hz" },
+  { label: "Resonance f₀", value: "f0_hz", error: "f0_error_hz", unit: "Hz" },
+  { label: "Quality factor", value: "quality_factor", error: "quality_factor_error", unit: "1" },
+  { label: "Mass m", value: "mass_kg", error: "mass_error_kg", unit: "kg" },
+  { label: "Stiffness k", value: "stiffness_n_m", error: "stiffness_error_n_m", unit: "N/m" },
+  { label: "Damping β", value: "damping_ns_m", error: "damping_error_ns_m", unit: "N s/m" },
+];
+
+/** The device by the sweep, with standard errors, and its distance from the nominal device. */
+function IdentifiedTable({ result }: { result: Identification }) {
+  const table = useRef<HTMLTableElement>(null);
+  // the numbers come into sight in a panel of any height
+  useEffect(() => {
+    if (result) table.current?.scrollIntoView({ block: "nearest" });
+  }, [result]);
+  return (
+    <table ref={table} className={`numbers ${styles.table}`}>
+      <TableHead names={[`At ${formatTick(result.tick)}`, "Measured ± standard error", "From nominal"]} />
+      <tbody>
+        {ROWS.map(({ label, value, error, unit }) => {
+          const nominal = result.nominal[value];
+          const found = Number(result.found[value]);
+          const sigma = Number(result.found[error]);
+          const change = 100 * (found / nominal - 1);
+          const sure = Math.abs(found - nominal) > 3 * sigma && Math.abs(change) >= 0.5;
+          return (
+            <tr key={value}>
+              <th scope="row">{label}</th>
+              <td>
+                <b>{formatSpread("", found, sigma, unit)}</b>
+              </td>
+              <Box component="td" data-sure={sure} fw={sure ? 700 : undefined}>
+                {formatChange(change, "%", 2)}
+              </Box>
+            </tr>
+          );
+        })}
+      </tbody>
+    </table>
   );
 }

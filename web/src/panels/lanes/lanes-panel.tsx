@@ -1,12 +1,16 @@
-import { Box, NativeSelect } from "@mantine/core";
+import { Box, Button, NativeSelect } from "@mantine/core";
 import { useMemo, useRef, useState } from "react";
+import { fits } from "../../api/fits";
+import { useMay } from "../../api/me";
+import { useCatalog } from "../../api/use-catalog";
+import { openVariant } from "../../bench/open-bench";
+import { useBusy } from "../../bench/use-busy";
 import type { TakePicture } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { contestants } from "./contestants";
 import { DiagnoserLanes } from "./diagnoser-lanes";
 import { LaneTools } from "./lane-tools";
-import { OfferDiagnoser } from "./offer-diagnoser";
 import { Race } from "./race";
 import { useLaneTime } from "./use-lane-time";
 import { useRunWindow } from "./use-run-window";
@@ -64,5 +68,40 @@ export function LanesPanel() {
         <Race contestants={all} time={time} picture={picture} />
       )}
     </div>
+  );
+}
+
+const USUAL = "mmae";
+
+/** Begin the bench again with a bank of hypotheses that suits its plant. */
+function OfferDiagnoser() {
+  const axes = useBench((s) => s.bench?.axes) ?? [];
+  const replay = useBench((s) => s.bench?.replay_of);
+  const { blocks } = useCatalog();
+  const [wanted, setWanted] = useState(USUAL);
+  const [busy, during] = useBusy();
+  const teaches = useMay("teach");
+  const banks = blocks.filter(
+    (b) => b.family === "diagnose" && fits(b, axes) && b.parameters.some((p) => p.name === "hypotheses"),
+  );
+  const bank = banks.find((b) => b.name === wanted) ?? banks[0];
+  if (!bank || replay || !teaches) return null; // the past cannot be changed
+  const begin = () => {
+    void during(() =>
+      openVariant({ [`diagnosers.${bank.name}`]: { kind: bank.name } }, `The bench restarts with ${bank.title}.`),
+    );
+  };
+  return (
+    <>
+      <NativeSelect
+        aria-label="Diagnoser to add"
+        value={bank.name}
+        data={banks.map((b) => ({ value: b.name, label: b.title }))}
+        onChange={(e) => setWanted(e.currentTarget.value)}
+      />
+      <Button variant="filled" size="xs" loading={busy} onClick={begin}>
+        Restart with it
+      </Button>
+    </>
   );
 }

@@ -1,7 +1,12 @@
 import { Button, Group, NativeSelect } from "@mantine/core";
-import { useRef, useState } from "react";
+import { useDebouncedValue } from "@mantine/hooks";
+import { useMemo, useRef, useState } from "react";
+import { api } from "../../api/api";
 import { hasAxes } from "../../api/fits";
 import { useMay } from "../../api/me";
+import { usePanelVisible } from "../../api/panel-visible";
+import { useAsked } from "../../api/queries";
+import type { UnstableRegion } from "../../api/types";
 import { send } from "../../bench/send";
 import { PictureMenu } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
@@ -12,7 +17,6 @@ import { type PhaseShown, phasePicture } from "./paint-phase";
 import styles from "./phase.module.css";
 import { PhasePlot } from "./phase-plot";
 import { mapFits, mapWords } from "./unstable-map";
-import { useUnstableRegion } from "./use-unstable-region";
 
 /** One signal over another, with the map of the unstable region beneath travel and velocity. */
 export function PhasePanel() {
@@ -102,4 +106,24 @@ export function PhasePanel() {
       </p>
     </section>
   );
+}
+
+/** Faults take effect a tick later, and sliders move in steps. */
+const SETTLE_MS = 400;
+
+/** The map of the unstable region of the bench as it is now; asked for again when its device, air or faults change. */
+function useUnstableRegion(driveV: number): { map: UnstableRegion | undefined; failed: string | undefined } {
+  const id = useBench((s) => s.bench?.id);
+  const visible = usePanelVisible();
+  const now = useBench((s) => {
+    const { device, plant, environment } = s.bench?.parameters ?? {};
+    const faults = s.bench?.faults.map((f) => [f.name, f.severity]);
+    return JSON.stringify([device, plant, environment, faults, (s.bench?.tick ?? 0) > 0]);
+  });
+  const question = useMemo(() => ({ id, driveV, now }), [id, driveV, now]);
+  const [settled] = useDebouncedValue(question, SETTLE_MS);
+  const { answer, refusal } = useAsked(settled.id && visible ? ["unstable region", settled] : undefined, () =>
+    api.unstableRegion(settled.id ?? "", settled.driveV),
+  );
+  return { map: answer, failed: refusal?.body.message };
 }

@@ -1,16 +1,17 @@
 import { Box, Group, NativeSelect } from "@mantine/core";
-import { useState } from "react";
+import { useMemo, useState } from "react";
 import { useShallow } from "zustand/react/shallow";
+import type { Document } from "../../api/types";
 import { useCatalog } from "../../api/use-catalog";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatShort } from "../../ui/format";
-import { useInstances } from "../card/instances";
+import { parameterValue, useInstances } from "../card/instances";
 import { AxesLoop } from "./axes-loop";
 import { InsideDrawing } from "./inside-drawing";
 import { ResonatorLoop } from "./resonator-loop";
+import { type Structure, structureOf } from "./structure";
 import { useActingFaults } from "./use-live-values";
-import { useStructure } from "./use-structure";
 
 const LOOP = "";
 const PADDING = "6px 8px 4px";
@@ -80,4 +81,27 @@ export function SchematicPanel() {
       </Group>
     </Box>
   );
+}
+
+/** How the loop of the bench is drawn now. */
+function useStructure(): Structure {
+  const parameters = useBench((s) => s.bench?.parameters);
+  const controller = useBench((s) => s.bench?.controller) ?? "";
+  const hasDiagnoser = useBench((s) => Object.keys(s.bench?.diagnosers ?? {}).length > 0);
+  const list = useInstances();
+  return useMemo(() => {
+    const document: Document = parameters ?? {};
+    const value = (id: string, name: string) => {
+      const instance = list.find((i) => i.id === id);
+      return instance && parameterValue(document, instance, name);
+    };
+    return structureOf({
+      controller,
+      augments: value(`controllers.${controller}`, "augment") !== false,
+      sensor: list.find((i) => i.id === "sensor")?.name ?? "",
+      light: String(value("sensor", "light") ?? "through_wafer"),
+      hasDiagnoser,
+      hasIdentifier: list.some((i) => i.family === "identify"),
+    });
+  }, [parameters, controller, hasDiagnoser, list]);
 }

@@ -28,8 +28,8 @@ export function changeSlide(
   const left = WIDTH - EDGE - SIDE + 34;
   const room = SIDE - 34;
   let y = 150;
-  for (const { trace, before, after, ratio } of compared.slice(0, MOST)) {
-    write(pen, `${trace.name.replaceAll(/[._]/g, " ")}, RMS`, left, y, 20, 600, room, INK.muted);
+  for (const { trace, measure, before, after, ratio } of compared.slice(0, MOST)) {
+    write(pen, `${trace.name.replaceAll(/[._]/g, " ")}, ${measure}`, left, y, 20, 600, room, INK.muted);
     write(pen, `before ${before}`, left, y + 40, 28, 450, room);
     write(pen, `now ${after}`, left, y + 84, 40, 650, room, TRACE_COLOURS.light[trace.slot]);
     wrapped(pen, ratio, 24, room).forEach((line, i) => {

@@ -109,6 +109,18 @@ it("draws the last periods before the change faded, in phase, on an axis that ho
   expect(axis(pen())).toEqual(labels);
 });
 
+it("sees a noise that the RMS of the sine hides", async () => {
+  const { board, at } = mountScope();
+  const hiss = (tick: number) => ((tick * 7919) % 1009) / 1009 - 0.5;
+  const noisy = (tick: number) => 2 * Math.sin((2 * Math.PI * tick) / 50) + (tick < CHANGE ? 0.1 : 0.4) * hiss(tick);
+  await at(CHANGE, noisy);
+  await board.events([switched(20, CHANGE)]);
+  await at(CHANGE, noisy);
+  await at(CHANGE + 1200, noisy);
+  // a uniform number of width 0.4 µm deviates by 0.4/√12
+  expect(said()).toMatch(/noise 4\.0 times largerbefore 2\d\.\d nm → now 11\d nm noise/);
+});
+
 it("goes when it is dismissed, and with it the ghost", async () => {
   const { board, at, pen, user } = mountScope();
   await board.events([switched(20, CHANGE)]);

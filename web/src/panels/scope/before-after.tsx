@@ -1,6 +1,6 @@
 import { ActionIcon, Button, Text } from "@mantine/core";
 import { IconX } from "@tabler/icons-react";
-import { Fragment, type RefObject, useEffect, useRef } from "react";
+import { Fragment, type RefObject, useEffect, useLayoutEffect, useRef } from "react";
 import { usePanelVisible } from "../../api/panel-visible";
 import { useCatalog } from "../../api/use-catalog";
 import { type Change, comparisons, dismissChange } from "../../bench/change";
@@ -19,7 +19,6 @@ import type { PlotTrace } from "./paint-scope";
 import styles from "./scope.module.css";
 import type { ScopePlot } from "./scope-plot";
 import type { Figures } from "./use-figures";
-import { useFirstRow } from "./use-first-row";
 
 const HIDDEN = "Before and after are hidden while a fault is hidden.";
 const SLIDE_RATIO = 1.5;
@@ -66,23 +65,29 @@ export function BeforeAfter({ change, isHidden, figures, traces, plot }: BeforeA
   );
 }
 
-/** RMS before in the colour of the ghost, RMS after in the colour of the trace, as far as a row has room for them. */
+const MEANINGS = {
+  RMS: "RMS over whole periods of the drive",
+  noise: "RMS of what remains without the mean, the tone of the drive and its harmonics",
+};
+
+/** Figures before in the colour of the ghost, figures after in the colour of the trace, as far as a row has room. */
 function ComparedList({ compared }: { compared: Compared[] }) {
   const scheme = useScheme();
   const list = useFirstRow<HTMLUListElement>();
   const told = compared.filter(({ ratio }, i) => i === 0 || ratio);
   return (
     <ul ref={list} className={styles.figures}>
-      {told.map(({ trace, before, after, ratio, isSettled }) => (
-        <Fragment key={trace.name}>
+      {told.map(({ trace, measure, before, after, ratio, isSettled }) => (
+        <Fragment key={trace.name + measure}>
           <li>
-            <SignalName name={trace.name} /> <b>{isSettled || !ratio ? ratio : `${ratio}, still settling`}</b>
+            <SignalName name={trace.name} /> {measure === "noise" && measure}{" "}
+            <b>{isSettled || !ratio ? ratio : `${ratio}, still settling`}</b>
           </li>
-          <li title="RMS over whole periods of the drive">
+          <li title={MEANINGS[measure]}>
             <TraceSwatch colour={faded(trace.colour, scheme)} dash={trace.dash} />
             <span className={styles.wide}>before</span> {before} →{" "}
             <TraceSwatch colour={trace.colour} dash={trace.dash} />
-            <span className={styles.wide}>now</span> {after} RMS
+            <span className={styles.wide}>now</span> {after} {measure}
           </li>
         </Fragment>
       ))}
@@ -107,4 +112,24 @@ function useSlideKey(isOn: boolean, box: RefObject<HTMLElement | null>, strength
     comparisons.add(one);
     return () => void comparisons.delete(one);
   }, [isOn, visible, box]);
+}
+
+/** A list that wraps: entries without room in its first row are not shown. */
+function useFirstRow<T extends HTMLElement>(): RefObject<T | null> {
+  const list = useRef<T>(null);
+  // entries have other widths after each render
+  useLayoutEffect(() => {
+    const box = list.current;
+    if (!box) return;
+    const entries = Array.from(box.children) as HTMLElement[];
+    const hideRest = () => {
+      for (const entry of entries)
+        entry.style.visibility = entry.offsetTop > entries[0].offsetTop ? "hidden" : "visible";
+    };
+    hideRest();
+    const observer = new ResizeObserver(hideRest);
+    observer.observe(box);
+    return () => observer.disconnect();
+  });
+  return list;
 }

@@ -45,3 +45,34 @@ it("puts a shifted trace before one that stays", () => {
     "plant.displacement",
   ]);
 });
+
+it("says the noise where the RMS of a sine hides it", () => {
+  const figures = { before: [1.41], after: [1.42], settled: [true], noise: [[0.05, 0.15] as [number, number]] };
+  const all = comparedOf([trace("sensor.displacement", { unit: "um" })], figures, 500);
+  expect(all.map((one) => [one.measure, one.before, one.after, one.ratio].map(spaced))).toEqual([
+    ["noise", "50.0 nm", "150 nm", "3.0 times larger"],
+    ["RMS", "1.41 µm", "1.42 µm", "0.7 % larger"],
+  ]);
+});
+
+it.each([
+  [0, 0.15, "appeared"],
+  [0.15, 0, "gone"],
+])("says that a noise of %s µm is one of %s µm: %s", (quiet, loud, said) => {
+  const noise: [number, number][] = [[quiet, loud]];
+  const [{ ratio }] = comparedOf(
+    [trace("x", { unit: "um" })],
+    { before: [1], after: [1], settled: [true], noise },
+    500,
+  );
+  expect(ratio).toBe(said);
+});
+
+it.each([
+  ["grew no more than the signal", [1, 3], [0.05, 0.1]],
+  ["is small beside the signal", [10, 10], [0.05, 0.09]],
+])("leaves out a noise that %s", (_, [before, after], [quiet, loud]) => {
+  const noise: [number, number][] = [[quiet, loud]];
+  const figures = { before: [before], after: [after], settled: [true], noise };
+  expect(comparedOf([trace("x", { unit: "um" })], figures, 500).map(({ measure }) => measure)).toEqual(["RMS"]);
+});

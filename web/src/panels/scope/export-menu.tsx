@@ -4,6 +4,7 @@ import { ticketed } from "../../api/launch";
 import { PictureMenu } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import type { CaptureMark } from "../../stream/wire";
+import { TRACE_FORMATS } from "../../ui/downloads";
 import { DIFFERENCE, scopePicture } from "./paint-scope";
 import type { ScopePlot } from "./scope-plot";
 
@@ -41,7 +42,7 @@ export function ExportMenu({ plot, capture, tools }: ExportMenuProps) {
     <PictureMenu take={take} tools={tools}>
       <Menu.Divider />
       <Menu.Label>Every sample of the span</Menu.Label>
-      {["csv", "parquet", "npz", "mat"].map((format) => (
+      {TRACE_FORMATS.map((format) => (
         <Menu.Item key={format} onClick={() => trace(format)}>
           {format.toUpperCase()}
         </Menu.Item>

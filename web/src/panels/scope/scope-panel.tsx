@@ -33,6 +33,9 @@ import { useScopeKeys } from "./use-scope-keys";
 import { scopeSubscription, useTimeView } from "./use-time-view";
 import { useTraces, useTracesBehind } from "./use-traces";
 
+/** Traces between cursors, 140 px high, with the letters of the axes. */
+const MEASURED = "calc(140px + 3 * var(--size-1))";
+
 interface ScopePanelProps {
   config: ScopeConfig;
   onChange(config: ScopeConfig): void;
@@ -164,7 +167,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
       ) : (
         <>
           {change && <BeforeAfter change={change} isHidden={isHidden} figures={figures} traces={traces} plot={plot} />}
-          <Box pos="relative" flex="1 0 90px" m="0 4px 2px">
+          <Box pos="relative" flex={`1 0 ${config.measure ? MEASURED : "90px"}`} m="0 4px 2px">
             {/* biome-ignore lint/a11y/useSemanticElements: a live plot has no element of its own */}
             <div
               ref={host}

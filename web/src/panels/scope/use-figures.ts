@@ -4,6 +4,7 @@ import { useBench } from "../../stream/bench-store";
 import type { PanelFrame } from "../../stream/panel-frame";
 import { useFeed } from "../../stream/use-feed";
 import type { Subscription } from "../../stream/wire";
+import { differ, type Noise, noiseOf } from "./noise";
 import { hasSettled, lookAt, mean, rms, windowTicks } from "./whole-periods";
 
 /** The root mean squares of the signals of a scope around a change. */
@@ -14,14 +15,17 @@ export interface Figures {
   settled?: boolean[];
   /** How far the mean of each signal has moved since the change. */
   shift?: number[];
+  /** The noise of each signal before and after the change, where it is surely another. */
+  noise?: ([before: number, after: number] | undefined)[];
 }
 
-/** The figures of the signals around a change, and their means before it. */
+/** The figures of the signals around a change, and their means and noises before it. */
 interface Known {
   of: Change;
   signals: string[];
   figures: Figures;
   means: number[];
+  noises: Noise[];
 }
 
 /** Every sample of whole periods: before the change first, then the newest since. */
@@ -49,7 +53,9 @@ export function useFigures(signals: string[], change: Change | undefined): Figur
     if (!change) return;
     if (frame.endTick === change.tick) {
       const before = signals.map((_, i) => rms(frame, i));
-      return setKnown({ of: change, signals, figures: { before }, means: signals.map((_, i) => mean(frame, i)) });
+      const means = signals.map((_, i) => mean(frame, i));
+      const noises = signals.map((_, i) => noiseOf(frame, i, period));
+      return setKnown({ of: change, signals, figures: { before }, means, noises });
     }
     if (known && found && frame.startTick >= change.since)
       setKnown({ ...known, figures: newest(frame, known, period) });
@@ -58,12 +64,19 @@ export function useFigures(signals: string[], change: Change | undefined): Figur
 }
 
 /** The figures of the newest window, and whether the window before agrees. */
-function newest(frame: PanelFrame, { figures: { before }, means }: Known, period: number | null | undefined): Figures {
+function newest(frame: PanelFrame, known: Known, period: number | null | undefined): Figures {
+  const { figures, means, noises } = known;
+  const { before } = figures;
   const ticks = windowTicks(period, frame.columns);
   const all = Array.from({ length: frame.signals }, (_, i) => i);
   const after = all.map((i) => rms(frame, i, frame.columns - ticks));
   const hasTwo = frame.columns >= 2 * ticks;
   const settled = all.map((i) => hasTwo && hasSettled(before[i], rms(frame, i, 0, ticks), after[i]));
   const shift = all.map((i) => mean(frame, i, frame.columns - ticks) - means[i]);
-  return { before, after, settled, shift };
+  const noise = noises.map((was, i): [number, number] | undefined => {
+    if (!settled[i]) return undefined;
+    const now = noiseOf(frame, i, period, frame.columns - ticks);
+    return differ(was, now) && !differ(noiseOf(frame, i, period, 0, ticks), now) ? [was.rms, now.rms] : undefined;
+  });
+  return { before, after, settled, shift, noise };
 }

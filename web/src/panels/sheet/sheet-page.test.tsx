@@ -51,6 +51,16 @@ it("shows every section, which is open, the points and where to hand in", async 
   expect(screen.getByRole("link", { name: "Hand in" })).toHaveAttribute("href", "./api/v1/sheets/first-look/report");
 });
 
+it("has the way to hand in below the last section too once all steps are done", async () => {
+  const sections = sheet.sections.map((section) => ({ ...section, state: "done" as const }));
+  server.on("GET", "/sheets/first-look", { ...sheet, sections, done: true });
+  await mountPage();
+  const link = screen.getAllByRole("link", { name: "Hand in" })[1];
+  const last = screen.getAllByRole("listitem").at(-1) as HTMLElement;
+  expect(last.compareDocumentPosition(link) & Node.DOCUMENT_POSITION_FOLLOWING).toBeTruthy();
+  expect(screen.getByText(/^All steps are done/)).toBeVisible();
+});
+
 it("sends an answer, and shows the points that it earns", async () => {
   const { user } = await mountPage();
   expect(screen.getByText(/2\sattempts left\.$/)).toBeVisible();

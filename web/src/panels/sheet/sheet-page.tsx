@@ -43,6 +43,11 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
     await beginSheet(id);
     again();
   };
+  const handIn = (
+    <Button component="a" href={sheets.report(id)} target="_blank">
+      Hand in
+    </Button>
+  );
   return (
     <section className={`view ${styles.sheet}`} aria-label="Lab sheet">
       <header>
@@ -57,9 +62,7 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
         </Box>
         <Group gap={8}>
           <Button onClick={onLeave}>All sheets</Button>
-          <Button component="a" href={sheets.report(id)} target="_blank">
-            Hand in
-          </Button>
+          {handIn}
           {value.begun && (
             <HandedIn
               ids={value.recordings ?? []}
@@ -90,9 +93,12 @@ export function SheetPage({ id, onLeave }: { id: string; onLeave(): void }) {
         ))}
       </Box>
       {value.done && (
-        <Box component="p" fw={560}>
-          All steps are done. Hand in gives you the sheet to print.
-        </Box>
+        <Group gap={8}>
+          {handIn}
+          <Box component="p" fw={560}>
+            All steps are done. Hand in gives you the sheet to print.
+          </Box>
+        </Group>
       )}
     </section>
   );
@@ -103,15 +109,15 @@ function Section({ section, actions }: { section: SheetSection; actions: StepAct
   const place = useRef<HTMLLIElement>(null);
   const was = useRef(state);
   useEffect(() => {
-    // a section that opens comes into sight; a section that was open from the start stays in its place
-    if (was.current === "closed" && state === "open") place.current?.scrollIntoView({ block: "nearest" });
+    // a section that opens comes into sight, the last one without a step too; others stay in their place
+    if (was.current === "closed" && state !== "closed") place.current?.scrollIntoView({ block: "nearest" });
     was.current = state;
   }, [state]);
   return (
     <li
       ref={place}
       data-state={state}
-      style={{ scrollMargin: 12 }}
+      style={{ scrollMargin: "12px 0 72px" }}
       aria-current={state === "open" ? "step" : undefined}
     >
       <Box component="h3" mb={4} {...(state === "closed" && { c: "dimmed", fw: 500 })}>

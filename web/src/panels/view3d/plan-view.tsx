@@ -1,5 +1,5 @@
 import { Box } from "@mantine/core";
-import { useMemo, useRef } from "react";
+import { type Ref, useImperativeHandle, useMemo, useRef } from "react";
 import { api } from "../../api/api";
 import { hasAxes } from "../../api/fits";
 import { useAsked } from "../../api/queries";
@@ -10,7 +10,6 @@ import { useBench } from "../../stream/bench-store";
 import { useFeed } from "../../stream/use-feed";
 import { formatNumber } from "../../ui/format";
 import { useActingFaults } from "../schematic/use-live-values";
-import { FRAME_BOX, FramePlan } from "./frame-plan";
 import { Magnifier } from "./magnifier";
 
 const MARGIN = 14;
@@ -90,3 +89,47 @@ function useGeometry(wanted: boolean, device: Design["device"], environment: Des
   );
   return { geometry: (isStandIn ? other : own).answer?.geometry ?? undefined, isStandIn };
 }
+
+const PLATE = 44;
+const NEAR = 62;
+const FAR = 76;
+const DRIVE = `M${NEAR} ${-NEAR}H${FAR}V${NEAR}H${NEAR}ZM${-NEAR} ${-NEAR}H${-FAR}V${NEAR}H${-NEAR}Z`;
+const SENSE = `M${-NEAR} ${NEAR}V${FAR}H${NEAR}V${NEAR}ZM${-NEAR} ${-NEAR}V${-FAR}H${NEAR}V${-NEAR}Z`;
+
+interface FramePlanProps {
+  faulted: boolean;
+  moving: Ref<{ move(x: number, y: number): void }>;
+}
+
+/** A gyroscope from above, not to scale: the drive frame moves along x, the sense frame along y, the plate along both. */
+function FramePlan({ faulted, moving }: FramePlanProps) {
+  const drive = useRef<SVGPathElement>(null);
+  const sense = useRef<SVGPathElement>(null);
+  const plate = useRef<SVGRectElement>(null);
+  useImperativeHandle(moving, () => ({
+    move: (x, y) => {
+      drive.current?.setAttribute("transform", `translate(${x} 0)`);
+      sense.current?.setAttribute("transform", `translate(0 ${y})`);
+      plate.current?.setAttribute("transform", `translate(${x} ${y})`);
+    },
+  }));
+  return (
+    <>
+      <path ref={drive} fill="#cc79a7" d={DRIVE} />
+      <path ref={sense} fill="#009e73" d={SENSE} />
+      <rect
+        ref={plate}
+        fill={faulted ? "var(--alarm)" : "#56b4e9"}
+        x={-PLATE}
+        y={-PLATE}
+        width={2 * PLATE}
+        height={2 * PLATE}
+      />
+    </>
+  );
+}
+
+const REACH = 110;
+
+/** The box of the picture, and the width that motions are drawn for. */
+export const FRAME_BOX = [-REACH, -REACH, 2 * REACH, 2 * REACH];

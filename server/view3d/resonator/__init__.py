@@ -1,0 +1,1 @@
+"""The picture of comb resonators, by their drawing."""
