@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Self
 
 from combbench.result import Result
+from core.board.hosted import NOTHING
+from core.board.outside import Conclusion, Law
 from core.nesting import read_toml
 from scenarios import edit, library, schema
 from scenarios.reading import read_text
@@ -16,7 +19,13 @@ class Scenario(schema.Scenario):
     """A checked scenario; `scenarios.schema.Scenario` lists its attributes."""
 
     @classmethod
-    def load(cls, source: str | Path | dict[str, Any], like: schema.Scenario | None = None) -> Self:
+    def load(
+        cls,
+        source: str | Path | dict[str, Any],
+        like: schema.Scenario | None = None,
+        *,
+        set: dict[str, Any] | None = None,
+    ) -> Self:
         """Read a scenario, and check everything that a run would refuse.
 
         Parameters
@@ -25,19 +34,27 @@ class Scenario(schema.Scenario):
             An id of the library, a path to a TOML file, the text of such a file, or a document.
         like : Scenario, optional
             A scenario that may be alike; parts that both have are taken from there.
+        set : dict, optional
+            Values to write over the scenario, by dotted paths: ``{"sensor.noise_um": 0.002}``.
 
         Raises
         ------
         InputError
-            Naming the field, or the line of malformed TOML.
+            Naming the field, or the line of malformed TOML; for a path that leads nowhere.
         """
-        if isinstance(source, dict):
-            return cls(source, like)
-        if isinstance(source, Path) or source.endswith(".toml"):
-            return cls(read_toml(read_text(Path(source), "scenario"), "scenario", f"TOML in {source}"), like)
-        if "=" in source or "\n" in source:
-            return cls(read_toml(source, "scenario"), like)
-        return cls(library.get(source).document, like)
+        read = cls(_document(source), like)
+        return cls(edit.written(read.document, set), read) if set else read
+
+
+def _document(source: str | Path | dict[str, Any]) -> dict[str, Any]:
+    """Return the document that a source names or is."""
+    if isinstance(source, dict):
+        return source
+    if isinstance(source, Path) or source.endswith(".toml"):
+        return read_toml(read_text(Path(source), "scenario"), "scenario", f"TOML in {source}")
+    if "=" in source or "\n" in source:
+        return read_toml(source, "scenario")
+    return library.get(source).document
 
 
 def run(
@@ -46,6 +63,9 @@ def run(
     seed: int | None = None,
     set: dict[str, Any] | None = None,
     taps: bool = False,
+    law: Law | None = None,
+    diagnosers: Mapping[str, Conclusion] = NOTHING,
+    identifiers: Mapping[str, Conclusion] = NOTHING,
 ) -> Result:
     """Run a scenario from start to end, with the bits of a live bench.
 
@@ -56,9 +76,15 @@ def run(
     seed : int, optional
         Instead of the scenario's own.
     set : dict, optional
-        Values to write over the scenario, by dotted paths: ``{"sensor.noise_um": 0.002}``.
+        Values to write over the scenario, as for `Scenario.load`.
     taps : bool
         Keep the inner signals of the blocks as well.
+    law : callable, optional
+        Drives in place of the controller of the scenario: called with each `core.board.outside.Sample`, it answers with
+        a voltage.
+    diagnosers, identifiers : mapping
+        Callables by id, beside the blocks of the scenario: called with each `core.board.outside.Observation`, they
+        answer with the probability of each hypothesis, or with mass, stiffness and damping over nominal.
 
     Raises
     ------
@@ -66,4 +92,5 @@ def run(
         As `Scenario.load`; for a path that leads nowhere.
     """
     read = scenario if isinstance(scenario, schema.Scenario) else Scenario.load(scenario)
-    return Result(run_headless(edit.with_values(read, set or {}), seed, taps=taps))
+    chosen = edit.with_values(read, set or {})
+    return Result(run_headless(chosen, seed, taps=taps, law=law, diagnosers=diagnosers, identifiers=identifiers))

@@ -58,11 +58,11 @@ def test_a_server_takes_the_copied_requests_as_they_were_logged(live: Live, benc
 def test_python_sends_the_copied_commands_as_they_were_logged(
     live: Live, bench: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    spec = importlib.util.spec_from_file_location("combbench", ROOT / "clients/combbench.py")
+    spec = importlib.util.spec_from_file_location("combbench_client", ROOT / "clients/combbench_client.py")
     assert spec is not None and spec.loader is not None
     client = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(client)
-    monkeypatch.setitem(sys.modules, "combbench", client)
+    monkeypatch.setitem(sys.modules, "combbench_client", client)
     monkeypatch.setenv("COMBBENCH_TOKEN", TOKEN)
     for case in CASES:
         exec(there(live, bench, case["python"]), {})

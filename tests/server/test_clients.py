@@ -30,7 +30,7 @@ CAMPAIGN = {
 
 @pytest.fixture(scope="module")
 def client() -> Any:
-    spec = importlib.util.spec_from_file_location("combbench_client", CLIENTS / "combbench.py")
+    spec = importlib.util.spec_from_file_location("combbench_client", CLIENTS / "combbench_client.py")
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
@@ -40,7 +40,7 @@ def client() -> Any:
 
 @pytest.fixture
 def lab(client: Any, live: Any) -> Any:
-    return client.CombBench(live.address, TOKEN)
+    return client.Client(live.address, TOKEN)
 
 
 def test_a_run_and_its_trace(lab: Any) -> None:
@@ -90,7 +90,7 @@ def test_refusals_are_errors_with_their_field(client: Any, lab: Any) -> None:
         with pytest.raises(client.Refused, match=r"plant\.nowhere"):
             next(bench.pictures("plant.nowhere", window_ms=1.0))
     with pytest.raises(client.Refused):
-        client.CombBench(lab.address.removesuffix("/api/v1"), "wrong").ask("GET", "/benches")
+        client.Client(lab.address.removesuffix("/api/v1"), "wrong").ask("GET", "/benches")
 
 
 OCTAVE = """

@@ -136,12 +136,12 @@ def test_a_live_bench(live: Any) -> None:
 
 
 def test_the_client_of_python(live: Any, ended: str) -> None:
-    place = Path(__file__).resolve().parents[2] / "clients" / "combbench.py"
+    place = Path(__file__).resolve().parents[2] / "clients" / "combbench_client.py"
     spec = importlib.util.spec_from_file_location("combbench_client_of_names", place)
     assert spec is not None and spec.loader is not None
     client = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(client)
-    trace = client.CombBench(live.address, TOKEN).trace({"id": ended}, *SIGNALS)
+    trace = client.Client(live.address, TOKEN).trace({"id": ended}, *SIGNALS)
     assert list(trace) == ["tick", "time_ms", *SIGNALS]
 
 

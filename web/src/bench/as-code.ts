@@ -45,9 +45,9 @@ function asRun(command: Command, tick: number, { scenario, samples: own }: Sourc
 function asPython(command: Command, { address, bench }: Source): string {
   const fields = Object.entries(command).map(([name, value]) => `${name}=${literal(value, PYTHON)}`);
   return [
-    "from combbench import Bench, CombBench  # clients/combbench.py; the token is read from COMBBENCH_TOKEN",
+    "from combbench_client import Bench, Client  # clients/combbench_client.py; the token is read from COMBBENCH_TOKEN",
     "",
-    `lab = CombBench(${JSON.stringify(address)})`,
+    `lab = Client(${JSON.stringify(address)})`,
     `Bench(lab, ${JSON.stringify(bench)}).command(${fields.join(", ")})`,
   ].join("\n");
 }
