@@ -1,6 +1,7 @@
 import { create } from "zustand";
 import { classes } from "../api/classes";
 import { queryClient } from "../api/queries";
+import { storageName } from "../api/storage-name";
 import type { Vote } from "../api/types";
 import { votes } from "../api/votes";
 import { useBench } from "../stream/bench-store";
@@ -15,7 +16,7 @@ export const useVote = create<{ vote: Vote | undefined }>(() => ({ vote: undefin
 export const showVote = (vote: Vote | undefined): void => useVote.setState({ vote });
 
 /** The question that the lecture of this tab asked last, with the beginning of the lecture. */
-const ASKED = "combbench.asked";
+const ASKED = storageName("combbench.asked");
 
 /**
  * Open the vote of the cue, once in a lecture; the panel says how it goes, and asks again if that is wanted. Where several
