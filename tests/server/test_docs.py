@@ -25,19 +25,29 @@ def blocks(text: str) -> list[tuple[str, str | None]]:
     return [(code, said or None) for code, said in found]
 
 
-def test_the_rest_tutorial(live: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("COMBBENCH_ADDRESS", live.address)
-    monkeypatch.setenv("COMBBENCH_TOKEN", TOKEN)
-    document = (ROOT / "docs" / "rest.md").read_text()
+def follow(name: str, least_printed: int) -> None:
+    """Run every block of a tutorial, and compare its output with the output printed beneath it."""
+    document = (ROOT / "docs" / name).read_text()
     code = blocks(document)
-    assert len(code) == document.count("```python") and sum(said is not None for _, said in code) >= 10
+    assert len(code) == document.count("```python") and sum(said is not None for _, said in code) >= least_printed
     names: dict[str, Any] = {}
     for number, (block, said) in enumerate(code):
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
-            exec(compile(block, f"docs/rest.md, block {number}", "exec"), names)
+            exec(compile(block, f"docs/{name}, block {number}", "exec"), names)
         pattern = "".join(".+" if part == "..." else re.escape(part) for part in re.split(r"(\.\.\.)", said or ""))
         assert said is None or re.fullmatch(pattern, printed.getvalue()), f"{block}\nprinted\n{printed.getvalue()}"
+
+
+def test_the_rest_tutorial(live: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COMBBENCH_ADDRESS", live.address)
+    monkeypatch.setenv("COMBBENCH_TOKEN", TOKEN)
+    follow("rest.md", 10)
+
+
+def test_the_python_reference(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    follow("python.md", 6)
 
 
 @pytest.mark.long
