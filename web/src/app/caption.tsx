@@ -89,7 +89,7 @@ function Sentences({ text, before, onClick }: SentencesProps) {
       </div>
       {fits < sentences.length && (
         <Button size="compact-xs" variant="subtle" aria-expanded={opened} onClick={() => setOpened(!opened)}>
-          {opened ? "Less" : "More"}
+          {opened ? "Fewer sentences" : "More sentences"}
         </Button>
       )}
     </>

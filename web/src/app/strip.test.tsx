@@ -138,7 +138,7 @@ it("ends no caption within a sentence: the sentences without room are on demand"
   expect(caption.getByText(/^At 20\.300 ms the bank/)).toBeVisible();
   expect(caption.getByText(/^Correct; first chosen at 20\.26 ms\.$/)).toBeVisible();
   expect(caption.getByText(/^The model misses/)).not.toBeVisible();
-  await user.click(caption.getByRole("button", { name: "More" }));
+  await user.click(caption.getByRole("button", { name: "More sentences" }));
   expect(caption.getByText(/^The model misses/)).toBeVisible();
   await user.click(caption.getByRole("button", { name: "Less" }));
   expect(caption.getByText(/^The model misses/)).not.toBeVisible();
