@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import pandas as pd
 
+    from scenarios.campaign.survey import Survey
     from scenarios.campaign.tally import PointTally
 
 
@@ -24,7 +25,7 @@ class CampaignResult:
         The figures of the points.
     """
 
-    def __init__(self, folder: Path, survey: Any) -> None:
+    def __init__(self, folder: Path, survey: Survey) -> None:
         self.folder = folder
         self._survey = survey
 
@@ -47,7 +48,8 @@ class CampaignResult:
         """Return one row for each run: its point, seed, figures, digest and trip; needs pandas."""
         from scenarios.arrow import pq
 
-        return pq.read_table(self.folder / "runs.parquet").to_pandas()
+        frame: pd.DataFrame = pq.read_table(self.folder / "runs.parquet").to_pandas()
+        return frame
 
 
 def sweep(

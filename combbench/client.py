@@ -120,11 +120,13 @@ class Bench:
     def pictures(self, *signals: str, window_ms: float, width: int = 800) -> Iterator[Picture]:
         """Return what it shows of some signals over the last so many ms, again and again, until it is closed."""
         from websockets.sync.client import connect
+        from websockets.typing import Subprotocol
 
         address = f"ws{self.lab.address.removeprefix('http')}{self.path}/stream"
         headers = {"Authorization": f"Bearer {self.lab.token}"}
         panel = {"panel": 1, "signals": signals, "mode": "roll", "window_ms": window_ms, "width": width}
-        with connect(address, additional_headers=headers, subprotocols=[f"combbench.v{WIRE}"], max_size=None) as stream:
+        protocol = Subprotocol(f"combbench.v{WIRE}")
+        with connect(address, additional_headers=headers, subprotocols=[protocol], max_size=None) as stream:
             stream.send(json.dumps({"type": "subscribe", **panel}))
             for data in stream:
                 if isinstance(data, bytes):

@@ -69,7 +69,7 @@ class Result:
     @property
     def time(self) -> FloatArray:
         """Device time of each sample, shape ``(samples,)``, ms."""
-        return np.arange(self._headless.samples) * self._headless.board.dt_ms
+        return np.arange(self._headless.samples, dtype=np.float64) * self._headless.board.dt_ms
 
     @property
     def signals(self) -> list[Signal]:

@@ -120,7 +120,6 @@ class Room:
                 if served % PAGES_AT_ONCE == 0:
                     yield
 
-
     def turn(self) -> None:
         """Close the streams, because another bench is to be seen; its pages come back at once."""
         for client in list(self.clients):

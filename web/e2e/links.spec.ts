@@ -58,7 +58,7 @@ test("links to an experiment and to a layout open the same tick, log, cursors an
   await expect(layout).toHaveValue(/\?layout=[2-9a-z]{8}$/);
   await other.goto(await layout.inputValue());
   await expect(other.getByRole("tab", { name: "Displacement", exact: true })).toBeVisible();
-  await other.getByRole("button", { name: "More" }).click();
+  await other.getByRole("button", { name: "More", exact: true }).click();
   await expect(other.getByRole("menuitem", { name: "Motion alone" })).toHaveAttribute("aria-current", "true");
   await expect(other.getByRole("tab", { name: "Voltage", exact: true })).toHaveCount(0);
 });

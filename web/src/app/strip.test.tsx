@@ -140,7 +140,7 @@ it("ends no caption within a sentence: the sentences without room are on demand"
   expect(caption.getByText(/^The model misses/)).not.toBeVisible();
   await user.click(caption.getByRole("button", { name: "More sentences" }));
   expect(caption.getByText(/^The model misses/)).toBeVisible();
-  await user.click(caption.getByRole("button", { name: "Less" }));
+  await user.click(caption.getByRole("button", { name: "Fewer sentences" }));
   expect(caption.getByText(/^The model misses/)).not.toBeVisible();
 });
 
