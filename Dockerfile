@@ -29,6 +29,7 @@ RUN scripts/npm --prefix web run build && .venv/bin/python scripts/audit.py page
 FROM packages AS service
 ARG SSL_CERT_FILE
 ARG PIP_CERT
+COPY combbench combbench
 COPY core core
 COPY scenarios scenarios
 COPY server server
@@ -36,12 +37,13 @@ ENV COMBBENCH_KERNEL_CACHE=/app/kernels
 # What lists and checks the packages stands beside them, so that it is not in the list.
 RUN .venv/bin/uv venv --quiet /audit \
  && .venv/bin/uv pip install --quiet --python /audit/bin/python -c requirements.lock cyclonedx-bom pip-audit
-RUN .venv/bin/uv pip install --quiet --no-deps --editable . \
- && .venv/bin/python -m compileall -q -j 0 core scenarios server .venv/lib \
+RUN .venv/bin/uv pip install --quiet --constraint requirements.lock hatchling \
+ && .venv/bin/uv pip install --quiet --no-deps --no-build-isolation --editable . \
+ && .venv/bin/python -m compileall -q -j 0 combbench core scenarios server .venv/lib \
  && .venv/bin/python -m scenarios.built_kernels \
  && .venv/bin/python -m scenarios.kernels && chmod -R a+rX kernels \
  && .venv/bin/python -m server.runs.figures \
- && .venv/bin/python -m pip uninstall --quiet --yes uv pip setuptools \
+ && .venv/bin/python -m pip uninstall --quiet --yes hatchling pathspec pluggy trove-classifiers uv pip setuptools \
  && /audit/bin/python scripts/audit.py python sbom --python .venv/bin/python
 
 # ---- what runs

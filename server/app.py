@@ -9,6 +9,7 @@ from collections.abc import AsyncIterator
 from fastapi import FastAPI
 
 from scenarios import wall
+from scenarios.extras import require
 from server import errors
 from server.api import (
     audit,
@@ -156,6 +157,7 @@ def create_app(settings: Settings) -> FastAPI:
     if settings.clock == "manual":
         app.router.routes += testing.router.routes
     if settings.lti:
+        require("jwt", "lti", "lti")
         from server.api import lti
 
         frames = lti.install(app, service)

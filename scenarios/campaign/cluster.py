@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 
 from core.errors import InputError
 from core.wall import wall
+from scenarios.extras import require
 
 T = TypeVar("T")
 
@@ -98,6 +99,7 @@ def check_address(address: str) -> None:
     InputError
         If it is not an address, or if the certificates for it are missing.
     """
+    require("distributed", "cluster", "--scheduler")
     from dask import config
     from distributed.comm.addressing import get_address_host_port
 

@@ -15,7 +15,9 @@ from starlette.websockets import WebSocket
 
 from server.api.gate import plain_page, wants_page
 
-DIST = Path(__file__).resolve().parents[2] / "web" / "dist"
+BUILT, PACKAGED = Path(__file__).resolve().parents[2] / "web" / "dist", Path(__file__).resolve().parents[1] / "page"
+DIST = PACKAGED if PACKAGED.is_dir() else BUILT
+"""The page of the wheel, or of the checkout."""
 OURS = ("/api/", "/health/", "/benches/", "/assets/", "/lti")
 """An unknown path below these is an error, not a page."""
 

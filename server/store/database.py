@@ -17,6 +17,7 @@ from sqlalchemy.exc import ArgumentError, DBAPIError
 from sqlalchemy.orm import Session, sessionmaker
 
 from core.errors import InputError
+from scenarios.extras import require
 from server.store.change import Change
 
 if TYPE_CHECKING:
@@ -206,6 +207,8 @@ def full_url(address: str) -> str:
         url = url.set(drivername="postgresql+psycopg")
     if url.drivername not in ("sqlite", "postgresql+psycopg"):
         raise InputError(f"{url.drivername} is not known; use sqlite or postgresql", "database_url")
+    if url.drivername != "sqlite":
+        require("psycopg", "postgres", "database_url")
     return url.render_as_string(hide_password=False)
 
 

@@ -8,14 +8,19 @@ import sys
 from importlib.metadata import version
 from pathlib import Path
 
+import pytest
+
 import combbench as cb
 from core.registry import FAMILIES
+from scenarios.extras import require
 
 ROOT = Path(__file__).resolve().parents[2]
 MOST_DISTRIBUTIONS = 12
 COUNT = """
 import json, sys
 from importlib.metadata import packages_distributions
+import pytest
+
 import combbench as cb
 cb.run("first-look", set={"samples": 20})
 known = packages_distributions()
@@ -45,3 +50,10 @@ def test_devices_and_catalogue_are_those_of_the_bench() -> None:
 
 def test_the_client_is_one_file_to_copy() -> None:
     assert (ROOT / "combbench/client.py").read_bytes() == (ROOT / "clients/combbench_client.py").read_bytes()
+
+
+def test_a_missing_package_is_named_with_its_extra() -> None:
+    with pytest.raises(cb.InputError, match=r"--scheduler: needs the package no_such_package") as refused:
+        require("no_such_package", "cluster", "--scheduler")
+    assert "pip install '.[cluster]'" in refused.value.hint
+    require("numpy", "cluster", "--scheduler")

@@ -11,6 +11,7 @@ test("a claim is judged on its bench and marked on the scope, its threshold is f
   const { id } = await server.ask<{ id: string }>("POST", "/benches", { scenario: NAME, paused: true });
   await page.request.get(server.url);
   await page.goto(`${server.origin}/?bench=${id}&layout=lab`);
+  await expect(page.getByTestId("bench-state")).toHaveText("paused");
   await front(page, "Voltage");
   await front(page, "Published");
   const claims = page.locator("section[aria-label='Claims']");

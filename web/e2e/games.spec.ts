@@ -19,6 +19,7 @@ test("a student plays be the filter: knobs turn the hidden bench, and the settin
 }) => {
   const page = await student("Ada");
   await page.goto(`${server.origin}/?bench=${benchOf(page)}&layout=lab`);
+  await expect(page.getByTestId("bench-state")).toHaveText(/^(running|paused)$/);
   await front(page, "Lesson", "Games");
   const panel = page.locator("section[aria-label='Games']");
   const fill = async (name: RegExp, value: string) => {

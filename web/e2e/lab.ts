@@ -70,7 +70,9 @@ export { expect };
 
 /** Bring a panel of the dock to the front, turned to one of its views. */
 export async function front(page: Page, panel: string, view?: string): Promise<void> {
-  await page.getByRole("tab", { name: panel, exact: true }).click();
+  const tab = page.getByRole("tab", { name: panel, exact: true });
+  await tab.click();
+  await expect(tab).toHaveAttribute("aria-selected", "true");
   if (!view) return;
   const row = page.getByRole("group", { name: `Views of ${panel}`, exact: true });
   const menu = page.getByRole("button", { name: new RegExp(`^Views of ${panel}: `) });
