@@ -66,7 +66,9 @@ def test_riccati_solves_its_equation(seed, log_rate, log_quality, log_interval, 
     p = riccati(phi, np.array([[1.0, 0.0]]), noise, np.array([[r]]))
     gain = phi @ p[:, :1] / (p[0, 0] + r)
     again = phi @ p @ phi.T - gain * (p[0, 0] + r) @ gain.T + noise
-    scale = np.sqrt(np.outer(np.diag(p), np.diag(p)))
+    # the terms of this sum are up to 1e4 times its result, and each of them is rounded
+    terms = np.diag(np.abs(phi) @ np.abs(p) @ np.abs(phi.T) + noise)
+    scale = np.sqrt(np.outer(terms, terms))
     assert np.max(np.abs(again - p) / scale) < 1e-12
     assert np.max(np.abs(np.linalg.eigvals(phi - gain @ np.array([[1.0, 0.0]])))) < 1.0
 

@@ -33,6 +33,8 @@ def truth(ticks: int) -> Any:
 
 def record_and_kill(served: Served, moments: random.Random) -> tuple[str, int]:
     """Record for a while, sometimes stop, and kill; return the recording, and a tick seen just before."""
+    for killed in served.http.get("/api/v1/benches").json()["benches"]:  # it came back; a server has so many
+        served.http.delete(f"/api/v1/benches/{killed['id']}")
     bench = served.http.post("/api/v1/benches", json={"scenario": "first-look", "time_scale": PACE}).json()
     path = f"/api/v1/benches/{bench['id']}/recordings"
     recording = served.http.post(path, json={"name": "to be killed"}).json()
