@@ -22,7 +22,10 @@ export const test = base.extend<LabFixtures, { server: LabServer }>({
       const server = await LabServer.create(
         process.env.PICTURES
           ? { COMBBENCH_FIGURES: "true" }
-          : { COMBBENCH_FRAME_RATE_HZ: process.env.FRAME_RATE_HZ ?? "8" },
+          : {
+              COMBBENCH_FRAME_RATE_HZ: process.env.FRAME_RATE_HZ ?? "8",
+              COMBBENCH_CLOCK: process.env.CLOCK ?? "manual",
+            },
       );
       await use(server);
       await server.destroy();
