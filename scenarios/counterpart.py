@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.board.commands import Switch
+from core.board.commands import COMMANDS, Switch
 from core.board.document import Document
 from scenarios.edit import written
 from scenarios.schema import Scenario
@@ -56,4 +56,4 @@ def _without(event: Document, kind: str) -> Document | None:
         kept["set"] = {path: value for path, value in kept["set"].items() if not path.startswith("controller.")}
         if not kept["set"]:
             del kept["set"]
-    return kept if {"switch", "set", "heal", "fault", "reset_trip", "make_safe"} & kept.keys() else None
+    return kept if COMMANDS.keys() & kept.keys() else None

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from core.block import BlockParams
-from core.board.commands import Command, Heal, Inject, MakeSafe, Set, Switch, Trip
+from core.board.commands import Command, Heal, Inject, MakeSafe, ResetTrip, Set, Switch, Trip
 from core.board.difference import change
 from core.board.fitting import misfit
 from core.board.live import live_change, value_at
@@ -69,6 +69,7 @@ def carry_out(board: ChangeableBoard, command: Command) -> tuple[Any, Any]:
         return switch(board, command)
     if isinstance(command, MakeSafe):
         return make_safe(board, command.make_safe)
+    assert isinstance(command, ResetTrip)
     return reset_trip(board)
 
 

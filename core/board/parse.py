@@ -185,17 +185,17 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
 
 
 def _refuse_apart(spec: Spec) -> None:
-    """Refuse a block that a document cannot put on a bench."""
+    """Refuse a block that is computed outside of the bench (``apart``), because a scenario cannot name it."""
     text = "{} is computed outside of the bench, so no scenario can name it"
     for name, section in spec.controllers.items():
         if section.block.apart:
             field = "controller.kind" if name in spec.driving.values() else f"controllers.{name}"
-            hint = "combbench run --controller-process, or scenarios.run.run(..., law=...)"
+            hint = "combbench run --controller-process, or combbench.run(..., law=...)"
             raise InputError(text.format(name), field, hint)
     for key in ("identifiers", "diagnosers"):
         for name, section in getattr(spec, key).items():
             if section.block.apart:
-                hint = f"scenarios.run.run(..., {key}={{...}})"
+                hint = f"combbench.run(..., {key}={{...}})"
                 raise InputError(text.format(section.block.name), f"{key}.{name}.kind", hint)
 
 

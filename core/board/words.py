@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.board.commands import Command, Heal, Inject, MakeSafe, Set, Switch
+from core.board.commands import Command, Heal, Inject, MakeSafe, ResetTrip, Set, Switch
 from core.board.library import Library
 from core.errors import short
 from core.format import format_short
@@ -22,6 +22,7 @@ def describe(command: Command, library: Library) -> str:
         return f"switch to {command.switch}{' from a cold start' if command.cold else ''}"
     if isinstance(command, MakeSafe):
         return f"safe outputs: {command.make_safe}"
+    assert isinstance(command, ResetTrip)
     return "reset after the trip"
 
 

@@ -46,7 +46,7 @@ class LockIn(KalmanBank):
     )
 
     class Params(KalmanParams):
-        """Assumptions of the bank."""
+        """Assumptions of the Kalman filters, and parameters of this bank."""
 
         probability_floor: float = parameter(1e-3, "smallest probability", equation="5.2.3.2.6", ge=0, le=0.05)
         window: int | None = parameter(

@@ -77,7 +77,7 @@ class Mmae(KalmanBank):
     )
 
     class Params(KalmanParams):
-        """Assumptions of the bank."""
+        """Assumptions of the Kalman filters, and parameters of this bank."""
 
         form: Literal["recursive", "steady"] = parameter("recursive", "covariances propagated, or gains at their limit")
         residual_covariance: Literal["correct", "printed"] = parameter(

@@ -46,7 +46,7 @@ class Reseed(KalmanBank):
     )
 
     class Params(KalmanParams):
-        """Assumptions of the bank."""
+        """Assumptions of the Kalman filters, and parameters of this bank."""
 
         process_noise_v: float = parameter(
             0.01, "assumed noise on the voltage, rms per sample", "V", equation="5.2.3.1.2", ge=0, le=100

@@ -145,7 +145,7 @@ def _sampled(system: Any, dt_s: float, field: str) -> Any:
 
 
 class LinearLaw:
-    """A controller that is a linear system, for `scenarios.run.run(..., law=...)`.
+    """A controller that is a linear system, for `combbench.run(..., law=...)`.
 
     Parameters
     ----------

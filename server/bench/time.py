@@ -340,6 +340,7 @@ class DeviceTime:
             self.is_started = True
             self._anchor()
             return self._bench.note(actor, command.kind, skips or "started", document)
+        assert isinstance(command, commands.Step | commands.StepPeriod)
         ended = self.steps.add(command, actor)
         self.is_started = False
         return ended

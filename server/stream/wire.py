@@ -115,7 +115,7 @@ class Ack(Message):
 
 
 class Resume(Message):
-    """Send every event after this one: the first message after a reconnect."""
+    """Send every event after the event number ``after``: the first message after a reconnect."""
 
     type: Literal["resume"]
     after: int = Field(ge=0)

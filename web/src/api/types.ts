@@ -51,23 +51,8 @@ export type RunFilter = NonNullable<operations["list_runs"]["parameters"]["query
 /** A scenario document as plain values. */
 export type Document = Schemas["Bench"]["parameters"];
 
-export type Command =
-  | Schemas["Start"]
-  | Schemas["Pause"]
-  | Schemas["Step"]
-  | Schemas["StepPeriod"]
-  | Schemas["Reset"]
-  | Schemas["Undo"]
-  | Schemas["Redo"]
-  | Schemas["TimeScale"]
-  | Schemas["FastForward"]
-  | Schemas["Inject"]
-  | Schemas["Heal"]
-  | Schemas["Set"]
-  | Schemas["Switch"]
-  | Schemas["MakeSafe"]
-  | Schemas["ResetTrip"]
-  | Schemas["Seek"]
-  | Schemas["Loop"];
+/** A command to a bench. */
+export type Command = operations["command"]["requestBody"]["content"]["application/json"];
+
 /** A printed figure as a mark over a signal. */
 export type PrintedMark = Schemas["Mark"];
