@@ -176,7 +176,7 @@ def test_a_bench_that_cannot_have_one_is_refused(key: str, values: dict[str, Any
 def test_no_scenario_can_name_one(key: str) -> None:
     with pytest.raises(InputError, match=f"{key}.mine.kind: external is computed outside") as refused:
         make({key: {"mine": {"kind": "external"}}})
-    assert refused.value.hint == f"scenarios.run.run(..., {key}={{...}})"
+    assert refused.value.hint == f"combbench.run(..., {key}={{...}})"
     with pytest.raises(InputError):
         do(
             make({key: {"mine": {"kind": "mmae" if key == "diagnosers" else "gradient"}}}),
