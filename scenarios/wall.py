@@ -1,4 +1,4 @@
-"""Builds the wall: each user unit as WebAssembly in memory of its own. Checks that a unit behind it gives the same bits."""
+"""Builds the wall, each user unit as WebAssembly in its own memory; checks that such a unit gives the same bits."""
 
 from __future__ import annotations
 
