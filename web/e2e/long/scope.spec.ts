@@ -55,16 +55,19 @@ test("the strip of captures has room on every screen", async ({ page, openBench 
   const tools = scope.getByRole("button", { name: "Tools", exact: true });
   for (const screen of SCREENS) {
     await showOn(page, screen);
-    await expect(trigger.or(tools)).toBeVisible();
-    if (await tools.isVisible()) {
-      await tools.click();
-      const hold = page.getByRole("menuitem", { name: /^Trigger/ });
-      await expect(page.getByRole("menuitem").first()).toBeFocused();
-      if (await hold.isVisible()) await hold.click();
-      else await page.keyboard.press("Escape");
-    } else if ((await trigger.getAttribute("aria-pressed")) === "false") await trigger.click();
     const strip = scope.getByRole("group", { name: "Captures", exact: true });
-    await expect(strip).toBeVisible();
+    // the toolbar folds into one menu, or out of it, some time after the screen has changed
+    await expect(async () => {
+      if (await tools.isVisible()) {
+        await tools.click({ timeout: 1000 });
+        const hold = page.getByRole("menuitem", { name: /^Trigger/ });
+        await expect(page.getByRole("menuitem").first()).toBeFocused({ timeout: 1000 });
+        if (await hold.isVisible()) await hold.click({ timeout: 1000 });
+        else await page.keyboard.press("Escape");
+      } else if ((await trigger.getAttribute("aria-pressed", { timeout: 1000 })) === "false")
+        await trigger.click({ timeout: 1000 });
+      await expect(strip).toBeVisible({ timeout: 1000 });
+    }).toPass();
     await expect.poll(() => strip.evaluate((box) => box.scrollWidth <= box.clientWidth)).toBe(true);
   }
 });
