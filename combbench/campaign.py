@@ -80,7 +80,7 @@ def sweep(
         For a campaign that is not valid, and a folder that cannot be used. Nothing is written then.
     """
     from scenarios.campaign.check import check
-    from scenarios.campaign.parts import ParquetParts
+    from scenarios.campaign.parquet import ParquetParts
     from scenarios.campaign.survey import Survey
     from scenarios.campaign.sweep import Sweep
     from server.cli.sweep import PARTS, carry_out, read_sweep

@@ -19,9 +19,9 @@ from core.errors import InputError
 from scenarios.campaign.batch import outcomes
 from scenarios.campaign.executor import LOST, Processes
 from scenarios.campaign.outcome import RunOutcome
-from scenarios.campaign.remaining import Remaining, Run
-from scenarios.campaign.signs import Cancelled, tell
+from scenarios.campaign.progress import Cancelled, tell
 from scenarios.campaign.sweep import Sweep
+from scenarios.campaign.todo import Remaining, Run
 from scenarios.key import code_version
 from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario

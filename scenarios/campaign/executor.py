@@ -17,7 +17,7 @@ from multiprocessing import forkserver
 from typing import Any, TypeVar
 
 from core.wall import wall
-from scenarios.campaign.signs import Signs, receive, watched
+from scenarios.campaign.progress import Signs, receive, watched
 
 LOST: tuple[type[BaseException], ...] = (BrokenProcessPool, CancelledError, OSError)
 """Errors of a future or a connection after a worker, the scheduler or the line to it is lost."""

@@ -13,8 +13,8 @@ import numpy as np
 
 from core.errors import InputError
 from scenarios.campaign.batch import outcomes
+from scenarios.campaign.moments import Moments
 from scenarios.campaign.outcome import RunOutcome, outcome_of
-from scenarios.campaign.sums import Moments
 from scenarios.campaign.sweep import Sweep
 from scenarios.counterpart import counterpart, replaced
 from scenarios.run import RunResult

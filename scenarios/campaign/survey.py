@@ -13,8 +13,8 @@ from core.block import FloatArray, IntArray
 from core.errors import unknown
 from scenarios.arrow import pa, pc
 from scenarios.campaign.columns import named
-from scenarios.campaign.parts import PART, ParquetParts
-from scenarios.campaign.sums import Sums
+from scenarios.campaign.moments import Sums
+from scenarios.campaign.parquet import PART, ParquetParts
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import PointTally, Tallies
 

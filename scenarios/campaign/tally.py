@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from core.block import FloatArray, IntArray
 from scenarios.arrow import pa, pc
 from scenarios.campaign.columns import DIAGNOSIS, Row, columns, diagnosers, named
+from scenarios.campaign.moments import DiagnosisSums, Moments, Spread, Sums
 from scenarios.campaign.outcome import EVIDENCE, RunOutcome
 from scenarios.campaign.points import Labels
-from scenarios.campaign.sums import DiagnosisSums, Moments, Spread, Sums
 from scenarios.campaign.sweep import Sweep
 
 FALLING = np.append(EVIDENCE[::-1], EVIDENCE[0])

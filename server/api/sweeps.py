@@ -9,7 +9,7 @@ from fastapi import Query, Response
 from pydantic import BaseModel, Field
 
 from core.nesting import read_toml
-from scenarios.campaign.parts import write_runs
+from scenarios.campaign.parquet import write_runs
 from scenarios.campaign.survey import Distribution, Survey
 from scenarios.campaign.tally import PointTally
 from scenarios.narrator.words import diagnosis_words

@@ -17,7 +17,7 @@ from core.nesting import read_toml
 from scenarios.campaign.campaign import Campaign, Stopped
 from scenarios.campaign.check import check
 from scenarios.campaign.executor import LOST, Processes
-from scenarios.campaign.parts import ParquetParts, write_runs
+from scenarios.campaign.parquet import ParquetParts, write_runs
 from scenarios.campaign.survey import Survey, listed
 from scenarios.campaign.sweep import Sweep
 from scenarios.library import get

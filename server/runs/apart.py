@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from scenarios.campaign.executor import pool
-from scenarios.campaign.parts import ParquetParts
+from scenarios.campaign.parquet import ParquetParts
 from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
 from scenarios.report.campaign import surveyed_report

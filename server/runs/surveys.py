@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
-from scenarios.campaign.parts import PART
+from scenarios.campaign.parquet import PART
 from scenarios.campaign.survey import Survey
 from server.runs.apart import FEW_RUNS, Apart, campaign, keep_up, report
 from server.store.database import Database

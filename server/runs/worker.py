@@ -9,7 +9,7 @@ from typing import Any
 
 from scenarios.campaign.campaign import Others
 from scenarios.campaign.outcome import RunOutcome, outcome_of
-from scenarios.campaign.signs import tell
+from scenarios.campaign.progress import tell
 from scenarios.campaign.single import counterparts, summary
 from scenarios.run import DEFAULT_SAMPLES, RunResult, build, run
 from scenarios.schema import Scenario

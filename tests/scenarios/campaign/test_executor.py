@@ -17,7 +17,7 @@ import pytest
 from core.wall import wall
 from scenarios.campaign.cluster import Cluster
 from scenarios.campaign.executor import LOST, Processes
-from scenarios.campaign.signs import Cancelled, tell
+from scenarios.campaign.progress import Cancelled, tell
 
 
 def endless(begun: str = "") -> None:

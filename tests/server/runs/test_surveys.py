@@ -10,7 +10,7 @@ import pyarrow.csv
 import pyarrow.parquet as pq
 import pytest
 
-from scenarios.campaign import parts
+from scenarios.campaign import parquet
 from tests.server.runs.test_large_campaign import ended
 from tests.server.test_bad_input import check
 
@@ -31,7 +31,7 @@ def labels(answer: dict[str, Any]) -> list[float]:
 
 
 def test_a_campaign_is_read_from_its_files(serve: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(parts, "PART", 5)
+    monkeypatch.setattr(parquet, "PART", 5)
     for name in ("scenarios.campaign.survey", "server.runs.surveys"):
         monkeypatch.setattr(f"{name}.PART", 5)
     with serve() as live:

@@ -17,8 +17,8 @@ import numpy as np
 
 from scenarios.arrow import csv, pa, pq
 from scenarios.campaign.columns import ABOUT, Row, about, columns, fitted, union
+from scenarios.campaign.moments import Sums
 from scenarios.campaign.outcome import RunOutcome
-from scenarios.campaign.sums import Sums
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import Tallies
 from scenarios.key import content_hash, run_key

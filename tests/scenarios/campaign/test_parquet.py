@@ -12,10 +12,10 @@ import pyarrow.parquet as pq
 import pytest
 
 from core.errors import InputError
-from scenarios.campaign import parts as module
+from scenarios.campaign import parquet as module
 from scenarios.campaign.batch import outcomes
 from scenarios.campaign.outcome import RunOutcome
-from scenarios.campaign.parts import ParquetParts
+from scenarios.campaign.parquet import ParquetParts
 from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.tally import tally

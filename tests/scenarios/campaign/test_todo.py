@@ -11,8 +11,8 @@ import pytest
 
 from scenarios.campaign import points
 from scenarios.campaign.points import Contents
-from scenarios.campaign.remaining import MOST_AT_ONCE, Remaining
 from scenarios.campaign.sweep import Sweep
+from scenarios.campaign.todo import MOST_AT_ONCE, Remaining
 
 SEVEN: dict[str, Any] = {"schema": 1, "scenario": "ch5-seven-step", "set": {"samples": 50}}
 
