@@ -8895,7 +8895,7 @@ export interface components {
         };
         /**
          * Resume
-         * @description Send every event after this one: the first message after a reconnect.
+         * @description Send every event after the event number ``after``: the first message after a reconnect.
          */
         Resume: {
             /**
