@@ -47,8 +47,9 @@ class CampaignResult:
     def to_pandas(self) -> pd.DataFrame:
         """Return one row for each run: its point, seed, figures, digest and trip; needs pandas."""
         from scenarios.arrow import pq
+        from server.cli.sweep import RUNS_PARQUET
 
-        frame: pd.DataFrame = pq.read_table(self.folder / "runs.parquet").to_pandas()
+        frame: pd.DataFrame = pq.read_table(self.folder / RUNS_PARQUET).to_pandas()
         return frame
 
 
@@ -79,17 +80,11 @@ def sweep(
     InputError
         For a campaign that is not valid, and a folder that cannot be used. Nothing is written then.
     """
-    from scenarios.campaign.check import check
     from scenarios.campaign.parquet import ParquetParts
     from scenarios.campaign.survey import Survey
-    from scenarios.campaign.sweep import Sweep
-    from server.cli.sweep import PARTS, carry_out, read_sweep
+    from server.cli.sweep import PARTS, carry_out, checked, read_sweep
 
-    if isinstance(campaign, dict):
-        chosen = Sweep(campaign)
-        check(chosen)
-    else:
-        chosen = read_sweep(Path(campaign))
+    chosen = checked(campaign) if isinstance(campaign, dict) else read_sweep(Path(campaign))
     place = Path(folder) if folder is not None else Path(tempfile.mkdtemp(prefix="combbench-"))
     carry_out(chosen, place, "", resume, workers or os.cpu_count() or 1, "", lambda _done, _all: None)
     return CampaignResult(place, Survey(chosen, ParquetParts(chosen, place / PARTS)))

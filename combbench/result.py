@@ -12,6 +12,8 @@ from core.block import FloatArray
 from core.board.commands import Trip
 from core.errors import InputError, unknown
 from core.signals import CLOCK, Signal
+from scenarios.arrow import pa
+from scenarios.report.traces import schema_of
 from scenarios.run import RunResult
 from scenarios.schema import Scenario
 from server.version import VERSION
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 NETCDF = "nc"
+USUAL = ("plant.displacement", "model.displacement", "drive.voltage")
+"""Signals that a plot shows unless others are named."""
 
 
 class Result:
@@ -186,19 +190,7 @@ class Result:
 
     def _table(self) -> Any:
         """Return the traces as an Arrow table, in double precision."""
-        from scenarios.arrow import pa
-
-        columns = dict(zip(CLOCK, (np.arange(len(self.time)), self.time), strict=True))
-        columns |= {one.name: self.signal(one.name) for one in self.signals}
-        fields = [pa.field(name, pa.from_numpy_dtype(values.dtype)) for name, values in columns.items()]
-        units = {one.name: one.unit for one in self.signals}
-        fields = [
-            field.with_metadata({"unit": units[field.name]}) if field.name in units else field for field in fields
-        ]
         about = {"scenario": self.scenario.document, "seed": self.seed, "digest": self.digest, "version": VERSION}
-        schema = pa.schema(fields, metadata={"combbench": json.dumps(about, default=str)})
-        return pa.table(list(columns.values()), schema=schema)
-
-
-USUAL = ("plant.displacement", "model.displacement", "drive.voltage")
-"""Signals that a plot shows unless others are named."""
+        schema = schema_of({one.name: one.unit for one in self.signals}, about)
+        columns = [np.arange(len(self.time)), self.time, *(self.signal(one.name) for one in self.signals)]
+        return pa.table(columns, schema=schema)

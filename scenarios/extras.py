@@ -16,4 +16,5 @@ def require(package: str, extra: str, field: str) -> None:
         Naming the setting, the package and the extra that brings it.
     """
     if find_spec(package) is None:
-        raise InputError(f"needs the package {package}", field, f"pip install '.[{extra}]' in a checkout installs it")
+        text = f"needs the package {package}, which is not installed"
+        raise InputError(text, field, f"pip install '.[{extra}]' in a checkout")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Literal, Self
 
 import numpy as np
 
@@ -16,6 +17,25 @@ from core.signals import CLOCK, Signal
 from scenarios.arrow import pa, pq
 
 PIECE_TICKS = 1 << 15
+
+
+def schema_of(
+    signals: Mapping[str, str], about: Mapping[str, Any], number: Literal["float32", "float64"] = "float64"
+) -> pa.Schema:
+    """Describe the table of a trace: tick, time, one column per signal with its unit.
+
+    Parameters
+    ----------
+    signals : mapping
+        Name to unit.
+    about : mapping
+        Kept with the file: scenario, seed, version.
+    number : str
+        Type of the samples.
+    """
+    fields = [pa.field(name, kind) for name, kind in zip(CLOCK, (pa.int64(), pa.float64()), strict=True)]
+    fields += [pa.field(name, number, metadata={"unit": unit}) for name, unit in signals.items()]
+    return pa.schema(fields, metadata={"combbench": json.dumps(about, default=str)})
 
 
 def packing(schema: pa.Schema) -> dict[str, Any]:
@@ -51,10 +71,8 @@ class TraceFile:
         self._dt_ms, split = board.dt_ms, board.signals.outputs
         self._outputs = [signal.index for signal in signals if signal.kind == "output"]
         self._taps = [signal.index - split for signal in signals if signal.kind == "tap"]
-        fields = [pa.field(name, kind) for name, kind in zip(CLOCK, (pa.int64(), pa.float64()), strict=True)]
-        fields += [pa.field(signal.name, pa.float64(), metadata={"unit": signal.unit}) for signal in signals]
-        about = {"scenario": json.loads(json.dumps(self._scenario, default=str)), "seed": board.spec.seed}
-        self._schema = pa.schema(fields, metadata={"combbench": json.dumps(about)})
+        about = {"scenario": self._scenario, "seed": board.spec.seed}
+        self._schema = schema_of({signal.name: signal.unit for signal in signals}, about)
         self._writer = pq.ParquetWriter(self._part, self._schema, **packing(self._schema))
 
     def add(self, rows: Rows) -> None:

@@ -32,6 +32,9 @@ class Body(BaseModel):
         }
 
 
+_NONE = object()
+
+
 class AnswerBody(BaseModel):
     """Base of an answer that has fields of other records, by the same names."""
 
@@ -39,10 +42,10 @@ class AnswerBody(BaseModel):
     def of(cls, *records: object, **given: Any) -> Self:
         """Take every field from the first record that has it, unless its value is given here."""
         values = {
-            name: getattr(record, name)
+            name: value
             for record in reversed(records)
             for name in cls.model_fields
-            if name not in given and hasattr(record, name)
+            if name not in given and (value := getattr(record, name, _NONE)) is not _NONE
         }
         return cls.model_validate({**values, **given}, from_attributes=True)
 

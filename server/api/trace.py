@@ -10,12 +10,13 @@ from pydantic import BaseModel
 
 from core.board.history import Float32Array
 from core.errors import InputError
+from scenarios.report.traces import schema_of
 from server.api.deps import SeenDep, ServiceDep
 from server.api.files import Signals, Tick, table_response
 from server.api.router import Router
 from server.bench.bench import Seen
 from server.errors import ApiError
-from server.store.traces import MEDIA_TYPES, Format, asked, schema_of, table_of
+from server.store.traces import MEDIA_TYPES, Format, asked, table_of
 from server.stream.view import TickSpan
 from server.stream.wire import MAX_COLUMNS
 from server.version import VERSION
@@ -101,4 +102,5 @@ def _table(
     first = end - samples.shape[1]
     units = {signal.name: signal.unit for signal in session.signals}
     about = {"version": VERSION, **session.about}
-    return table_of(schema_of({name: units[name] for name in names}, about), first, session.dt_ms, samples)
+    schema = schema_of({name: units[name] for name in names}, about, "float32")
+    return table_of(schema, first, session.dt_ms, samples)

@@ -14,13 +14,13 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validat
 
 from core.board.condition import Condition, parse_condition
 from core.board.rows import Rows
+from scenarios.report.traces import schema_of
 from server.bench.description import document_of
 from server.bench.engine import Engine
 from server.bench.events import Event
 from server.bench.recorder import CLOSED, STOPPED, WANTED, PastSpan, Recorder
 from server.errors import ApiError, not_found
 from server.store.recordings import About, Recording, Recordings
-from server.store.traces import schema_of
 from server.version import VERSION
 
 if TYPE_CHECKING:
@@ -253,9 +253,7 @@ class RecordingControl:
             "bench": session.id,
             "time_scale": session.time.pacer.scale,
         }
-        schema = schema_of(
-            {signal.name: signal.unit for signal in session.signals}, json.loads(json.dumps(file_says, default=str))
-        )
+        schema = schema_of({signal.name: signal.unit for signal in session.signals}, file_says, "float32")
         title = session.scenario.head.title or session.scenario.id
         about = About(
             session.id,

@@ -176,7 +176,7 @@ class StudentBenches:
             return None
 
     def _continue(self, bench: LiveBench, kept: Kept) -> None:
-        """Hide what was hidden on a bench, and watch it, before it continues from its checkpoint."""
+        """Hide the fault of a bench again, and watch the bench, before it continues from its checkpoint."""
         hide_again(bench, kept)
         self.on_revived(bench, kept.watch)
 

@@ -9,6 +9,7 @@ import typer
 
 from core.errors import InputError
 from scenarios.edit import parse_assignment, with_values
+from scenarios.extras import require
 from server.cli.terminal import AssignOption, load, plainly, say
 
 
@@ -20,11 +21,9 @@ def fmu(
 ) -> None:
     """Write the device of a scenario as an FMU of FMI 3: its linear plant, voltage in, displacement out."""
     chosen = with_values(load(scenario), dict(parse_assignment(text) for text in assign or []))
-    try:
-        from scenarios.outside.fmu import export
-    except ImportError:
-        hint = "pip install '.[fmi]' in a checkout"
-        raise InputError("needs the package pythonfmu3, which is not installed", "fmu", hint) from None
+    require("pythonfmu3", "fmi", "fmu")
+    from scenarios.outside.fmu import export
+
     try:
         export(chosen, out)
     except OSError as error:

@@ -72,6 +72,17 @@ def read_sweep(path: Path, units: Iterable[Path] = ()) -> Sweep:
     if units:
         base = document.get("scenario")
         document["scenario"] = with_units(get(base).document if isinstance(base, str) else base or {}, units)
+    return checked(document)
+
+
+def checked(document: dict[str, Any]) -> Sweep:
+    """Return the campaign of a document, once its points and its length are checked.
+
+    Raises
+    ------
+    InputError
+        When its content is wrong.
+    """
     sweep = Sweep(document)
     check(sweep)
     return sweep

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO, Literal, cast
@@ -12,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError, unknown
-from core.signals import CLOCK
 from scenarios.arrow import csv, pa, pq
 from scenarios.report.matlab import variables
 from scenarios.report.traces import packing
@@ -28,21 +26,6 @@ MEDIA_TYPES: dict[str, str] = {
     "npz": "application/octet-stream",
     "mat": "application/octet-stream",
 }
-
-
-def schema_of(signals: Mapping[str, str], about: Mapping[str, Any]) -> pa.Schema:
-    """Describe a trace table: tick, time, one column per signal with its unit.
-
-    Parameters
-    ----------
-    signals : mapping
-        Name to unit.
-    about : mapping
-        Kept with the file: scenario, version, sample interval.
-    """
-    fields = [pa.field(name, kind) for name, kind in zip(CLOCK, (pa.int64(), pa.float64()), strict=True)]
-    fields += [pa.field(name, pa.float32(), metadata={"unit": unit}) for name, unit in signals.items()]
-    return pa.schema(fields, metadata={"combbench": json.dumps(about)})
 
 
 def table_of(schema: pa.Schema, first_tick: int, dt_ms: float, samples: NDArray[np.floating[Any]]) -> pa.Table:

@@ -13,12 +13,13 @@ import pyarrow.parquet as pq
 import pytest
 from scipy.io import loadmat
 
+from scenarios.report.traces import schema_of
 from server.bench.recorder import Recorder
 from server.store.recording import RecordingFile, convert, rescue
-from server.store.traces import MEDIA_TYPES, schema_of, table_of, write
+from server.store.traces import MEDIA_TYPES, table_of, write
 
 DT = 0.01
-SCHEMA = schema_of({"plant.displacement": "um", "drive.voltage": "V"}, {"scenario": "mine"})
+SCHEMA = schema_of({"plant.displacement": "um", "drive.voltage": "V"}, {"scenario": "mine"}, "float32")
 SAMPLES = np.array([[1.5, -2.25, 3e-7], [10.0, 0.0, -1e9]], np.float32)
 
 

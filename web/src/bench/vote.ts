@@ -19,8 +19,8 @@ export const showVote = (vote: Vote | undefined): void => useVote.setState({ vot
 const ASKED = storageName("combbench.asked");
 
 /**
- * Open the vote of the cue, once in a lecture; the panel says how it goes, and asks again if that is wanted. Where several
- * classes are there, it asks who votes.
+ * Open the vote of the cue, once in a lecture; the panel says how it goes, and asks again if that is wanted. With several
+ * classes, it asks which class votes.
  */
 export const askCue = showing(async () => {
   const vote = cueNow()?.vote;
