@@ -49,7 +49,7 @@ export function BeforeAfter({ change, isHidden, figures, traces, plot }: BeforeA
   useSlideKey(canSlide, box, compared[0]?.strength ?? 0, slide);
   return (
     <section ref={box} className={styles.change} aria-label="Before and after">
-      <Text inherit truncate>
+      <Text inherit truncate title={words}>
         <b>{words}</b> <span className={styles.wide}>at {formatMoment(change.tick * dtMs)}</span>
       </Text>
       {isHidden ? <p className={styles.figures}>{HIDDEN}</p> : <ComparedList compared={compared} />}
