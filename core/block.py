@@ -169,6 +169,11 @@ class Context:
     tone_hz: float = 0.0
     sensors: Mapping[str, BlockParams] = field(default_factory=dict)
 
+    @property
+    def assumed_noise_um(self) -> float:
+        """Sensor noise that filters assume: the noise of the sensor, at least a thousandth of a micrometre."""
+        return max(self.sensor_noise_um, 1e-3)
+
 
 LOOP = "board"
 """The family of the blocks in ``core/loop``, which every bench has."""

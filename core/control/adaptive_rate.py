@@ -59,7 +59,7 @@ class AdaptiveRate(Block):
     """
 
     title = "Adaptive control with rate estimate"
-    place = 19
+    place = 22
     axes = ("x", "y")
     slot = "sense"
     equations = (

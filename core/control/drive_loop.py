@@ -35,7 +35,7 @@ class DriveLoop(Block):
     """
 
     title = "Drive loop (amplitude and phase)"
-    place = 13
+    place = 16
     axes = ("x", "y")
     slot = "drive"
     equations = (

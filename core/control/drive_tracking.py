@@ -23,7 +23,7 @@ class DriveTracking(Block):
     """
 
     title = "Drive tracking"
-    place = 14
+    place = 17
     axes = ("x", "y")
     slot = "drive"
     equations = (

@@ -30,7 +30,7 @@ class ForceToRebalance(Block):
     """
 
     title = "Force to rebalance"
-    place = 16
+    place = 19
     axes = ("x", "y")
     slot = "sense"
     equations = (

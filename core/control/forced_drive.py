@@ -20,7 +20,7 @@ class ForcedDrive(Block):
     """
 
     title = "Forced drive"
-    place = 11
+    place = 14
     axes = ("x", "y")
     slot = "drive"
     equations = (Equation("force", r"F_x=F\sin(2\pi ft+\varphi)"),)

@@ -28,7 +28,7 @@ class GainAdaptation(Block):
     """
 
     title = "Gain adaptation (appendix B)"
-    place = 10
+    place = 13
     equations = (
         Equation(
             "MIT rule",

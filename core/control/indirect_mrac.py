@@ -55,7 +55,7 @@ class IndirectMrac(Block):
     """
 
     title = "Indirect MRAC"
-    place = 5
+    place = 8
     equations = (
         Equation("parametric form", r"z=\frac{s^2}{(s+\lambda)^2}y=\theta^T\phi", "3.3.2.5-7"),
         Equation(

@@ -37,7 +37,7 @@ class MimoAdaptive(Block):
     """
 
     title = "Many-input adaptive control"
-    place = 20
+    place = 23
     axes = ("x", "y")
     slot = "sense"
     equations = (

@@ -46,7 +46,7 @@ class Mrac(Block):
     """
 
     title = "Direct MRAC"
-    place = 3
+    place = 6
     equations = (
         Equation("law", r"u=\theta^Tw,\quad w=[r,w_1,w_2,y]^T", "3.1.2.5-8"),
         Equation(

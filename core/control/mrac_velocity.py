@@ -63,7 +63,7 @@ class MracVelocity(Block):
     """
 
     title = "Direct MRAC with velocity"
-    place = 4
+    place = 7
     equations = (
         Equation("law", r"u=\theta^Tw,\quad w=[r,w_1,w_2,y_c]^T,\quad y_c=y+\dot y/c,\;c=0.9\,a_{m1}", "3.1.2.5-8"),
         Equation(

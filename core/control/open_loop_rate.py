@@ -88,7 +88,7 @@ class OpenLoopRate(Block):
     """
 
     title = "Open-loop read-out"
-    place = 15
+    place = 18
     axes = ("x", "y")
     slot = "sense"
     equations = (

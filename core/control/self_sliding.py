@@ -39,7 +39,7 @@ class SelfSliding(Block):
     """
 
     title = "Self-sliding control"
-    place = 9
+    place = 12
     equations = (
         Equation(
             "law",

@@ -38,7 +38,7 @@ class SenseAxisSync(Block):
     """
 
     title = "Sense-axis synchronisation"
-    place = 17
+    place = 20
     axes = ("x", "y")
     slot = "sense"
     equations = (

@@ -39,7 +39,7 @@ class Stvsc(Block):
     """
 
     title = "Self-tuning VSC"
-    place = 7
+    place = 10
     equations = (
         Equation(
             "law",

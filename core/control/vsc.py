@@ -31,7 +31,7 @@ class Vsc(Block):
     """
 
     title = "Variable structure control"
-    place = 6
+    place = 9
     equations = (
         Equation("law", r"u=u_{eq}+\rho M\,\mathrm{sat}(s/\Phi),\quad M=\sum|K_{e,i}e_i|+|K_{p,i}x_i|+|K_mr|", "3.2.4"),
         SURFACE_EQUATION,

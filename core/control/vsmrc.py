@@ -29,7 +29,7 @@ class Vsmrc(Block):
     """
 
     title = "Variable structure MRC"
-    place = 8
+    place = 11
     equations = (
         Equation("law", r"u=\theta_{nom}^T[r,y,\dot y]+(c_r|r|+c_y|y|)\,\mathrm{sat}(s/\Phi)", "4.3.1"),
         Equation(

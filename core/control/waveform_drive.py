@@ -25,7 +25,7 @@ class WaveformDrive(Block):
     """
 
     title = "Waveform drive"
-    place = 12
+    place = 15
     axes = ("x", "y")
     slot = "drive"
     equations = (

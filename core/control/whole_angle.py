@@ -37,7 +37,7 @@ class WholeAngle(Block):
     """
 
     title = "Whole-angle read-out"
-    place = 18
+    place = 21
     axes = ("x", "y")
     slot = "sense"
     equations = (

@@ -105,4 +105,4 @@ def hypotheses_of(params: BlockParams) -> list[Hypothesis]:
 
 def assumed_noise(context: Context) -> float:
     """Return the sensor noise that a bank assumes: the noise of the sensor, at least a thousandth of a micrometre."""
-    return max(context.sensor_noise_um, 1e-3)
+    return context.assumed_noise_um

@@ -5,6 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
+from scipy.signal import cont2discrete
+
+from core.block import FloatArray, Oscillator
 from scenarios.run import run
 from scenarios.schema import Scenario
 from tests.lab import document
@@ -31,3 +35,16 @@ def figures(values: dict[str, Any], faults: dict[str, float], ms: float = 100.0)
     """Run 100 ms with faults from the start and return the metrics."""
     events = [{"at_sample": 0, "fault": name, "severity": size} for name, size in faults.items()]
     return run(Scenario.load({**document(values), "duration_ms": ms, "events": events})).metrics
+
+
+def sampled(device: Oscillator, dt_ms: float) -> tuple[FloatArray, FloatArray]:
+    """Return displacement and velocity of a device over a sample under a held voltage, by scipy."""
+    a = np.array([[0.0, 1.0], [-device.stiffness / device.mass, -device.damping / device.mass]])
+    b = np.array([[0.0], [device.force / device.mass]])
+    over, push, *_ = cont2discrete((a, b, np.eye(2), np.zeros((2, 1))), dt_ms)
+    return over, push
+
+
+def faulty(device: Oscillator, mass: float = 1.0, stiffness: float = 1.0, damping: float = 1.0) -> Oscillator:
+    """Return a device with scaled coefficients."""
+    return Oscillator(device.mass * mass, device.damping * damping, device.stiffness * stiffness, device.force)

@@ -7,8 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.linalg import solve_discrete_are, solve_discrete_lyapunov
-from scipy.signal import cont2discrete
 
 from core.block import FloatArray, Oscillator
 from core.own.unit import unit
@@ -16,6 +14,7 @@ from scenarios.run import RunResult, run
 from scenarios.schema import Scenario
 from tests.core.own.test_own_units import with_unit
 from tests.core.own.texts import ROOT
+from tests.physics.loop import sampled
 
 UNITS = ROOT / "docs" / "units"
 AGED, HEAVY = "ch3-case1-aged-mass", "ch3-stvsc-mass"
@@ -32,14 +31,6 @@ def bench(name: str, base: str, values: dict[str, Any] | None = None) -> Scenari
 def packed(name: str, scenario: Scenario) -> Any:
     block = unit(name, source(name)).block
     return block.Packed(block.packed(block.Params(), scenario.spec.context(1)))
-
-
-def sampled(device: Oscillator, dt_ms: float) -> tuple[FloatArray, FloatArray]:
-    """Return displacement and velocity of a device over a sample under a held voltage, by scipy."""
-    a = np.array([[0.0, 1.0], [-device.stiffness / device.mass, -device.damping / device.mass]])
-    b = np.array([[0.0], [device.force / device.mass]])
-    over, push, *_ = cont2discrete((a, b, np.eye(2), np.zeros((2, 1))), dt_ms)
-    return over, push
 
 
 def true_device(result: RunResult) -> Oscillator:
@@ -68,57 +59,10 @@ def test_the_page_lists_every_unit_and_the_command_line_accepts_it() -> None:
     text = (ROOT / "docs" / "own-units.md").read_text("utf-8")
     programs = {"design_h_infinity", "train_neural_net"}
     names = {path.stem for path in UNITS.glob("*.py")} - programs
-    assert names == {"lqg", "h_infinity", "page", "neural_net", "sliding_observer"}
+    assert names == {"h_infinity", "page", "neural_net", "sliding_observer"}
     for name in names:
         assert f"[`{name}.py`](units/{name}.py)" in text
         assert unit(name, source(name)).family == ("diagnose" if name == "page" else "control")
-
-
-# ---------------------------------------------------------------- LQG
-
-
-NOISY = {"controller.kind": "lqg", "plant.drive_noise_v": 1.0, "plant.thermal_noise": False, "duration_ms": 500.0}
-
-
-def test_lqg_has_the_gains_of_the_riccati_equations_and_the_error_they_predict() -> None:
-    scenario = bench("lqg", "first-look", NOISY)
-    a, b = sampled(scenario.spec.nominal, scenario.spec.dt_ms)
-    cost, drift, noise = 0.03**2, 1.0**2, 0.05**2
-    c = np.array([[1.0, 0.0]])
-    p = solve_discrete_are(a, b, c.T @ c, np.array([[cost]]))
-    k = np.linalg.solve(cost + b.T @ p @ b, b.T @ p @ a)
-    q = solve_discrete_are(a.T, c.T, drift * b @ b.T, np.array([[noise]]))
-    gain = q @ c.T / (c @ q @ c.T + noise)
-    own = packed("lqg", scenario)
-    np.testing.assert_allclose([own.k1, own.k2, own.l1, own.l2], [*k[0], *gain[:, 0]], rtol=1e-7)
-
-    # tracking error d and error of the estimate: d' = (A - BK) d + BK eps + Bw, eps' = (I - LC)(A eps + Bw) - Lv
-    keep = np.eye(2) - gain @ c
-    loop = np.block([[a - b @ k, b @ k], [np.zeros((2, 2)), keep @ a]])
-    enters = np.block([[b, np.zeros((2, 1))], [keep @ b, -gain]])
-    covariance = solve_discrete_lyapunov(loop, enters @ np.diag([drift, noise]) @ enters.T)
-    result = run(scenario)
-    assert tail_error(result) == pytest.approx(np.sqrt(covariance[0, 0]), rel=0.05)
-    open_loop = solve_discrete_lyapunov(a, drift * b @ b.T)
-    assert covariance[0, 0] < 0.3 * open_loop[0, 0]
-
-
-def test_lqg_moves_a_device_as_another_model_moves() -> None:
-    """u = (m a + b v + k y) / F about the model, whose a is its own; without noise the estimate is exact."""
-    values = {"kind": "transfer_function", "numerator": [0.2], "denominator": [1.0, 1.4, 2.0]}
-    scenario = bench("lqg", AGED, {"controller.kind": "lqg", "model": values, "events": []})
-    spec, z = scenario.spec, turn(scenario)
-    device, model = spec.nominal, spec.context(1).model
-    assert model.stiffness / model.mass == pytest.approx(2.0 * device.stiffness / device.mass)
-    own = packed("lqg", scenario)
-    gains = np.array([own.k1, own.k2])
-    motion, wanted = phasors(sampled(device, spec.dt_ms), z), phasors(sampled(model, spec.dt_ms), z)
-    y, v = wanted
-    a = (model.force - model.damping * v - model.stiffness * y) / model.mass
-    asked = (device.mass * a + device.damping * v + device.stiffness * y) / device.force
-    error = 10.0 * abs(motion[0] * (asked + gains @ wanted) / (1.0 + gains @ motion) - wanted[0]) / np.sqrt(2.0)
-    assert tail_error(run(scenario)) == pytest.approx(error, rel=5e-3)
-    assert error < 0.05 * 10.0 * abs(motion[0] - wanted[0]) / np.sqrt(2.0), "open loop"
 
 
 # ---------------------------------------------------------------- Page's test

@@ -56,7 +56,6 @@ def of_the_gallery(name: str) -> str:
 
 
 GALLERY = {
-    "lqg": ("first-look", {"controller.kind": "lqg", "plant.drive_noise_v": 1}),
     "h_infinity": ("ch3-case1-aged-mass", {"controller.kind": "h_infinity"}),
     "neural_net": ("ch3-case1-aged-mass", {"controller.kind": "neural_net"}),
     "sliding_observer": ("ch3-stvsc-mass", {"controller.kind": "sliding_observer", "sample_rate_khz": 400}),

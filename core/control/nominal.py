@@ -1,0 +1,48 @@
+"""The nominal device as a controller knows it: its motion over a sample, and the voltage of the model's motion."""
+
+from __future__ import annotations
+
+from core.block import Context, Oscillator
+from core.device.oscillator import held, within
+from core.kernel import kernel
+from core.record import Record
+from core.voltage import Tick
+
+
+class Following(Record):
+    r"""Volts per volt of the reference, per velocity and per displacement of the model.
+
+    .. math:: u_m=\frac{m\ddot y_m+\beta\dot y_m+ky_m}{F},\qquad \ddot y_m=\frac{F_mr-\beta_m\dot y_m-k_my_m}{m_m}
+    """
+
+    reference: float
+    velocity: float
+    displacement: float
+
+
+def over_sample(device: Oscillator, context: Context) -> Tick:
+    """Return a device over a sample: its transition, and its motion under a voltage."""
+    numbers = device.mass, device.damping, device.stiffness, context.dt_ms
+    tick = Tick.zeros()
+    tick.phi11, tick.phi12, tick.phi21, tick.phi22, first, second = held(*numbers)
+    tick.push1, tick.push2 = first * device.force, second * device.force
+    if context.analogue:
+        tick.middle1, tick.middle2, tick.end1, tick.end2 = within(*numbers, device.force)
+    return tick
+
+
+def following(context: Context) -> Following:
+    """Return the weights of the voltage under which the nominal device moves as the model; 0 without any force."""
+    device, model = context.device, context.model
+    found, share = Following.zeros(), device.mass / model.mass
+    if device.force != 0.0:
+        found.reference = share * model.force / device.force
+        found.velocity = (device.damping - share * model.damping) / device.force
+        found.displacement = (device.stiffness - share * model.stiffness) / device.force
+    return found
+
+
+@kernel
+def followed(p: Following, reference: float, displacement: float, velocity: float) -> float:
+    """Return the voltage under which the nominal device moves as the model."""
+    return p.reference * reference + p.velocity * velocity + p.displacement * displacement
