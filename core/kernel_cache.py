@@ -70,7 +70,7 @@ def _mark(name: str, code: bytes) -> bytes:
 
 
 Content = Callable[[FunctionType], str]
-"""Returns what a function is known by."""
+"""Returns the text by which a function is known."""
 
 
 def bytecode(function: FunctionType) -> str:

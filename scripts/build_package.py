@@ -19,7 +19,7 @@ NO_NODE = (
 
 
 class BuildHook(BuildHookInterface[Any]):
-    """Builds what is missing, and adds it to the wheel; an editable install takes both from the checkout."""
+    """Builds the missing parts, and adds them to the wheel; an editable install takes both from the checkout."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Build the page and the machine code before files are collected."""

@@ -225,6 +225,7 @@ def test_it_does_not_start_with_wrong_settings(monkeypatch: pytest.MonkeyPatch, 
         ([], {"TOKEN": "caf\u00e9-caf\u00e9-caf\u00e9-caf\u00e9"}, ["token", "header"]),
         ([], {"MAX_BENCHES": "none"}, ["max_benches", "COMBBENCH_MAX_BENCHES"]),
         ([], {"DATA": "/proc/nowhere"}, ["/proc/nowhere", "data"]),
+        (["--host", "192.0.2.1"], {}, ["host: ", "192.0.2.1", "no such address"]),
     ]
     for arguments, environment, words in wrong:
         told = {"COMBBENCH_TOKEN": TOKEN, **{f"COMBBENCH_{name}": value for name, value in environment.items()}}
@@ -239,7 +240,7 @@ def test_a_port_that_is_taken_is_told_in_one_line(tmp_path: Path) -> None:
         with process(tmp_path, "--port", port) as running:
             assert running.wait(60) == 2
     said = (tmp_path / "stderr").read_text()
-    assert f"127.0.0.1:{port}" in said and len(said.strip().splitlines()) == 1
+    assert f"127.0.0.1:{port}" in said and "another --port" in said and len(said.strip().splitlines()) == 1
 
 
 def test_a_data_folder_serves_one_server_until_that_has_ended(loaded: Forks, tmp_path: Path) -> None:
