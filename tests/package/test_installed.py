@@ -1,4 +1,4 @@
-"""One wheel in empty environments of all versions of Python that are here: the same bits, nothing compiled, the page."""
+"""One wheel in empty environments of all versions of Python that are here: the same bits, no compiling, the page."""
 
 from __future__ import annotations
 
