@@ -193,7 +193,8 @@ def serve(settings: Settings) -> None:
             app.state.service.database.migrate()
             app.state.service.database.claim()
         except OSError as error:
-            raise InputError(f"the data folder {settings.data} cannot be used: {error.strerror}", "data") from None
+            text = f"the data folder {settings.data.absolute()} cannot be used: {error.strerror}"
+            raise InputError(text, "data", "choose another --data") from None
         host = f"[{settings.host}]" if ":" in settings.host else settings.host
         shown = LOOPBACK if settings.classroom or is_everywhere else host
         page = settings.public_origin or f"http://{shown}:{port}"
