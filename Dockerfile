@@ -39,7 +39,7 @@ RUN .venv/bin/uv venv --quiet /audit \
  && .venv/bin/uv pip install --quiet --python /audit/bin/python -c requirements.lock cyclonedx-bom pip-audit
 RUN .venv/bin/uv pip install --quiet --constraint requirements.lock hatchling \
  && .venv/bin/uv pip install --quiet --no-deps --no-build-isolation --editable . \
- && .venv/bin/python -m compileall -q -j 0 combbench core scenarios server .venv/lib \
+ && .venv/bin/python -m compileall -q -j 0 -x '/tests/' combbench core scenarios server .venv/lib \
  && .venv/bin/python -m scenarios.built_kernels \
  && .venv/bin/python -m scenarios.kernels && chmod -R a+rX kernels \
  && .venv/bin/python -m server.runs.figures \

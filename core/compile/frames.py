@@ -22,6 +22,21 @@ Kinds = dict[str, tuple[int, bool]]
 @cache
 def tree_of(function: FunctionType) -> ast.FunctionDef:
     """Return the syntax tree of a function."""
+    (tree,) = ast.parse(textwrap.dedent(text_of(function))).body
+    if not isinstance(tree, ast.FunctionDef):
+        raise Unsupported(f"{function.__name__} is no function with statements")
+    return tree
+
+
+@cache
+def text_of(function: FunctionType) -> str:
+    """Return the text of a function.
+
+    Raises
+    ------
+    Unsupported
+        When it cannot be read, or has changed since the function was loaded.
+    """
     try:
         text = inspect.getsource(function)
     except OSError:
@@ -29,10 +44,7 @@ def tree_of(function: FunctionType) -> ast.FunctionDef:
     file = function.__code__.co_filename
     if _mark(function.__code__) not in _marks(file, "".join(linecache.getlines(file))):
         raise Unsupported(f"the text of {function.__name__} has changed since it was loaded", file, AGAIN)
-    (tree,) = ast.parse(textwrap.dedent(text)).body
-    if not isinstance(tree, ast.FunctionDef):
-        raise Unsupported(f"{function.__name__} is no function with statements")
-    return tree
+    return text
 
 
 @cache

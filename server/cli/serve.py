@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import gc
 import logging
 import signal
@@ -36,6 +37,12 @@ SWITCH_S = 0.001
 """How long a thread keeps the interpreter while another waits: a round of the engine has 8 ms for all benches."""
 MIN_TOKEN = 16
 GRACE_S = 6
+REFUSED = {
+    errno.EADDRINUSE: ("port", "another program listens there; stop it, or choose another --port: 0 takes a free one"),
+    errno.EADDRNOTAVAIL: ("host", "this machine has no such address"),
+    errno.EACCES: ("port", "only the administrator may take it; choose another --port"),
+}
+"""The setting to blame for an error of the system, and the way out."""
 
 
 class Server(uvicorn.Server):
@@ -128,8 +135,9 @@ def bind(settings: Settings) -> socket.socket:
         listener.listen(1024)
     except OSError as error:
         listener.close()
+        field, hint = REFUSED.get(error.errno or 0, ("port", ""))
         text = f"cannot listen on {settings.host}:{settings.port}: {error.strerror or error}"
-        raise InputError(text, "port", "another server may be running; choose another --port") from None
+        raise InputError(text, field, hint) from None
     return listener
 
 
@@ -185,7 +193,8 @@ def serve(settings: Settings) -> None:
             app.state.service.database.migrate()
             app.state.service.database.claim()
         except OSError as error:
-            raise InputError(f"the data folder {settings.data} cannot be used: {error.strerror}", "data") from None
+            text = f"the data folder {settings.data.absolute()} cannot be used: {error.strerror}"
+            raise InputError(text, "data", "choose another --data") from None
         host = f"[{settings.host}]" if ":" in settings.host else settings.host
         shown = LOOPBACK if settings.classroom or is_everywhere else host
         page = settings.public_origin or f"http://{shown}:{port}"

@@ -79,6 +79,18 @@ def test_the_key_stays_where_nothing_compiled_changes(old, new):
     assert key(outer_of(SOURCE.replace(old, new))) == key(outer_of(SOURCE))
 
 
+def test_the_order_in_which_bytecode_names_things_is_part_of_the_bytecode_alone():
+    turned = SOURCE.replace("deepest(x) + NODES[1]", "NODES[1] + deepest(x)")
+    assert key(outer_of(turned)) != key(outer_of(SOURCE))
+
+    def name(function: FunctionType) -> str:
+        return function.__name__
+
+    assert key(outer_of(turned), name) == key(outer_of(SOURCE), name)
+    for old, new in (("FACTOR = 2.0", "FACTOR = 2.5"), ("[1.0, 2.0]", "[1.0, 2.5]")):
+        assert key(outer_of(SOURCE.replace(old, new)), name) != key(outer_of(SOURCE), name)
+
+
 def test_a_kernel_that_calls_itself_has_a_key():
     source = SOURCE.replace("return inner(x) + 3.0", "return outer(x - 1.0) if x > 0.0 else 3.0")
     assert key(outer_of(source)) == key(outer_of(source)) != key(outer_of(SOURCE))

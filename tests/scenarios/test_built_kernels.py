@@ -11,7 +11,7 @@ import pytest
 
 from core import kernel_cache, registry
 from core.compile import code, entry
-from core.compile.machine import LEVELS
+from core.compile.machine import LEVELS, native
 from core.kernel import flush_tiny
 from scenarios import built_kernels
 from scenarios import kernel_cache as folders
@@ -65,6 +65,23 @@ def test_the_folder_of_a_user_comes_before_what_a_version_brings(tmp_path, monke
     monkeypatch.setattr(folders, "keep_on", lambda *given: shelves.extend(given))
     folders.prepare(built=built)
     assert [type(one).__name__ for one in shelves] == ["Folder", "Built"][: 1 + built]
+
+
+NAMES = """
+from core import registry
+from core.compile import code, machine
+piece = code.step(registry.block("control", "pid"))
+for target in (machine.native(), *machine.LEVELS):
+    print(piece.name_for(target))
+"""
+
+
+def test_another_bytecode_of_the_same_text_finds_the_code_that_an_archive_brings():
+    """Each version of Python has its own bytecode; one version has two, with docstrings and without."""
+    command = [sys.executable, "-OO", "-c", NAMES]
+    told = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.split()
+    own, *levels = (PIECES[0].name_for(target) for target in (native(), *LEVELS))
+    assert told[1:] == levels and told[0] != own
 
 
 START = """

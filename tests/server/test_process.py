@@ -219,12 +219,15 @@ def test_it_does_not_start_with_wrong_settings(monkeypatch: pytest.MonkeyPatch, 
     """Each is reported in one line. In `test_a_port_that_is_taken_is_told_in_one_line` a process prints it."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(logs, "configure", lambda _: None)
+    (tmp_path / "file").touch()
     wrong: list[tuple[list[str], dict[str, str], list[str]]] = [
         (["--host", "0.0.0.0"], {"TOKEN": ""}, ["0.0.0.0", "token"]),
         (["--host", "0.0.0.0"], {"TOKEN": "short"}, ["16 characters"]),
         ([], {"TOKEN": "caf\u00e9-caf\u00e9-caf\u00e9-caf\u00e9"}, ["token", "header"]),
         ([], {"MAX_BENCHES": "none"}, ["max_benches", "COMBBENCH_MAX_BENCHES"]),
-        ([], {"DATA": "/proc/nowhere"}, ["/proc/nowhere", "data"]),
+        ([], {"DATA": "/proc/nowhere"}, ["data: ", "/proc/nowhere", "another --data"]),
+        (["--data", "file/data"], {}, [str(tmp_path / "file/data"), "Not a directory"]),
+        (["--host", "192.0.2.1"], {}, ["host: ", "192.0.2.1", "no such address"]),
     ]
     for arguments, environment, words in wrong:
         told = {"COMBBENCH_TOKEN": TOKEN, **{f"COMBBENCH_{name}": value for name, value in environment.items()}}
@@ -239,7 +242,7 @@ def test_a_port_that_is_taken_is_told_in_one_line(tmp_path: Path) -> None:
         with process(tmp_path, "--port", port) as running:
             assert running.wait(60) == 2
     said = (tmp_path / "stderr").read_text()
-    assert f"127.0.0.1:{port}" in said and len(said.strip().splitlines()) == 1
+    assert f"127.0.0.1:{port}" in said and "another --port" in said and len(said.strip().splitlines()) == 1
 
 
 def test_a_data_folder_serves_one_server_until_that_has_ended(loaded: Forks, tmp_path: Path) -> None:

@@ -109,7 +109,7 @@ def test_code_of_another_hash_or_with_other_bytes_is_compiled_anew(shelf, monkey
 
 def widest(target: Target, text: str) -> int:
     """Return the bits of the widest register that code for a processor names."""
-    said = said_by(target, code.Piece("wide", "", lambda: text, loops=True))
+    said = said_by(target, code.Piece("wide", str, lambda: text, loops=True))
     return next((bits for bits, name in ((512, "%zmm"), (256, "%ymm"), (128, "%xmm")) if name in said), 0)
 
 
@@ -130,7 +130,7 @@ def test_no_product_and_sum_become_one_instruction(target):
         assert not FUSED.search(said_by(target, code.step(registry.block("diagnose", name))))
     fused = "declare double @llvm.fma.f64(double, double, double)\ndefine double @step(double %a) {\n"
     text = fused + "%b = call double @llvm.fma.f64(double %a, double %a, double %a)\nret double %b\n}"
-    assert FUSED.search(said_by(target, code.Piece("fused", "", lambda: text, loops=False))), "it would be seen"
+    assert FUSED.search(said_by(target, code.Piece("fused", str, lambda: text, loops=False))), "it would be seen"
 
 
 @pytest.mark.long
