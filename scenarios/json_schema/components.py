@@ -11,7 +11,7 @@ from functools import cache
 from core.board.document import CHOSEN, generators
 from scenarios.json_schema.blocks import NAMES
 from scenarios.json_schema.definitions import Definitions, Schema, walked
-from scenarios.json_schema.documents import campaign
+from scenarios.json_schema.documents import FILE, campaign
 from scenarios.reading import ADDRESS
 
 HERE = "#/components/schemas/"
@@ -39,7 +39,9 @@ def components() -> dict[str, Schema]:
     for key in FREE:
         scenario[key] = {"description": scenario[key]["description"], "type": "object", "additionalProperties": True}
     scenario["slots"] = {"description": scenario["slots"]["description"], **_without_title(known.found["SlotsTable"])}
+    known.found["Campaign"]["properties"]["scenario"]["anyOf"].remove(FILE)  # a server reads no files of its callers
     known.found["ScenarioId"] = {"title": "ScenarioId", "type": "string", "description": "An id of the library."}
+    known.found["Device"]["properties"]["id"] = {"type": "string", "description": "name in the catalogue"}
     unions = {name: one["required"][0] for name, one in known.found.items() if "oneOf" in one}
     members = {_name(ref): unions[name] for name in unions for ref in known.found[name]["oneOf"]}
     found = {name: _component(schema, members.get(name)) for name, schema in known.found.items()}
