@@ -8,6 +8,9 @@ from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from pydantic import TypeAdapter
 
+from scenarios.json_schema.components import components as documents
+from scenarios.json_schema.definitions import walked
+from server.api.bodies import DOCUMENT
 from server.api.examples import EXAMPLES
 from server.classroom.access import Need, need_of
 from server.errors import ErrorReply
@@ -90,13 +93,21 @@ def build(app: FastAPI) -> dict[str, Any]:
         for inner, definition in described.pop("$defs", {}).items():
             components.setdefault(inner, definition)
         components[name] = {"title": name, **described}
+    components |= documents()
     schema["components"]["securitySchemes"] = {"token": BEARER}
     for path, operations in schema["paths"].items():
         for method, operation in operations.items():
             _complete(operation, is_open=need_of(method.upper(), path)[0] is Need.NOTHING)
     components.pop("HTTPValidationError", None)
     components.pop("ValidationError", None)
-    return schema
+    whole: dict[str, Any] = walked(schema, _described)
+    return whole
+
+
+def _described(table: dict[str, Any]) -> dict[str, Any]:
+    """Refer to the component that describes a document, in the place of its name."""
+    component = table.pop(DOCUMENT, None)
+    return table if component is None else {"$ref": REF.format(model=component), **table}
 
 
 def _complete(operation: dict[str, Any], is_open: bool) -> None:
