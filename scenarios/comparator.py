@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Self
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from core.board.document import Document
 from core.table import Table
@@ -23,8 +23,8 @@ class Comparator(Table):
     this pole; the least is the best. A member that trips is not chosen.
     """
 
-    pole: float
-    feedforward: float
+    pole: float = Field(description=f"pole of the PID over w0, one of {POLES}")
+    feedforward: float = Field(description=f"share of the reference that is fed forward, one of {FEEDFORWARD}")
 
     @model_validator(mode="after")
     def _is_of_the_family(self) -> Self:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from typing import Annotated, Literal, Self, get_args
 
-from pydantic import Field, model_validator
+from pydantic import Field, WithJsonSchema, model_validator
 
 from core.format import format_short, format_within
 from core.table import Table, Words
@@ -26,7 +26,10 @@ AGREES = 0.05
 """Share of a published number within which a figure agrees with it, where no range is given."""
 LESS = ("error_um", "error_nm", "settling_ms")
 """Ends of the metrics where less is always better."""
-End = Annotated[float, Field(allow_inf_nan=True)]
+End = Annotated[
+    float, Field(allow_inf_nan=True), WithJsonSchema({"anyOf": [{"type": "number"}, {"enum": ["inf", "-inf"]}]})
+]
+"""An end of a range; JSON has an open end as a text."""
 
 
 class Expectation(Table):
@@ -40,20 +43,22 @@ class Expectation(Table):
     files have one.
     """
 
-    metric: str
-    min: float | None = None
-    max: float | None = None
-    value: float | None = None
-    tolerance: float | None = Field(None, ge=0)
-    published: Words = ""
-    published_value: float | None = None
-    published_range: tuple[End, End] | None = None
-    fitted: list[str] = Field([])
-    compare: Literal["open_loop", "pid", "none"] | None = None
-    pid_too: bool = False
-    reason: Words = ""
-    verdict: str | None = None
-    note: Words = ""
+    metric: str = Field(description="name of the figure, such as control.rms_error_um")
+    min: float | None = Field(None, description="smallest expected value, in the unit of the metric")
+    max: float | None = Field(None, description="largest expected value, in the unit of the metric")
+    value: float | None = Field(None, description="expected value, in the unit of the metric; goes with tolerance")
+    tolerance: float | None = Field(None, ge=0, description="largest distance from value")
+    published: Words = Field("", description="words of the text")
+    published_value: float | None = Field(None, description="number of the text, in the unit of the metric")
+    published_range: tuple[End, End] | None = Field(None, description="values that agree with the text, ends included")
+    fitted: list[str] = Field([], description="fields of the scenario that were chosen so that it agrees")
+    compare: Literal["open_loop", "pid", "none"] | None = Field(
+        None, description="the case that must miss it, for it to praise a controller"
+    )
+    pid_too: bool = Field(False, description="whether a PID does as well")
+    reason: Words = Field("", description='why nothing is compared, with compare = "none"')
+    verdict: str | None = Field(None, description="not read: it follows from the published figures")
+    note: Words = Field("", description="origin of the figures")
 
     @model_validator(mode="after")
     def _bounded(self) -> Self:

@@ -15,6 +15,7 @@ from scenarios.edit import written
 from scenarios.expectation import Expectation
 from scenarios.library import get
 from scenarios.measure.stretch import Stretch
+from scenarios.reading import without_address
 from scenarios.run import build, run
 from scenarios.schema import Scenario
 
@@ -54,8 +55,8 @@ LONGEST_TICKS = 5_000_000
 class Span(Table):
     """A stretch of device time."""
 
-    from_ms: float = Field(ge=0, le=LONGEST_MS)
-    until_ms: float = Field(ge=0, le=LONGEST_MS)
+    from_ms: float = Field(ge=0, le=LONGEST_MS, description="where it begins, ms")
+    until_ms: float = Field(ge=0, le=LONGEST_MS, description="where it ends, ms")
 
     @model_validator(mode="after")
     def _forward(self) -> Self:
@@ -67,7 +68,7 @@ class Span(Table):
 class Question(Table):
     """A question to a class before the answer is shown: which lane of a diagnoser rises, or one of some answers."""
 
-    text: Words = Field(min_length=1, max_length=300)
+    text: Words = Field(min_length=1, max_length=300, description="the question")
     answers: list[Words] = Field([], max_length=6, description="the options; none for a question about lanes")
     diagnoser: str = Field("", max_length=64, description="whose lanes are the answers")
     when: Span | None = Field(None, description="device time within which a moment is guessed, too")
@@ -87,27 +88,31 @@ class Question(Table):
 class Cue(Table):
     """A cue: with ``scenario`` it begins an experiment, without it continues the experiment of the cue before."""
 
-    title: Words = Field(min_length=1, max_length=100)
-    minutes: float = Field(gt=0, le=60, description="planned")
-    say: Words = Field(min_length=1, max_length=4000)
+    title: Words = Field(min_length=1, max_length=100, description="title of the cue")
+    minutes: float = Field(gt=0, le=60, description="planned length, minutes")
+    say: Words = Field(min_length=1, max_length=4000, description="notes to speak from")
     ask: Words = Field("", max_length=1000, description="a question to the room")
     see: Words = Field("", max_length=1000, description="what will be seen")
     scenario: str | None = Field(None, max_length=64, description="id of the library; begins an experiment at tick 0")
-    seed: int | None = Field(None, ge=0, le=2**63 - 1)
+    seed: int | None = Field(None, ge=0, le=2**63 - 1, description="seed of all noise; the seed of the scenario")
     set: dict[str, Any] = Field({}, description="dotted paths of the scenario and their values")
     events: list[dict[str, Any]] = Field([], max_length=100, description="its commands, in the notation of a scenario")
-    from_ms: float | None = Field(None, ge=0, le=LONGEST_MS, description="where it begins; where the cue before ends")
-    until_ms: float | None = Field(
-        None, ge=0, le=LONGEST_MS, description="where it ends; without it the bench is paused"
+    from_ms: float | None = Field(
+        None, ge=0, le=LONGEST_MS, description="where it begins, ms; where the cue before ends"
     )
-    pace_ms_per_s: float | None = Field(None, ge=1e-3, le=1000, description="device time for each second of the room")
+    until_ms: float | None = Field(
+        None, ge=0, le=LONGEST_MS, description="where it ends, ms; without it the bench is paused"
+    )
+    pace_ms_per_s: float | None = Field(
+        None, ge=1e-3, le=1000, description="device time for each second of the room, ms/s"
+    )
     layout: Literal["lecture", "lab", "research"] | None = Field(None, description="the layout of the cue before")
     panels: list[Panel] = Field([], max_length=6, description="views of panels brought to the front")
     signals: list[str] = Field([], max_length=6, description="on the first scope")
-    window_ms: float | None = Field(None, gt=0, le=LONGEST_MS, description="of the first scope")
+    window_ms: float | None = Field(None, gt=0, le=LONGEST_MS, description="width of the first scope, ms")
     metrics: Stretch | None = Field(None, description="the part of the run that the expectations speak of")
     expect: list[Expectation] = Field([], max_length=20, description="claims of the notes, at the end of the cue")
-    vote: Question | None = None
+    vote: Question | None = Field(None, description="a question to the class before the answer is shown")
 
     @model_validator(mode="after")
     def _beginning(self) -> Self:
@@ -119,10 +124,10 @@ class Cue(Table):
 class LectureHead(Table):
     """A lecture as it is written."""
 
-    title: Words = Field(min_length=1, max_length=200)
-    chapter: int = Field(ge=1, le=6)
-    summary: Words = Field("", max_length=2000)
-    cues: list[Cue] = Field(alias="cue", min_length=1, max_length=MOST_CUES)
+    title: Words = Field(min_length=1, max_length=200, description="title of the lecture")
+    chapter: int = Field(ge=1, le=6, description="chapter of the text")
+    summary: Words = Field("", max_length=2000, description="what it is about")
+    cues: list[Cue] = Field(alias="cue", min_length=1, max_length=MOST_CUES, description="the cues in their order")
 
 
 class State:
@@ -154,7 +159,7 @@ class Lecture:
     def __init__(self, id: str, document: dict[str, Any]) -> None:
         self.id = id
         try:
-            self.head = LectureHead.model_validate(document)
+            self.head = LectureHead.model_validate(without_address(document))
         except ValidationError as error:
             raise _placed(from_validation(error, {"": ["title", "chapter", "summary", "cue"]})) from None
         if self.head.cues[0].scenario is None:

@@ -22,21 +22,21 @@ class Printed(Table):
     """
 
     figure: str = Field("", max_length=40, description="number of the figure; empty for a sentence without one")
-    section: str = Field(min_length=1, max_length=40)
+    section: str = Field(min_length=1, max_length=40, description="number of the section")
     words: Words = Field(min_length=1, max_length=300, description="as printed")
     number: Words = Field(min_length=1, max_length=40, description="the part of the words that is the number")
-    signal: str = Field(min_length=1, max_length=200)
+    signal: str = Field(min_length=1, max_length=200, description="the signal it is drawn over")
     unit: str = Field(max_length=20, description="of the numbers here, the unit of the signal")
-    low: float | None = None
-    high: float | None = None
-    values: list[float] = Field([], max_length=8)
-    at_sample: int | None = Field(None, ge=0)
-    at_ms: float | None = Field(None, ge=0, le=LONGEST_MS)
+    low: float | None = Field(None, description="lower end of a band, in the unit")
+    high: float | None = Field(None, description="upper end of a band, in the unit")
+    values: list[float] = Field([], max_length=8, description="lines, in the unit")
+    at_sample: int | None = Field(None, ge=0, description="sample of a moment")
+    at_ms: float | None = Field(None, ge=0, le=LONGEST_MS, description="device time of a moment, ms")
     event: int | None = Field(None, ge=0, description="position of the event that times count from")
-    after_ms: float = Field(0.0, ge=0, le=LONGEST_MS, description="where a band or a value begins")
-    until_ms: float | None = Field(None, gt=0, le=LONGEST_MS, description="where it ends; at the end of the run")
+    after_ms: float = Field(0.0, ge=0, le=LONGEST_MS, description="where a band or a value begins, ms")
+    until_ms: float | None = Field(None, gt=0, le=LONGEST_MS, description="where it ends; at the end of the run, ms")
     metric: str = Field("", max_length=200, description="the expectation that judges it")
-    reading: Words = Field("", max_length=500)
+    reading: Words = Field("", max_length=500, description="where a number comes from that is not in the words")
 
     @model_validator(mode="after")
     def _is_one(self) -> Self:

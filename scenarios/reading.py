@@ -1,10 +1,35 @@
-"""Files of people, read as UTF-8 with or without a byte order mark."""
+"""Files of people: read as UTF-8 with or without a byte order mark, and the address of their JSON Schema."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from core.errors import InputError
+
+ADDRESS = "$schema"
+"""The key of JSON in which a document names its JSON Schema, for editors."""
+
+
+def without_address(document: dict[str, Any]) -> dict[str, Any]:
+    """Return a document without the address of its JSON Schema, on which no result depends."""
+    if not isinstance(document.get(ADDRESS), str):
+        return document
+    return {key: value for key, value in document.items() if key != ADDRESS}
+
+
+def schema_line(name: str) -> str:
+    """Return the first line of a document that is written: the file of its JSON Schema, for editors.
+
+    It names a file beside the document, as ``combbench schema NAME --out FOLDER`` writes it. The address of a server
+    would differ from host to host, ask for a token, and end with the server.
+    """
+    return f"#:schema ./{schema_file(name)}\n"
+
+
+def schema_file(name: str) -> str:
+    """Return the name of the file of a JSON Schema."""
+    return f"{name}.schema.json"
 
 
 def read_text(path: Path, field: str) -> str:

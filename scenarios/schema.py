@@ -28,9 +28,11 @@ from scenarios.expectation import Expectation, Verdict, overall
 from scenarios.measure.stretch import Stretch
 from scenarios.own import compile_apart
 from scenarios.printed import Printed
+from scenarios.reading import schema_line, without_address
 from scenarios.studies import parse_study
 
 MAX_SAMPLES = 200_000_000
+MOST_EVENTS = 100_000
 compile_by(compile_apart)
 UNREAD = "verdict is not read: it follows from published_value, published_range and fitted"
 
@@ -38,21 +40,21 @@ UNREAD = "verdict is not read: it follows from published_value, published_range 
 class ScenarioHead(Table):
     """All of a scenario that is not the bench itself; ``verdict`` is not read, earlier files have one."""
 
-    schema_: Literal[1] = Field(1, alias="schema")
-    id: str = Field("unnamed", pattern=r"^[A-Za-z0-9][A-Za-z0-9-]{0,63}$")
-    title: Words = Field("", max_length=200)
-    source: Words = Field("", max_length=500)
-    summary: Words = Field("", max_length=2000)
-    claim: Words = Field("", max_length=2000)
-    verdict: str | None = None
-    samples: int | None = Field(None, ge=1, le=MAX_SAMPLES)
-    duration_ms: float | None = Field(None, gt=0, le=LONGEST_MS)
-    events: list[dict[str, Any]] = Field([], max_length=100_000)
-    expect: list[Expectation] = Field([], max_length=1000)
-    comparator: Comparator | None = None
-    printed: list[Printed] = Field([], max_length=200)
-    metrics: Stretch = Stretch()
-    study: dict[str, Any] | None = None
+    schema_: Literal[1] = Field(1, alias="schema", description="version of the notation")
+    id: str = Field("unnamed", pattern=r"^[A-Za-z0-9][A-Za-z0-9-]{0,63}$", description="short name")
+    title: Words = Field("", max_length=200, description="title for people")
+    source: Words = Field("", max_length=500, description="where it comes from: sections, figures, equations")
+    summary: Words = Field("", max_length=2000, description="what it shows, in a few sentences")
+    claim: Words = Field("", max_length=2000, description="the published claim")
+    verdict: str | None = Field(None, description="not read: it follows from the expectations")
+    samples: int | None = Field(None, ge=1, le=MAX_SAMPLES, description="length of a run, in samples")
+    duration_ms: float | None = Field(None, gt=0, le=LONGEST_MS, description="length of a run in its place, ms")
+    events: list[dict[str, Any]] = Field([], max_length=MOST_EVENTS, description="commands, each at its moment")
+    expect: list[Expectation] = Field([], max_length=1000, description="expected and published figures of a run")
+    comparator: Comparator | None = Field(None, description="the PID that claims for a controller are compared with")
+    printed: list[Printed] = Field([], max_length=200, description="printed numbers, drawn over the signals of a run")
+    metrics: Stretch = Field(Stretch(), description="the part of a run that its figures are computed from")
+    study: dict[str, Any] | None = Field(None, description="a computation in place of a run")
 
     def compared_with(self, entry: Expectation) -> str:
         """Name the PID that an expectation is compared with; nothing where it is compared with none."""
@@ -89,7 +91,7 @@ class Scenario:
         if not isinstance(document, dict):
             raise InputError("a scenario must be a table", "scenario")
         check_admitted(document)
-        self.document = document = carried(_with_open_ends(document))
+        self.document = document = carried(_with_open_ends(without_address(document)))
         head = {key: value for key, value in document.items() if key in HEAD}
         self.bench: Document = {key: value for key, value in document.items() if key not in HEAD}
         self._head, known = head, like._head if like is not None else {}
@@ -188,11 +190,12 @@ class Scenario:
             if entry.promised() is None
         ]
 
-    def toml(self) -> str:
-        """Return the scenario as TOML."""
+    def toml(self, remark: str = "") -> str:
+        """Return the scenario as TOML, with a remark above it."""
         import tomlkit  # it writes TOML; Python itself reads it
 
-        return tomlkit.dumps(self.document)
+        above = f"# {remark}\n" if remark else ""
+        return schema_line("scenario") + above + tomlkit.dumps(self.document)
 
 
 def _with_open_ends(document: Document) -> Document:

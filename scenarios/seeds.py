@@ -12,6 +12,7 @@ from core.errors import InputError, short
 from core.table import Table
 
 MAX_RUNS = 1_000_000
+BOTH_ENDS = r"\s*([0-9]{1,16})\s*:\s*([0-9]{1,16})\s*"
 
 
 def parse_seeds(text: str, field: str = "--seeds") -> range:
@@ -22,7 +23,7 @@ def parse_seeds(text: str, field: str = "--seeds") -> range:
     InputError
         If it is not two whole numbers in order.
     """
-    whole = re.fullmatch(r"\s*([0-9]{1,16})\s*:\s*([0-9]{1,16})\s*", text)
+    whole = re.fullmatch(BOTH_ENDS, text)
     first, last = (int(part) for part in whole.groups()) if whole else (1, 0)
     if not first <= last <= MOST_SEED:
         raise InputError(f"must be A:B with whole numbers A <= B <= {MOST_SEED}, got {short(text)}", field)
@@ -35,8 +36,8 @@ class Seeds(Table):
     A first seed and a count are read as well.
     """
 
-    first: int = Field(1, ge=0, le=MOST_SEED)
-    count: int = Field(1, ge=1, le=MAX_RUNS)
+    first: int = Field(1, ge=0, le=MOST_SEED, description="first seed")
+    count: int = Field(1, ge=1, le=MAX_RUNS, description="number of seeds")
 
     @model_validator(mode="before")
     @classmethod

@@ -26,7 +26,7 @@ class Timed(Table):
 
     at_sample: int | None = Field(None, ge=0, description="the sample at which the command takes effect")
     at_ms: float | None = Field(
-        None, ge=0, le=LONGEST_MS, description="the device time at which the command takes effect"
+        None, ge=0, le=LONGEST_MS, description="the device time at which the command takes effect, ms"
     )
     when: str | None = Field(
         None,
@@ -67,23 +67,23 @@ class ResetTrip(Timed):
     """Leave the tripped state, with all blocks started anew."""
 
     kind = "reset_trip"
-    reset_trip: Literal[True]
+    reset_trip: Literal[True] = Field(description="leave the tripped state")
 
 
 class Heal(Timed):
     """Take faults away."""
 
     kind = "heal"
-    heal: list[str] | Literal["all"]
+    heal: list[str] | Literal["all"] = Field(description="faults to take away, by name, or all of them")
 
 
 class Inject(Timed):
     """Inject a fault, or give a present fault another severity."""
 
     kind = "inject"
-    fault: str
-    severity: float
-    profile: Profile = Profile()
+    fault: str = Field(description="name of the fault")
+    severity: float = Field(description="size of the fault, in its own unit")
+    profile: Profile = Field(Profile(), description="how the severity comes")
     parameters: dict[str, Any] = Field(
         default={}, max_length=20, description="the other parameters of the fault, by name"
     )
@@ -93,15 +93,15 @@ class Set(Timed):
     """Set parameters by their paths, all in one tick."""
 
     kind = "set"
-    set: dict[str, Any] = Field(min_length=1, max_length=100)
+    set: dict[str, Any] = Field(min_length=1, max_length=100, description="values by dotted path")
 
 
 class Switch(Timed):
     """Give the drive to another controller; cold starts it anew, otherwise it takes over as it ran in shadow."""
 
     kind = "switch"
-    switch: str
-    cold: bool = False
+    switch: str = Field(description="name of the controller that drives from then on")
+    cold: bool = Field(False, description="start it anew, not as it ran in shadow")
 
 
 class MakeSafe(Timed):

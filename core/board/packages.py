@@ -31,7 +31,7 @@ SILENT = ("id", "title", "summary", "claim", "source", "verdict", "expect", "pri
 class PackageEntry(Table):
     """The entry of a package in a scenario."""
 
-    version: str = Field(pattern=r"^[0-9A-Za-z.!+_-]{1,64}$")
+    version: str = Field(pattern=r"^[0-9A-Za-z.!+_-]{1,64}$", description="its version")
     source: str = Field(pattern=r"^[0-9a-f]{64}$", description="SHA-256 over its Python files")
 
 

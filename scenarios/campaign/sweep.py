@@ -17,6 +17,7 @@ from scenarios.campaign.points import Contents, Point, Points, RowsAxis, Step, S
 from scenarios.edit import with_values
 from scenarios.key import run_key
 from scenarios.library import get
+from scenarios.reading import without_address
 from scenarios.schema import Scenario
 from scenarios.seeds import MAX_RUNS, Seeds
 
@@ -28,9 +29,9 @@ MAX_RANGES = 50
 class Range(Table):
     """Range of a value."""
 
-    min: float
-    max: float
-    scale: Literal["linear", "log"] = "linear"
+    min: float = Field(description="smallest value")
+    max: float = Field(description="largest value")
+    scale: Literal["linear", "log"] = Field("linear", description="how the points are spread between them")
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -50,9 +51,11 @@ class Range(Table):
 class LatinHypercube(Table):
     """Points spread evenly in every value at once (McKay, Beckman, Conover 1979)."""
 
-    points: int = Field(ge=1, le=MAX_POINTS)
-    seed: int = Field(1, ge=0)
-    ranges: dict[str, Range] = Field(min_length=1, max_length=MAX_RANGES)
+    points: int = Field(ge=1, le=MAX_POINTS, description="number of points")
+    seed: int = Field(1, ge=0, description="seed of the points")
+    ranges: dict[str, Range] = Field(
+        min_length=1, max_length=MAX_RANGES, description="ranges of values, by dotted paths of the scenario"
+    )
 
     def values(self) -> FloatArray:
         """Return a row for each point: each value has one point in every stratum, in an order of its own."""
@@ -67,13 +70,13 @@ class LatinHypercube(Table):
 class ProcessDeviations(Table):
     """Standard deviations of a process that makes devices of the scenario's drawing."""
 
-    devices: int = Field(ge=1, le=MAX_POINTS)
-    seed: int = Field(1, ge=0)
-    beam_bias_um: float = Field(Tolerances.beam_bias_um, ge=0)
-    comb_bias_um: float = Field(Tolerances.comb_bias_um, ge=0)
-    thickness_um: float = Field(Tolerances.thickness_um, ge=0)
-    film_gap_um: float = Field(Tolerances.film_gap_um, ge=0)
-    youngs_modulus_gpa: float = Field(Tolerances.youngs_modulus_gpa, ge=0)
+    devices: int = Field(ge=1, le=MAX_POINTS, description="number of devices")
+    seed: int = Field(1, ge=0, description="seed of the devices")
+    beam_bias_um: float = Field(Tolerances.beam_bias_um, ge=0, description="of the etch bias of beams, µm")
+    comb_bias_um: float = Field(Tolerances.comb_bias_um, ge=0, description="of the etch bias of fingers, µm")
+    thickness_um: float = Field(Tolerances.thickness_um, ge=0, description="of the structural thickness, µm")
+    film_gap_um: float = Field(Tolerances.film_gap_um, ge=0, description="of the gas film under the plate, µm")
+    youngs_modulus_gpa: float = Field(Tolerances.youngs_modulus_gpa, ge=0, description="of Young's modulus, GPa")
 
     def steps(self, base: Scenario) -> RowsAxis:
         """Return the numbers of each drawn device."""
@@ -89,23 +92,23 @@ class ProcessDeviations(Table):
 class SweepVariant(Table):
     """One of several alternatives, such as a controller or a set of diagnosers."""
 
-    name: str = Field(min_length=1, max_length=100)
-    set: Values
+    name: str = Field(min_length=1, max_length=100, description="name in tables")
+    set: Values = Field(description="values of the scenario, by dotted path")
 
 
 class CampaignHead(Table):
     """The file of a campaign."""
 
-    schema_: Literal[1] = Field(1, alias="schema")
-    id: str = Field("sweep", pattern=r"^[a-z0-9][a-z0-9-]{0,63}$")
-    title: Words = Field("", max_length=200)
-    scenario: str | dict[str, Any]
-    set: Values = Field({})
-    seeds: Seeds = Seeds()
-    variants: list[SweepVariant] = Field([], max_length=1000)
-    grid: dict[str, list[Any]] = Field({})
-    latin_hypercube: LatinHypercube | None = None
-    process_spread: ProcessDeviations | None = None
+    schema_: Literal[1] = Field(1, alias="schema", description="version of the notation")
+    id: str = Field("sweep", pattern=r"^[a-z0-9][a-z0-9-]{0,63}$", description="short name")
+    title: Words = Field("", max_length=200, description="title for people")
+    scenario: str | dict[str, Any] = Field(description="id of the library, or a scenario")
+    set: Values = Field({}, description="values of the scenario at all points, by dotted path")
+    seeds: Seeds = Field(Seeds(), description='noise seeds of each point, "A:B" with both ends')
+    variants: list[SweepVariant] = Field([], max_length=1000, description="alternatives, such as controllers")
+    grid: dict[str, list[Any]] = Field({}, description="lists of values, by dotted paths of the scenario")
+    latin_hypercube: LatinHypercube | None = Field(None, description="points spread evenly over ranges of values")
+    process_spread: ProcessDeviations | None = Field(None, description="devices that a process draws")
 
 
 class Sweep:
@@ -124,7 +127,7 @@ class Sweep:
     """
 
     def __init__(self, document: dict[str, Any]) -> None:
-        self.document = document
+        self.document = document = without_address(document)
         try:
             self.head = CampaignHead.model_validate(document)
         except ValidationError as error:

@@ -14,7 +14,7 @@ TAIL = 0.25
 class Stretch(Table):
     """The options ``[metrics]`` of a scenario."""
 
-    since_ms: float = Field(0.0, ge=0, le=LONGEST_MS, description="moment that errors and settling count from")
+    since_ms: float = Field(0.0, ge=0, le=LONGEST_MS, description="moment that errors and settling count from, ms")
     tail_share: float = Field(TAIL, gt=0, le=1, description="share of the run that counts as its tail")
     beside: str = Field("", max_length=200, description="diagnoser over whose delays the delays of others are taken")
 

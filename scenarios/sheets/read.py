@@ -10,6 +10,7 @@ from pydantic import TypeAdapter, ValidationError
 from core.errors import InputError, from_validation
 from core.nesting import read_toml
 from core.text import without_mark
+from scenarios.reading import without_address
 from scenarios.sheets.sheet import AnyStep, BlindStep, Hold, Prediction, Sheet, SheetHead, SheetQuestion, SheetSection
 
 FENCE, MARK, END = "+++", "```step", "```"
@@ -83,7 +84,7 @@ def _table(name: str, step: str, lines: list[str], start: int, stop: int, valida
         line = start + (int(found[1]) if found else 1)
         raise at(name, line, step, InputError(_AT_LINE.sub("", error.message).strip())) from None
     try:
-        return validate(document)
+        return validate(without_address(document))
     except ValidationError as error:
         refused = from_validation(error)
         path = ".".join(part for part in refused.field.split(".") if part not in ("hold", "question", "prediction"))

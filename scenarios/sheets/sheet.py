@@ -26,9 +26,9 @@ class SheetPart(BaseModel):
 class Drawn(SheetPart):
     """A number that varies with the student: low, low + step, and so on up to high."""
 
-    low: float
-    high: float
-    step: float = Field(gt=0)
+    low: float = Field(description="Smallest number")
+    high: float = Field(description="Largest number")
+    step: float = Field(gt=0, description="Distance between two numbers")
 
     @model_validator(mode="after")
     def _has_some(self) -> Self:
@@ -60,44 +60,46 @@ class SheetBench(SheetPart):
 class SheetHead(SheetPart):
     """The front matter."""
 
-    schema_: Literal[1] = Field(alias="schema")
-    title: Words
-    summary: Words
-    minutes: int = Field(ge=5, le=90)
-    bench: SheetBench
-    draws: dict[Name, Drawn] = {}
+    schema_: Literal[1] = Field(alias="schema", description="Version of the notation")
+    title: Words = Field(description="Title of the sheet")
+    summary: Words = Field(description="Summary for the list of sheets")
+    minutes: int = Field(ge=5, le=90, description="Planned length, minutes")
+    bench: SheetBench = Field(description="The bench that the sheet begins with")
+    draws: dict[Name, Drawn] = Field({}, description="Numbers that vary with the student, by name")
     numbers: dict[Name, Formula] = Field({}, description="Named formulas, each over the facts and the ones before")
 
 
 class Hint(SheetPart):
     """Help, and its cost; the price is shown before."""
 
-    text: Words
+    text: Words = Field(description="The help")
     costs: float = Field(ge=0, description="Points")
 
 
 class SheetStep(SheetPart):
     """Fields of all steps."""
 
-    id: Name
-    points: float = Field(gt=0, le=20)
-    hints: list[Hint] = []
+    id: Name = Field(description="Short name, unique in the sheet")
+    points: float = Field(gt=0, le=20, description="Points that the step earns at most")
+    hints: list[Hint] = Field([], description="Hints, each for points")
 
 
 class Limits(SheetPart):
     """A quantity of the bench, and the value that the step requires."""
 
-    label: Words
+    label: Words = Field(description="The quantity in words")
     name: Name | None = Field(None, description="Its value when the step is done is the fact <step>_<name>")
-    signal: str | None = None
-    measure: Literal["value", "mean", "rms", "peak", "swing", "amplitude", "phase", "share"] = "value"
+    signal: str | None = Field(None, description="Name of a signal")
+    measure: Literal["value", "mean", "rms", "peak", "swing", "amplitude", "phase", "share"] = Field(
+        "value", description="The figure of the signal"
+    )
     over: str | None = Field(None, description="A signal whose rms, swing or amplitude it is divided by")
     setting: str | None = Field(None, description="Dotted path of the bench as it is now")
     verdict: str | None = Field(None, description="Id of a diagnoser: the name of the hypothesis it believes")
     fault: str | None = Field(None, description="The severity of this fault, 0 while it is not there")
-    between: tuple[Formula, Formula] | None = None
-    equals: str | None = None
-    unit: str = ""
+    between: tuple[Formula, Formula] | None = Field(None, description="Smallest and largest value, in the unit")
+    equals: str | None = Field(None, description="The value of a setting, or the name that a verdict has")
+    unit: str = Field("", description="Unit of the values")
     told: bool = Field(True, description="Whether the page shows the limits")
 
     @model_validator(mode="before")
@@ -124,26 +126,26 @@ class Limits(SheetPart):
 class Hold(SheetStep):
     """Conditions that hold together for a time of the device."""
 
-    kind: Literal["hold"]
-    for_ms: float = Field(gt=0, le=10_000)
-    window_ms: float = Field(1.0, gt=0, le=1000, description="Looked at at the end of every so much device time")
-    conditions: list[Limits] = Field(min_length=1, max_length=8)
+    kind: Literal["hold"] = Field(description="Conditions to hold")
+    for_ms: float = Field(gt=0, le=10_000, description="Device time that they hold for, ms")
+    window_ms: float = Field(1.0, gt=0, le=1000, description="Looked at at the end of every so much device time, ms")
+    conditions: list[Limits] = Field(min_length=1, max_length=8, description="The conditions")
     trace: list[str] = Field([], max_length=3, description="Signals with a small stored trace")
 
 
 class Option(SheetPart):
     """One of the answers to choose from."""
 
-    id: Name
-    text: Words
-    share: Share = 0.0
-    because: str = Field("", max_length=400)
+    id: Name = Field(description="Short name of the option")
+    text: Words = Field(description="The option in words")
+    share: Share = Field(0.0, description="Share of the points that it earns")
+    because: str = Field("", max_length=400, description="The reason, shown with the answer")
 
 
 class Choice(SheetPart):
     """A question with answers to choose from."""
 
-    options: list[Option] = Field(min_length=2, max_length=8)
+    options: list[Option] = Field(min_length=2, max_length=8, description="The options")
 
     @model_validator(mode="after")
     def _has_right_one(self) -> Self:
@@ -157,39 +159,39 @@ class Choice(SheetPart):
 class Partly(SheetPart):
     """A wider tolerance, and the share it earns."""
 
-    within: float = Field(gt=0, lt=1)
-    share: Share
+    within: float = Field(gt=0, lt=1, description="Relative")
+    share: Share = Field(description="Share of the points that it earns")
 
 
 class Mistake(SheetPart):
     """A number that a known mistake leads to, the share it earns, and the name of the mistake."""
 
-    value: Formula
-    share: Share = 0.0
-    because: Words
+    value: Formula = Field(description="The number, in the unit of the question")
+    share: Share = Field(0.0, description="Share of the points that it earns")
+    because: Words = Field(description="Name of the mistake")
 
 
 class NumberQuestion(SheetPart):
     """A question for a number."""
 
-    value: Formula
-    unit: str = Field("", max_length=20)
+    value: Formula = Field(description="The right number, in the unit")
+    unit: str = Field("", max_length=20, description="Unit of the answer")
     within: float = Field(0.02, ge=0, lt=1, description="Relative")
     within_absolute: float = Field(0.0, ge=0, description="In the unit")
-    partly: Partly | None = None
-    wrong_unit: Share = 0.5
-    wrong_sign: Share = 0.0
-    right_sign: Share = 0.0
-    mistakes: list[Mistake] = []
+    partly: Partly | None = Field(None, description="A wider tolerance")
+    wrong_unit: Share = Field(0.5, description="Share of the points for the right number in a wrong unit")
+    wrong_sign: Share = Field(0.0, description="Share of the points for the right number with the wrong sign")
+    right_sign: Share = Field(0.0, description="Share of the points for a wrong number with the right sign")
+    mistakes: list[Mistake] = Field([], description="Numbers that known mistakes lead to")
 
 
 class Answered(SheetStep):
     """A step that is answered in words: a question, or a prediction."""
 
-    question: Words
-    choice: Choice | None = None
-    number: NumberQuestion | None = None
-    tries: int = Field(3, ge=1, le=10)
+    question: Words = Field(description="The question")
+    choice: Choice | None = Field(None, description="Options to choose from")
+    number: NumberQuestion | None = Field(None, description="The number to answer with")
+    tries: int = Field(3, ge=1, le=10, description="Number of answers that may be given")
     wrong_costs: float | None = Field(None, ge=0, description="Points that a wrong answer loses")
 
     @model_validator(mode="after")
@@ -218,22 +220,22 @@ class Answered(SheetStep):
 class SheetQuestion(Answered):
     """Answered after a run."""
 
-    kind: Literal["question"]
+    kind: Literal["question"] = Field(description="A question after a run")
 
 
 class Prediction(Answered):
     """Answered once, before a run; its points are shown when a later step is done."""
 
-    kind: Literal["prediction"]
+    kind: Literal["prediction"] = Field(description="A question before a run")
     until: Name = Field(description="The step behind which it is judged")
-    tries: Literal[1] = 1
-    wrong_costs: float | None = 0.0
+    tries: Literal[1] = Field(1, description="A prediction is answered once")
+    wrong_costs: float | None = Field(0.0, description="Points that a wrong answer loses")
 
 
 class BlindStep(SheetStep):
     """A blind diagnosis: done with the first answer committed behind the opening of this step."""
 
-    kind: Literal["blind"]
+    kind: Literal["blind"] = Field(description="A hidden fault to find")
 
 
 AnyStep = Annotated[Hold | SheetQuestion | Prediction | BlindStep, Field(discriminator="kind")]

@@ -216,14 +216,14 @@ async def list_events(
 async def save_scenario(session: SessionDep, service: ServiceDep) -> Response:
     """Return the history of a bench as a scenario in TOML.
 
-    It begins with the digest. Run headless, it gives the same bits.
+    Its second line has the digest. Run headless, it gives the same bits.
     """
     document, tick, digest = await service.engine.call(
         lambda: (document_of(session), session.board.tick, session.board.digest())
     )
     name = f'attachment; filename="{document["id"]}.toml"'
     with kept():
-        text = f"# {tick} ticks, digest {digest}\n{Scenario.load(document).toml()}"
+        text = Scenario.load(document).toml(f"{tick} ticks, digest {digest}")
     return Response(text, media_type="text/plain", headers={"Content-Disposition": name})
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
 
 from pydantic import BaseModel, Field
 
@@ -15,7 +14,7 @@ from core.device.geometry import Geometry
 from core.table import Words
 from scenarios import designer
 from scenarios.designer import Bode, Evaluation, ProcessSpread
-from server.api.bodies import AnswerBody, Body
+from server.api.bodies import AnswerBody, Body, DeviceDocument, EnvironmentDocument
 from server.api.deps import ServiceDep
 from server.api.router import Router
 
@@ -29,7 +28,7 @@ class DeviceCard(AnswerBody):
     title: Words
     source: Words
     metrics: dict[str, float]
-    parameters: dict[str, Any]
+    parameters: DeviceDocument
     plants: list[str] = Field(description="Plants that can be used with this device")
 
 
@@ -43,8 +42,10 @@ class DeviceList(BaseModel):
 class Design(Body):
     """A device and the air around it, as in a scenario."""
 
-    device: dict[str, Any] = Field({}, description="Id of the catalogue, and values that replace its values")
-    environment: dict[str, Any] = Field({}, description="Temperature, pressure, humidity; left out: the usual values")
+    device: DeviceDocument = Field({}, description="Id of the catalogue, and values that replace its values")
+    environment: EnvironmentDocument = Field(
+        {}, description="Temperature, pressure, humidity; left out: the usual values"
+    )
 
 
 class BodeOf(Design):

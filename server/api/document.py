@@ -8,6 +8,9 @@ from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from pydantic import TypeAdapter
 
+from scenarios.json_schema.components import components as documents
+from scenarios.json_schema.definitions import walked
+from server.api.bodies import DOCUMENT
 from server.api.examples import EXAMPLES
 from server.api.tags import TAGS
 from server.classroom.access import Need, need_of
@@ -98,6 +101,7 @@ def build(app: FastAPI) -> dict[str, Any]:
         for inner, definition in described.pop("$defs", {}).items():
             components.setdefault(inner, definition)
         components[name] = {"title": name, **described}
+    components |= documents()
     shape = {"application/json": {"schema": {"$ref": REF.format(model="ErrorReply")}}}
     schema["components"]["responses"] = {
         name: {"description": meaning, "content": shape} for name, meaning in REFUSALS.values()
@@ -109,7 +113,14 @@ def build(app: FastAPI) -> dict[str, Any]:
     components.pop("HTTPValidationError", None)
     components.pop("ValidationError", None)
     schema["components"]["schemas"] = {name: _standard(one) for name, one in components.items()}
-    return schema
+    whole: dict[str, Any] = walked(schema, _described)
+    return whole
+
+
+def _described(table: dict[str, Any]) -> dict[str, Any]:
+    """Refer to the component that describes a document, in the place of its name."""
+    component = table.pop(DOCUMENT, None)
+    return table if component is None else {"$ref": REF.format(model=component), **table}
 
 
 def _complete(operation: dict[str, Any], is_open: bool) -> None:

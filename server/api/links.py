@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Any, Literal
+from typing import Literal
 
 from fastapi import Response
 from pydantic import BaseModel, Field
 
-from server.api.bodies import Body
+from server.api.bodies import Body, ScenarioDocument
 from server.api.deps import IdentityDep, PersonDep, RateLimited, ServiceDep
 from server.api.router import Router
 from server.bench.build import prepare
@@ -28,7 +28,7 @@ class NewLink(Body):
     """The target of a link: a bench as it is now, a scenario, or a layout of the page alone."""
 
     bench: str | None = Field(None, description="Id of a live bench, whose commands are kept")
-    scenario: str | dict[str, Any] | None = Field(None, description="Library id, TOML text, or document")
+    scenario: str | ScenarioDocument | None = Field(None, description="Library id, TOML text, or document")
     layout: Layout = Field(None, description="Layout of the page, with its cursors")
     title: str = Field("", max_length=LONGEST_TITLE, description="Title of the link; empty: the title of the scenario")
     note: str = Field("", max_length=LONGEST_NOTE, description="Note for readers")

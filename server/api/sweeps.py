@@ -15,7 +15,7 @@ from scenarios.campaign.tally import PointTally
 from scenarios.narrator.words import diagnosis_words
 from scenarios.report.campaign_picture import CampaignPicture, surveyed_picture
 from scenarios.report.script import campaign_script
-from server.api.bodies import Body
+from server.api.bodies import Body, CampaignDocument
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import HTML, PYTHON, file_name, report_response, written_response
 from server.api.router import Router
@@ -43,7 +43,7 @@ router = Router(prefix="/sweeps", tags=["sweeps"])
 class NewSweep(Body):
     """A campaign to run."""
 
-    sweep: str | dict[str, Any] = Field(description="Campaign as TOML text or as a document")
+    sweep: str | CampaignDocument = Field(description="Campaign as TOML text or as a document")
     label: str = Field("", max_length=1000, description="Name for the campaign, at most 120 characters")
 
 

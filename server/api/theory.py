@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import fields
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import BaseModel, Field
@@ -17,7 +17,7 @@ from core.theory.gain_adaptation import RULES, GainLoop, critical_gain, instabil
 from core.theory.nyquist import PositiveRealReport, positive_real_report
 from core.theory.persistency import excitation, gram_of_tones
 from scenarios.design import designed
-from server.api.bodies import AnswerBody, Body
+from server.api.bodies import AnswerBody, Body, DeviceDocument
 from server.api.deps import ServiceDep
 from server.api.router import Router
 
@@ -97,7 +97,7 @@ class InstabilityMap(BaseModel):
 class HypothesesSource(Body):
     """A device, its possible faults, and the tones that drive it."""
 
-    device: dict[str, Any] = Field({}, description="Id of the catalogue, and values that replace its values")
+    device: DeviceDocument = Field({}, description="Id of the catalogue, and values that replace its values")
     hypotheses: list[Hypothesis] = Field(min_length=2, max_length=16, description="Factors on the device")
     tones: list[Line] = Field(min_length=1, max_length=100, description="Amplitudes in V, frequencies in Hz")
     noise_um: float = Field(0.0, ge=0, le=100, description="Noise that can hide a difference")

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Any, Self
+from typing import Self
 
 from fastapi import Response
 from pydantic import Field, model_validator
 
 from scenarios.campaign.halving import ThresholdGoal
-from server.api.bodies import Body
+from server.api.bodies import Body, ScenarioDocument
 from server.api.deps import PersonDep, RateLimited, ServiceDep
 from server.api.router import Router
 from server.bench.build import prepare
@@ -21,7 +21,7 @@ router = Router(prefix="/thresholds", tags=["thresholds"])
 class NewThreshold(Body, ThresholdGoal):
     """A scenario, a claim, and the number whose threshold is searched."""
 
-    scenario: str | dict[str, Any] | None = Field(None, description="Library id, TOML text, or document")
+    scenario: str | ScenarioDocument | None = Field(None, description="Library id, TOML text, or document")
     bench: str = Field("", max_length=100, description="Id of a live bench with the scenario, in place of it")
 
     @model_validator(mode="after")

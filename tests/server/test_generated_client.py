@@ -63,7 +63,13 @@ def test_a_generated_client_does_the_work_of_a_script(live: Any, generated: Any)
         gone = ask("benches", "get_bench", bench.id)
         assert isinstance(gone, models.ErrorReply) and gone.error.code == "not_found"
 
-        document = models.NewSweepSweepType1.from_dict(CAMPAIGN)
+        sensor = models.IdealSensor(kind="ideal", noise_um=0.05)
+        fault = models.ScenarioEvent(at_ms=1.0, fault="added_mass", severity=0.05)
+        scenario = models.Scenario(id="typed", samples=200, sensor=sensor, events=[fault])
+        bench = ask("benches", "create_bench", body=models.NewBench(scenario, paused=True))
+        assert (bench.scenario_id, bench.pending[0].tick) == ("typed", 100)
+
+        document = models.Campaign.from_dict(CAMPAIGN)
         sweep = ask("sweeps", "start_sweep", body=models.NewSweep(sweep=document))
         live.ended(sweep.id)
         page = ask("sweeps", "get_sweep_points", sweep.id, limit=1, sort="sensor.noise_um", descending=True)
