@@ -11,10 +11,14 @@ MOMENTS = ("at_sample", "at_ms", "when")
 
 
 def event(definitions: Definitions) -> Schema:
-    """Add an event as any bench takes it; return the reference."""
+    """Add an event as any bench takes it; return the reference.
+
+    Its fields have no defaults: a field of a command that the event does not give is refused.
+    """
     fields: dict[str, Schema] = {}
     for model in COMMANDS.values():
-        fields |= definitions.model(model)["properties"]
+        for name, field in definitions.model(model)["properties"].items():
+            fields[name] = {key: value for key, value in field.items() if key != "default"}
     table = {
         "type": "object",
         "description": "Commands to the bench at one moment.",

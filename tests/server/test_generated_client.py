@@ -67,6 +67,7 @@ def test_a_generated_client_does_the_work_of_a_script(live: Any, generated: Any)
         fault = models.ScenarioEvent(at_ms=1.0, fault="added_mass", severity=0.05)
         scenario = models.Scenario(id="typed", samples=200, sensor=sensor, events=[fault])
         bench = ask("benches", "create_bench", body=models.NewBench(scenario, paused=True))
+        assert isinstance(bench, models.Bench), bench
         assert (bench.scenario_id, bench.pending[0].tick) == ("typed", 100)
 
         document = models.Campaign.from_dict(CAMPAIGN)

@@ -9887,7 +9887,7 @@ export interface components {
             /**
              * @description version of the notation
              * @default 1
-             * @constant
+             * @enum {integer}
              */
             schema?: 1;
             /**
@@ -13421,7 +13421,7 @@ export interface components {
             /**
              * @description version of the notation
              * @default 1
-             * @constant
+             * @enum {integer}
              */
             schema?: 1;
             /**
@@ -13572,7 +13572,7 @@ export interface components {
             when?: string | null;
             /**
              * @description leave the tripped state
-             * @constant
+             * @enum {boolean}
              */
             reset_trip?: true;
             /** @description faults to take away, by name, or all of them */
@@ -13581,20 +13581,9 @@ export interface components {
             fault?: string;
             /** @description size of the fault, in its own unit */
             severity?: number;
-            /**
-             * @description how the severity comes
-             * @default {
-             *       "kind": "step",
-             *       "duration_ms": 5,
-             *       "period_ms": 2,
-             *       "duty": 0.5
-             *     }
-             */
+            /** @description how the severity comes */
             profile?: components["schemas"]["Profile"];
-            /**
-             * @description the other parameters of the fault, by name
-             * @default {}
-             */
+            /** @description the other parameters of the fault, by name */
             parameters?: {
                 [key: string]: unknown;
             };
@@ -13604,10 +13593,7 @@ export interface components {
             };
             /** @description name of the controller that drives from then on */
             switch?: string;
-            /**
-             * @description start it anew, not as it ran in shadow
-             * @default false
-             */
+            /** @description start it anew, not as it ran in shadow */
             cold?: boolean;
             /** @description the reason, in words */
             make_safe?: string;
