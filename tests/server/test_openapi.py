@@ -168,7 +168,7 @@ def test_the_messages_of_the_stream_are_described(document: dict[str, Any]) -> N
     server = {ref.rsplit("/", 1)[1] for ref in references(schemas["ServerMessage"])}
     assert {"Subscribe", "Rearm", "Unsubscribe", "Ack", "Resume", "CommandMessage"} <= client
     assert {"Hello", "Status", "EventsMessage", "Reply", "ErrorMessage", "Notice"} <= server
-    assert {"Inject", "Heal", "Set", "Switch", "TimeScale", "Step"} <= set(schemas)
+    assert {"Inject", "HealFaults", "SetValues", "Switch", "TimeScale", "Step"} <= set(schemas)
     assert schemas["ErrorBody"]["required"] == ["code", "message"]
     assert TypeAdapter(ServerMessage) and CLIENT_MESSAGE
 
