@@ -91,6 +91,7 @@ def checks() -> list[Step]:
         Step("prose", [f"{BIN}python", "scripts/prose.py"]),
         Step("types", [f"{BIN}mypy"], aside=True),
         Step("page-check", [*NPM, "run", "check"], aside=True),
+        Step("document", [*NPM, "run", "check-api"], aside=True),
     ]
 
 

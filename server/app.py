@@ -140,6 +140,7 @@ def create_app(settings: Settings) -> FastAPI:
         title="CombBench",
         version=VERSION,
         description="A live bench for MEMS lateral comb resonators.",
+        license_info={"name": "MIT", "identifier": "MIT"},
         lifespan=lifespan,
         openapi_url=f"{API}/openapi.json",
         docs_url=None,

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from core.block import BlockParams
-from core.board.commands import Command, Heal, Inject, MakeSafe, ResetTrip, Set, Switch, Trip
+from core.board.commands import Command, HealFaults, Inject, MakeSafe, ResetTrip, SetValues, Switch, Trip
 from core.board.difference import change
 from core.board.fitting import misfit
 from core.board.live import live_change, value_at
@@ -49,9 +49,9 @@ def check(spec: Spec, command: Command) -> None:
     """Refuse a command for later that could never be carried out on a bench."""
     if isinstance(command, Inject):
         _fault_params(spec, command, 0)
-    elif isinstance(command, Heal):
+    elif isinstance(command, HealFaults):
         _names(spec, command)
-    elif isinstance(command, Set):
+    elif isinstance(command, SetValues):
         live_change(spec, command.set)
     elif isinstance(command, Switch):
         live_change(spec, switched(spec, command))
@@ -61,9 +61,9 @@ def carry_out(board: ChangeableBoard, command: Command) -> tuple[Any, Any]:
     """Carry out a command at this tick; return the values before it and after it."""
     if isinstance(command, Inject):
         return inject(board, command)
-    if isinstance(command, Heal):
+    if isinstance(command, HealFaults):
         return heal(board, command)
-    if isinstance(command, Set):
+    if isinstance(command, SetValues):
         return set_values(board, command.set)
     if isinstance(command, Switch):
         return switch(board, command)
@@ -89,7 +89,7 @@ def inject(board: ChangeableBoard, command: Inject) -> tuple[Any, Any]:
     return old, new
 
 
-def heal(board: ChangeableBoard, command: Heal) -> tuple[Any, Any]:
+def heal(board: ChangeableBoard, command: HealFaults) -> tuple[Any, Any]:
     """Take faults away at this tick."""
     names = _names(board.spec, command)
     if command.heal == "all":
@@ -190,7 +190,7 @@ def reset_trip(board: ChangeableBoard) -> tuple[Any, Any]:
     return old, None
 
 
-def _names(spec: Spec, command: Heal) -> list[str]:
+def _names(spec: Spec, command: HealFaults) -> list[str]:
     known = list(spec.library.blocks("faults"))
     if command.heal == "all":
         return known

@@ -70,7 +70,7 @@ class ResetTrip(Timed):
     reset_trip: Literal[True] = Field(description="leave the tripped state")
 
 
-class Heal(Timed):
+class HealFaults(Timed):
     """Take faults away."""
 
     kind = "heal"
@@ -89,7 +89,7 @@ class Inject(Timed):
     )
 
 
-class Set(Timed):
+class SetValues(Timed):
     """Set parameters by their paths, all in one tick."""
 
     kind = "set"
@@ -111,12 +111,12 @@ class MakeSafe(Timed):
     make_safe: str = Field(min_length=1, max_length=200, description="the reason, in words")
 
 
-Command = ResetTrip | Heal | Inject | Set | Switch | MakeSafe
+Command = ResetTrip | HealFaults | Inject | SetValues | Switch | MakeSafe
 COMMANDS: dict[str, type[Command]] = {
     "reset_trip": ResetTrip,
-    "heal": Heal,
+    "heal": HealFaults,
     "fault": Inject,
-    "set": Set,
+    "set": SetValues,
     "switch": Switch,
     "make_safe": MakeSafe,
 }

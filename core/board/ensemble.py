@@ -15,7 +15,7 @@ import numpy as np
 from core.block import FloatArray
 from core.board.board import Board, Checkpoint
 from core.board.changes import switched
-from core.board.commands import Command, ResetTrip, Set, Switch
+from core.board.commands import Command, ResetTrip, SetValues, Switch
 from core.board.document import Document, with_values
 from core.board.library import IDENTIFIER
 from core.board.log import LogEntry
@@ -200,7 +200,7 @@ class Ensemble(Board):
         own = self._own[name]
         if isinstance(command, Switch) and any(path in own for path in switched(twin.spec, command)):
             return
-        if isinstance(command, Set):
+        if isinstance(command, SetValues):
             shared = {path: value for path, value in command.set.items() if not _is_own(path, own)}
             if not shared:
                 return

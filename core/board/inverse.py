@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from core.board.commands import Command, Heal, Inject, MakeSafe, Set, Switch
+from core.board.commands import Command, HealFaults, Inject, MakeSafe, SetValues, Switch
 from core.board.document import Document
 from core.board.log import LogEntry
 from core.faults.fault import FaultParams, Profile
@@ -31,15 +31,15 @@ def inverse(command: Command, entry: LogEntry, before: Document) -> list[Command
         The document of the bench before it.
     """
     if isinstance(command, Inject):
-        return [Heal(heal=[command.fault]) if entry.old is None else _inject(command.fault, entry.old)]
-    if isinstance(command, Heal):
+        return [HealFaults(heal=[command.fault]) if entry.old is None else _inject(command.fault, entry.old)]
+    if isinstance(command, HealFaults):
         return [_inject(name, params) for name, params in entry.old.items()]
     if isinstance(command, MakeSafe):
         return []  # a trip is left by its reset alone
     if isinstance(command, Switch):
         return [Switch(switch=entry.old)] if entry.old != entry.new else []
-    assert isinstance(command, Set)
-    return [Set(set=_values(command.set, entry.old, before))]
+    assert isinstance(command, SetValues)
+    return [SetValues(set=_values(command.set, entry.old, before))]
 
 
 def _inject(fault: str, params: Mapping[str, Any]) -> Inject:

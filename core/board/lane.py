@@ -6,7 +6,7 @@ from itertools import zip_longest
 
 from core.board import changes
 from core.board.board import Board
-from core.board.commands import Command, Heal, Inject
+from core.board.commands import Command, HealFaults, Inject
 from core.board.fold import Words
 from core.board.instances import Instance
 from core.board.log import Log, LogEntry
@@ -65,7 +65,7 @@ class Lane(Board):
             one is not None
             and other is not None
             and (one is other or (one.tick, one.command) == (other.tick, other.command))
-            and isinstance(one.command, Inject | Heal)
+            and isinstance(one.command, Inject | HealFaults)
             for one, other in zip_longest(self.pending, pending)
         )
 
@@ -76,7 +76,7 @@ class Lane(Board):
         """Carry out the commands due at this tick, here and in the lanes that follow."""
         before, done = self.wiring.instances, len(self.done)
         self.apply_due()
-        if not all(isinstance(command, Inject | Heal) for _, command in self.done[done:]):
+        if not all(isinstance(command, Inject | HealFaults) for _, command in self.done[done:]):
             if self.specs[-1][0] == self.tick:
                 self.specs.pop()
             self.specs.append((self.tick, self.spec))

@@ -10,7 +10,7 @@ import numpy as np
 
 from core.block import BlockParams, Context, FloatArray, IntArray
 from core.board.board import Board
-from core.board.commands import Set
+from core.board.commands import SetValues
 from core.board.idle import leave_out_idle
 from core.board.instances import Instance
 from core.board.program import P_OFFSET
@@ -46,7 +46,7 @@ class Pattern:
         leave_out_idle(board)
         self.board = board
         wiring = board.wiring
-        may_set = any(isinstance(entry.command, Set) for entry in board.pending)
+        may_set = any(isinstance(entry.command, SetValues) for entry in board.pending)
         self.used = [
             row
             for row in range(len(wiring.instances))

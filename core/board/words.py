@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.board.commands import Command, Heal, Inject, MakeSafe, ResetTrip, Set, Switch
+from core.board.commands import Command, HealFaults, Inject, MakeSafe, ResetTrip, SetValues, Switch
 from core.board.library import Library
 from core.errors import short
 from core.format import format_short
@@ -14,9 +14,9 @@ def describe(command: Command, library: Library) -> str:
         shape = "" if command.profile.kind == "step" else f", {command.profile.kind}"
         chosen = "".join(f", {name} {short(value)}" for name, value in command.parameters.items())
         return f"inject {command.fault} {_severity(command, library)}{shape}{chosen}"
-    if isinstance(command, Heal):
+    if isinstance(command, HealFaults):
         return "heal all" if command.heal == "all" else f"heal {', '.join(command.heal)}"
-    if isinstance(command, Set):
+    if isinstance(command, SetValues):
         return "set " + ", ".join(f"{path} = {value}" for path, value in command.set.items())
     if isinstance(command, Switch):
         return f"switch to {command.switch}{' from a cold start' if command.cold else ''}"

@@ -36,7 +36,7 @@ def _sized(value: float) -> float:
 
 Sized = Annotated[float, AfterValidator(_sized)]
 """A number of either sign that is 0 or neither very small nor very large."""
-BiasV = Annotated[Sized, Field(ge=-1e3, le=1e3)]
+BiasV = Annotated[float, Field(ge=-1e3, le=1e3), AfterValidator(_sized)]
 
 
 class Resonator(Table):

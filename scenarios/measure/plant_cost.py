@@ -7,7 +7,7 @@ import time
 from pydantic import BaseModel
 
 from core.board.board import Board, Checkpoint
-from core.board.commands import Set
+from core.board.commands import SetValues
 from core.errors import InputError
 from core.registry import blocks
 
@@ -39,7 +39,7 @@ def _measure(name: str, checkpoint: Checkpoint) -> tuple[float | None, str]:
     board.pending.clear()
     try:
         if board.spec.plant.block.name != name:
-            board.apply(Set(set={"plant.model": name}), "cost")
+            board.apply(SetValues(set={"plant.model": name}), "cost")
     except InputError as error:
         return None, str(error)
     board.advance(WARM_TICKS)

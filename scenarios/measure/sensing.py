@@ -11,7 +11,7 @@ import numpy as np
 
 from core.block import BoolArray, FloatArray
 from core.board.board import Board
-from core.board.commands import Set
+from core.board.commands import SetValues
 from scenarios.measure.blocks import blocks
 from scenarios.measure.stretch import Stretch
 
@@ -77,5 +77,5 @@ def _ambiguity_um(board: Board) -> float:
 
 def _chosen_at(board: Board) -> int:
     """Return the tick at which the sensor in use was chosen; before it, another sensor fed the loop."""
-    chosen = [tick for tick, command in board.done if isinstance(command, Set) and "sensor.kind" in command.set]
+    chosen = [tick for tick, command in board.done if isinstance(command, SetValues) and "sensor.kind" in command.set]
     return chosen[-1] if chosen else 0

@@ -9,7 +9,7 @@ import numpy as np
 
 from core.block import FloatArray
 from core.board.board import Board
-from core.board.commands import Set
+from core.board.commands import SetValues
 from core.device.device import Device
 from core.device.frequency import figures
 from core.device.identification import Identified, SweepTone, identify, tone
@@ -130,7 +130,7 @@ def sweep_sine(
 def _measure(board: Board, hertz: float, amplitude_v: float, cycles: float, settle_ms: float, held: bool) -> SweepTone:
     """Play one tone and fit it."""
     sine = {"kind": "sine", "amplitude_v": amplitude_v, "frequency_hz": hertz}
-    board.apply(Set(set={"controller.kind": "open_loop", "reference": sine}), "sweep")
+    board.apply(SetValues(set={"controller.kind": "open_loop", "reference": sine}), "sweep")
     _record(board, math.ceil(settle_ms / board.dt_ms))
     # whole cycles, and from a moment at which the phase does not matter
     voltage, displacement = _record(board, max(16, round(cycles * 1e3 / hertz / board.dt_ms)))

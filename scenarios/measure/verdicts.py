@@ -8,7 +8,7 @@ import numpy as np
 
 from core.block import BoolArray, FloatArray
 from core.board.board import Board
-from core.board.commands import Heal, Inject
+from core.board.commands import HealFaults, Inject
 from core.diagnose.consistency import AMBIGUOUS, ISOLATED, NORMAL, UNKNOWN
 from scenarios.measure.blocks import first_where, total
 
@@ -48,7 +48,7 @@ def verdict_metrics(board: Board, trace: dict[str, FloatArray]) -> dict[str, flo
 
 def _edges(board: Board) -> list[int]:
     """Return the ticks at which a fault came or went, with start and end."""
-    ticks = {tick for tick, command in board.done if isinstance(command, Inject | Heal)}
+    ticks = {tick for tick, command in board.done if isinstance(command, Inject | HealFaults)}
     return [0, *sorted(tick for tick in ticks if 0 < tick < board.tick), board.tick] if board.tick else []
 
 

@@ -61,7 +61,7 @@ class Joined(BaseModel):
     bench: str
 
 
-class Members(BaseModel):
+class MemberList(BaseModel):
     """The students of a class in the order in which they joined, each with a small picture of the bench."""
 
     members: list[Tile]
@@ -127,11 +127,11 @@ async def join_class(class_id: str, body: Join, request: Request, response: Resp
     return Joined(id=person.id, session=secret, bench=bench.id)
 
 
-@router.get("/{class_id}/members", response_model=Members)
+@router.get("/{class_id}/members", response_model=MemberList)
 async def list_members(class_id: str, service: ServiceDep) -> Response:
     """List the students of a class with name, bench, state, verdict, truth and a small trace."""
     await service.classes.row(class_id)
-    found = Members(members=[_tile(service, person) for person in service.people.students(class_id)])
+    found = MemberList(members=[_tile(service, person) for person in service.people.students(class_id)])
     # written at once: checking sixty tiles again takes the loop ten times as long
     return Response(found.model_dump_json(), media_type="application/json")
 

@@ -32,7 +32,7 @@ class DeviceCard(AnswerBody):
     plants: list[str] = Field(description="Plants that can be used with this device")
 
 
-class Devices(BaseModel):
+class DeviceList(BaseModel):
     """Every device of the catalogue, and the choices of a drawing."""
 
     devices: list[DeviceCard]
@@ -65,9 +65,9 @@ class SpreadOf(Design):
 
 
 @router.get("")
-def get_devices() -> Devices:
+def get_devices() -> DeviceList:
     """List every device."""
-    return Devices(
+    return DeviceList(
         devices=[
             DeviceCard.of(
                 device,

@@ -12,6 +12,7 @@ from scenarios.json_schema.components import components as documents
 from scenarios.json_schema.definitions import walked
 from server.api.bodies import DOCUMENT
 from server.api.examples import EXAMPLES
+from server.api.tags import TAGS
 from server.classroom.access import Need, need_of
 from server.errors import ErrorReply
 from server.stream.wire import ClientMessage, ServerMessage
@@ -61,6 +62,11 @@ PARAMETERS = {
     "watcher_id": "Id of a link to watch",
 }
 """The meaning of parameters whose route does not give it."""
+REFUSALS = {"4XX": ("Refused", "The request is refused"), "5XX": ("Failed", "The server cannot answer")}
+"""Answers of every operation beside its own: the name and the description of each, by their status."""
+TEXT, BINARY = {"type": "string"}, {"type": "string", "format": "binary"}
+OWN = ("equation", "live", "unit")
+"""Keywords of our own in schemas of parameters; OpenAPI has them with a prefix."""
 
 
 def install(app: FastAPI) -> None:
@@ -80,6 +86,8 @@ def build(app: FastAPI) -> dict[str, Any]:
         title=app.title,
         version=app.version,
         description=app.description,
+        license_info=app.license_info,
+        tags=[{"name": name, "description": meaning} for name, meaning in TAGS.items()],
         routes=app.routes,
         servers=app.servers or [HERE],
     )
@@ -94,12 +102,17 @@ def build(app: FastAPI) -> dict[str, Any]:
             components.setdefault(inner, definition)
         components[name] = {"title": name, **described}
     components |= documents()
+    shape = {"application/json": {"schema": {"$ref": REF.format(model="ErrorReply")}}}
+    schema["components"]["responses"] = {
+        name: {"description": meaning, "content": shape} for name, meaning in REFUSALS.values()
+    }
     schema["components"]["securitySchemes"] = {"token": BEARER}
     for path, operations in schema["paths"].items():
         for method, operation in operations.items():
             _complete(operation, is_open=need_of(method.upper(), path)[0] is Need.NOTHING)
     components.pop("HTTPValidationError", None)
     components.pop("ValidationError", None)
+    schema["components"]["schemas"] = {name: _standard(one) for name, one in components.items()}
     whole: dict[str, Any] = walked(schema, _described)
     return whole
 
@@ -111,7 +124,7 @@ def _described(table: dict[str, Any]) -> dict[str, Any]:
 
 
 def _complete(operation: dict[str, Any], is_open: bool) -> None:
-    """Add the permitted callers, the meaning of parameters, the shape of bodies, and the one shape of all failures."""
+    """Add the permitted callers, the meaning of parameters, examples of bodies, the type of files, and all failures."""
     operation["security"] = [] if is_open else [{"token": []}]
     for parameter in operation.get("parameters", []):
         parameter.setdefault("description", PARAMETERS.get(parameter["name"], ""))
@@ -119,6 +132,19 @@ def _complete(operation: dict[str, Any], is_open: bool) -> None:
         if name == "application/json":
             values = EXAMPLES.get(operation["operationId"], ())
             content["examples"] = {f"example-{number}": {"value": value} for number, value in enumerate(values, 1)}
-    operation["responses"].pop("422", None)
-    shape = {"application/json": {"schema": {"$ref": REF.format(model="ErrorReply")}}}
-    operation["responses"]["default"] = {"description": "Refused or failed", "content": shape}
+    responses = operation["responses"]
+    responses.pop("422", None)
+    for response in responses.values():
+        for media, content in response.get("content", {}).items():
+            content.setdefault("schema", TEXT if media.startswith("text/") else BINARY)
+    responses |= {status: {"$ref": f"#/components/responses/{name}"} for status, (name, _) in REFUSALS.items()}
+
+
+def _standard(schema: Any) -> Any:
+    """Return a schema with the keywords of our own by names that OpenAPI permits."""
+    if not isinstance(schema, dict):
+        return schema
+    found = {f"x-{key}" if key in OWN else key: value for key, value in schema.items()}
+    if "properties" in found:
+        found["properties"] = {name: _standard(one) for name, one in found["properties"].items()}
+    return found

@@ -20,9 +20,9 @@ from scenarios.arrow import pa
 from server.service import Service
 from server.store.traces import MEDIA_TYPES, Cut, Format, read_cut, write
 
-FORMAT_RESPONSES: dict[int | str, dict[str, Any]] = {
-    200: {"content": {media: {} for media in MEDIA_TYPES.values()}, "description": "The trace as a file"}
-}
+FILES: dict[str, dict[str, Any]] = {media.partition(";")[0]: {} for media in reversed(MEDIA_TYPES.values())}
+"""Contents of an answer in the requested format; bytes first, for clients that read all formats alike."""
+FORMAT_RESPONSES: dict[int | str, dict[str, Any]] = {200: {"content": FILES, "description": "The trace as a file"}}
 
 PIECE = 1 << 16
 HTML, PYTHON, SVG = "text/html", "text/x-python", "image/svg+xml"

@@ -62,7 +62,7 @@ class Begin(Body):
     )
 
 
-class HandIn(Body):
+class NewAttempt(Body):
     """Values of an answer."""
 
     seed: int = Field(ge=0, le=MOST)
@@ -108,7 +108,7 @@ async def begin_game(game_id: GameId, body: Begin, service: ServiceDep, person: 
 
 
 @router.post("/games/{game_id}/attempts", status_code=201, dependencies=[RateLimited])
-async def hand_in(game_id: GameId, body: HandIn, service: ServiceDep, person: PlayerDep) -> Play:
+async def hand_in(game_id: GameId, body: NewAttempt, service: ServiceDep, person: PlayerDep) -> Play:
     """Hand in: the server judges it by the rule, and the last attempt of the answer has the points."""
     judged = await service.games.hand_in(person, game_id, body.seed, body.hand_in)
     points = judged.attempts[-1].outcome.points

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from fastapi import Query
 from pydantic import BaseModel, Field
 
-from core.board.commands import Set
+from core.board.commands import SetValues
 from core.board.tuning import absent, difference, tuned
 from server.api.benches import CommandResult
 from server.api.bodies import Body
@@ -73,7 +73,7 @@ async def apply_parameter_set(set_id: str, session: SessionDep, service: Service
     values, left_out = await service.engine.call(compared)
     if not values:
         return Applied(result=None, left_out=left_out)
-    entry = await service.benches.command(session, Set(set=values), caller)
+    entry = await service.benches.command(session, SetValues(set=values), caller)
     result = CommandResult(tick=entry.tick, time_ms=entry.tick * session.dt_ms, entry=entry)
     return Applied(result=result, left_out=left_out)
 

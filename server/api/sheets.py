@@ -74,7 +74,7 @@ class SheetForAll(Body):
     members: MemberIds = None
 
 
-class Grades(BaseModel):
+class GradeList(BaseModel):
     """The work of the students of a class at sheets."""
 
     grades: list[Grade]
@@ -194,7 +194,7 @@ async def begin_for_all(class_id: Id, body: SheetForAll, service: ServiceDep) ->
     return Outcomes.of(refusals)
 
 
-@router.get("/classes/{class_id}/grades", responses={200: {"content": {"text/csv": {}}}})
+@router.get("/classes/{class_id}/grades", responses={200: {"model": GradeList, "content": {"text/csv": {}}}})
 async def get_grades(
     class_id: Id, service: ServiceDep, kind: Annotated[Literal["json", "csv"], Query(alias="format")] = "json"
 ) -> Response:
@@ -202,7 +202,7 @@ async def get_grades(
     group = await service.classes.row(class_id)
     found = grades_of(service.people.students(class_id), service.sheets)
     if kind == "json":
-        return Response(Grades(grades=found).model_dump_json(), media_type="application/json")
+        return Response(GradeList(grades=found).model_dump_json(), media_type="application/json")
     headers = {"Content-Disposition": f'attachment; filename="grades-{group.id}.csv"'}
     return Response(grades_csv(found), media_type="text/csv; charset=utf-8", headers=headers)
 

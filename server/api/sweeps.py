@@ -165,7 +165,7 @@ async def get_sweep_picture(
 @router.get(
     "/{sweep_id}/runs",
     response_class=Response,
-    responses={200: {"headers": RUNS, "content": {MEDIA_TYPES[kind]: {} for kind in ("csv", "parquet")}}},
+    responses={200: {"headers": RUNS, "content": {"text/csv": {}, MEDIA_TYPES["parquet"]: {}}}},
 )
 async def get_sweep_runs(
     sweep_id: str, service: ServiceDep, kind: Annotated[Literal["csv", "parquet"], Query(alias="format")] = "csv"

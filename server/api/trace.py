@@ -12,11 +12,11 @@ from core.board.history import Float32Array
 from core.errors import InputError
 from scenarios.report.traces import schema_of
 from server.api.deps import SeenDep, ServiceDep
-from server.api.files import Signals, Tick, table_response
+from server.api.files import FILES, Signals, Tick, table_response
 from server.api.router import Router
 from server.bench.bench import Seen
 from server.errors import ApiError
-from server.store.traces import MEDIA_TYPES, Format, asked, table_of
+from server.store.traces import Format, asked, table_of
 from server.stream.view import TickSpan
 from server.stream.wire import MAX_COLUMNS
 from server.version import VERSION
@@ -43,7 +43,7 @@ class Trace(BaseModel):
 @router.get(
     "",
     response_model=Trace,
-    responses={200: {"model": Trace, "content": {media: {} for media in MEDIA_TYPES.values()}}},
+    responses={200: {"model": Trace, "content": FILES}},
 )
 async def get_trace(
     session: SeenDep,

@@ -6,7 +6,17 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
-from core.board.commands import COMMANDS, FIELDS, Heal, Inject, MakeSafe, ResetTrip, Set, Switch, parse_command
+from core.board.commands import (
+    COMMANDS,
+    FIELDS,
+    HealFaults,
+    Inject,
+    MakeSafe,
+    ResetTrip,
+    SetValues,
+    Switch,
+    parse_command,
+)
 from core.errors import InputError, from_validation, unknown
 from server.store.earlier import KINDS, parse_earlier
 
@@ -144,7 +154,7 @@ def parse(document: Any) -> Any:
 
 
 Command = Annotated[
-    Runs | Inject | Heal | Set | Switch | MakeSafe | ResetTrip,
+    Runs | Inject | HealFaults | SetValues | Switch | MakeSafe | ResetTrip,
     BeforeValidator(parse),
 ]
 """For models and routes: `parse` reads it, the union describes it."""

@@ -47,7 +47,7 @@ def status_of(bench: LiveBench) -> BenchStatus:
             ActiveFault(
                 name=name,
                 severity=params.severity,
-                profile=params.profile.model_dump(),
+                profile=params.profile,
                 parameters=params.model_dump(exclude=set(FaultParams.model_fields)),
                 since_tick=params.start_tick,
             )

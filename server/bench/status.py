@@ -10,6 +10,7 @@ from pydantic import BaseModel, Field
 from core.board.commands import Trip
 from core.board.document import Document
 from core.cards import BlockCard
+from core.faults.fault import Profile
 from core.loop.score import Scores
 from core.signals import Signal
 
@@ -21,7 +22,7 @@ class ActiveFault(BaseModel):
 
     name: str
     severity: float
-    profile: dict[str, Any]
+    profile: Profile
     parameters: dict[str, Any] = Field(default={}, description="Its other parameters, chosen or default")
     since_tick: int
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from core.board.board import Board
-from core.board.commands import Command, MakeSafe, ResetTrip, Set
+from core.board.commands import Command, MakeSafe, ResetTrip, SetValues
 from core.board.inverse import inverse
 from core.board.pending import PendingCommand
 from core.board.track import Deed
@@ -80,7 +80,9 @@ class Changes:
         if len(bench.board.pending) >= MAX_PENDING and not isinstance(command, MakeSafe):
             raise InputError(f"{MAX_PENDING} commands wait for their moment already", code="limit")
         event, way = self._apply(command, actor)
-        paths = frozenset(command.set) if isinstance(command, Set) and event.kind == Set.kind else frozenset()
+        paths = (
+            frozenset(command.set) if isinstance(command, SetValues) and event.kind == SetValues.kind else frozenset()
+        )
         self._remember(event, way, paths)
         bench.narration.tell()
         bench.time.fast_forward.end()

@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel, Field
 
-from core.board.commands import Heal, Inject, ResetTrip, Set, Switch, Trip
+from core.board.commands import HealFaults, Inject, ResetTrip, SetValues, Switch, Trip
 from core.board.document import Document
 from core.device.catalogue import device
 from core.device.device import Device
@@ -30,7 +30,7 @@ COMMANDS = (
     commands.Step,
     commands.StepPeriod,
     commands.TimeScale,
-    Set,
+    SetValues,
     Switch,
     ResetTrip,
 )
@@ -51,7 +51,7 @@ STOPPED = "the board has stopped itself"
 """The only words about a trip: its reason and its signal would reveal the fault."""
 
 RUNNING = ("opened", "start", "pause", "step", "step_period", "reset_trip", "finished", "blind")
-CHANGES, TRIED = ("time_scale", Set.kind, Switch.kind), (Inject.kind, Heal.kind)
+CHANGES, TRIED = ("time_scale", SetValues.kind, Switch.kind), (Inject.kind, HealFaults.kind)
 """Kinds of visible events; changes without the values before, trips only as a stop of the board. In a game that allows
 faults, the tried faults are visible too."""
 
@@ -138,11 +138,11 @@ class Blind(BaseModel):
         ApiError
             The same line for all of them.
         """
-        tries = bool(self.may_inject) and isinstance(command, Inject | Heal)
+        tries = bool(self.may_inject) and isinstance(command, Inject | HealFaults)
         is_free = tries or isinstance(command, COMMANDS)
-        if isinstance(command, Set | Switch | ResetTrip | Inject | Heal):
+        if isinstance(command, SetValues | Switch | ResetTrip | Inject | HealFaults):
             is_free &= command.at_sample is None and command.at_ms is None and command.when is None
-        if isinstance(command, Set):
+        if isinstance(command, SetValues):
             is_free &= all(path.partition(".")[0] in MAY_SET or path in self.may_set for path in command.set)
         if isinstance(command, Inject):
             is_free &= command.fault in self.may_inject
@@ -185,7 +185,7 @@ def clear(bench: LiveBench) -> None:
     bench.time.fast_forward.leads = False
     bench.recordings.close("a fault was hidden")
     bench.board.pending.clear()
-    bench.board.apply(Heal(heal="all"), ACTOR)
+    bench.board.apply(HealFaults(heal="all"), ACTOR)
     bench.done_otherwise()
 
 

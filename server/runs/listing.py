@@ -14,7 +14,8 @@ from sqlalchemy.orm import Session, defer
 
 from core.errors import InputError
 from scenarios.key import code_version
-from server.errors import ApiError, not_found
+from server.errors import ApiError, ErrorBody, not_found
+from server.runs.summary import RunSummary
 from server.store.base import now
 from server.store.database import Database
 from server.store.models import RequestRow
@@ -36,7 +37,7 @@ class Run(BaseModel):
 
     id: str
     key: str
-    state: str
+    state: State
     scenario_id: str
     title: str
     label: str = Field("", description="Name given by a user")
@@ -47,8 +48,8 @@ class Run(BaseModel):
     created: datetime
     finished: datetime | None
     progress: float
-    summary: dict[str, Any] | None
-    error: dict[str, Any] | None
+    summary: RunSummary | None
+    error: ErrorBody | None
 
 
 class RunFilter(BaseModel):

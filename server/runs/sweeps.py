@@ -15,7 +15,8 @@ from scenarios.campaign.check import check
 from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
 from scenarios.key import code_version, content_hash, run_key
-from server.errors import ApiError
+from server.errors import ApiError, ErrorBody
+from server.runs.listing import State
 from server.runs.queue import Queue, Requested, check_length
 from server.runs.surveys import CampaignStanding, Surveys
 from server.settings import Settings
@@ -31,7 +32,7 @@ class SweepRun(BaseModel):
     model_config = ConfigDict(from_attributes=True)
 
     id: str
-    state: str
+    state: State
     name: str
     title: str
     label: str = Field("", description="Name given by a user")
@@ -40,7 +41,7 @@ class SweepRun(BaseModel):
     done: int = 0
     created: datetime
     finished: datetime | None
-    error: dict[str, Any] | None
+    error: ErrorBody | None
 
 
 class Sweeps(Requested[SweepRun]):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import Callable
-from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -15,6 +14,8 @@ from scenarios.campaign.halving import Threshold, ThresholdGoal
 from scenarios.campaign.threshold import Search
 from scenarios.key import content_hash, run_key
 from scenarios.schema import Scenario
+from server.errors import ErrorBody
+from server.runs.listing import State
 from server.runs.queue import Requested, check_length
 from server.store.models import RequestRow
 
@@ -25,11 +26,11 @@ class ThresholdRun(BaseModel):
     model_config = ConfigDict(from_attributes=True)
 
     id: str
-    state: str
+    state: State
     scenario_id: str
     progress: float = 0.0
     found: Threshold | None = Field(None, validation_alias="summary", description="Null until it is done")
-    error: dict[str, Any] | None
+    error: ErrorBody | None
 
 
 class Thresholds(Requested[ThresholdRun]):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from core.board.commands import Heal, Inject, ResetTrip, Set, Switch, Timed, check
+from core.board.commands import HealFaults, Inject, ResetTrip, SetValues, Switch, Timed, check
 from core.errors import InputError, unknown_field
 
 
@@ -22,14 +22,14 @@ class EarlierInject(Inject, Earlier):
     """A fault."""
 
 
-class EarlierHeal(Heal, Earlier):
+class EarlierHeal(HealFaults, Earlier):
     """A healing."""
 
     names: ClassVar[Mapping[str, str]] = {"heal": "faults"}
     implied: ClassVar[Mapping[str, Any]] = {"heal": "all"}
 
 
-class EarlierSet(Set, Earlier):
+class EarlierSet(SetValues, Earlier):
     """New values."""
 
     names: ClassVar[Mapping[str, str]] = {"set": "values"}

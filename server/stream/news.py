@@ -8,7 +8,7 @@ from typing import Any
 from server.bench.bench import Seen
 from server.bench.narration import NarrationPlace
 from server.stream.line import text_message
-from server.stream.wire import Events, Narrated, Notice, Status
+from server.stream.wire import EventsMessage, Narrated, Notice, Status
 
 EVENTS_AT_ONCE = 100
 MARKS_KEPT = 16
@@ -67,7 +67,7 @@ class News:
             notices = (
                 [Notice(code="events_lost", message=f"{lost} events are older than this bench keeps")] if lost else []
             )
-            messages = [*notices, Events(events=events)] if events else notices
+            messages = [*notices, EventsMessage(events=events)] if events else notices
             last = events[-1].seq if events else after
             self._events[after] = ([text_message(message.model_dump_json()) for message in messages], last)
         return self._events[after]

@@ -159,7 +159,7 @@ class Status(BenchStatus):
     dropped_frames: int = Field(description="Frames this client was too slow for")
 
 
-class Events(BaseModel):
+class EventsMessage(BaseModel):
     """Events since the last such message, numbered without gaps."""
 
     type: Literal["events"] = "events"
@@ -235,4 +235,4 @@ class Ping(BaseModel):
     type: Literal["ping"] = "ping"
 
 
-ServerMessage = Hello | Status | Events | Narrated | CaptureList | Reply | ErrorMessage | Notice | Ping
+ServerMessage = Hello | Status | EventsMessage | Narrated | CaptureList | Reply | ErrorMessage | Notice | Ping

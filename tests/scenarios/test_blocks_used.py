@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from core import registry
 from core.block import LOOP
-from core.board.commands import Inject, Set, Switch
+from core.board.commands import Inject, SetValues, Switch
 from core.board.spec import Spec
 from core.board.wiring import needed
 from scenarios.library import library
@@ -37,7 +37,7 @@ def used_by(scenario: Scenario) -> set[tuple[str, str]]:
             found.add(("faults", command.fault))
         elif isinstance(command, Switch):
             found.add(("control", command.switch))
-        elif isinstance(command, Set) and "controller.kind" in command.set:
+        elif isinstance(command, SetValues) and "controller.kind" in command.set:
             found.add(("control", str(command.set["controller.kind"])))
     return found
 

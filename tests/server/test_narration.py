@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from core.board.commands import Heal
+from core.board.commands import HealFaults
 from scenarios.library import get
 from scenarios.run import run
 from server.bench.commands import parse
@@ -139,7 +139,7 @@ def test_a_view_that_hides_a_fault_says_nothing_of_the_error() -> None:
     advance(bench, 1000)
     bench.execute(parse({"switch": "mrac"}), "test")
     advance(bench, 3000)
-    bench.board.apply(Heal(heal="all"), ACTOR)
+    bench.board.apply(HealFaults(heal="all"), ACTOR)
     advance(bench, 4000)
     view = bench.view
     assert view is not None

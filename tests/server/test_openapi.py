@@ -13,8 +13,9 @@ from pydantic import TypeAdapter
 from core.nesting import read_toml
 from scenarios.campaign.sweep import Sweep
 from scenarios.sheets.read import read_sheet
-from server.api.document import REF
+from server.api.document import BINARY, REF
 from server.api.examples import EXAMPLES
+from server.api.tags import TAGS
 from server.app import create_app
 from server.settings import Settings
 from server.stream.wire import CLIENT_MESSAGE, ClientMessage, ServerMessage
@@ -121,9 +122,28 @@ def test_clients_learn_where_the_service_is_and_how_to_come_in(document: dict[st
     assert all(operation["security"] in ([], [{"token": []}]) for _, operation in operations(document))
 
 
-def test_no_reference_leads_nowhere(document: dict[str, Any]) -> None:
-    known = {f"#/components/schemas/{name}" for name in document["components"]["schemas"]}
-    assert references(document) <= known
+def test_no_reference_leads_nowhere_and_each_part_is_used(document: dict[str, Any]) -> None:
+    parts = {
+        f"#/components/{kind}/{name}" for kind in ("schemas", "responses") for name in document["components"][kind]
+    }
+    stream = {REF.format(model="ClientMessage"), REF.format(model="ServerMessage")}
+    assert references(document) | stream == parts
+
+
+def test_each_group_of_operations_is_described(document: dict[str, Any]) -> None:
+    assert {tag for _, operation in operations(document) for tag in operation["tags"]} == TAGS.keys()
+    assert document["tags"] == [{"name": name, "description": about} for name, about in TAGS.items()]
+
+
+def test_files_are_text_or_bytes_and_everything_else_is_typed(document: dict[str, Any]) -> None:
+    for where, operation in operations(document):
+        for status, answer in operation["responses"].items():
+            for media, content in answer.get("content", {}).items():
+                schema = content["schema"]
+                if media == "application/json":
+                    assert references(schema), (where, status)
+                else:
+                    assert schema == ({"type": "string"} if media.startswith("text/") else BINARY), (where, media)
 
 
 def test_every_operation_has_a_typed_answer_a_summary_and_the_error_shape(document: dict[str, Any]) -> None:
@@ -133,8 +153,10 @@ def test_every_operation_has_a_typed_answer_a_summary_and_the_error_shape(docume
             assert operation.get("summary"), where
             assert operation.get("description"), where
             assert "422" not in operation["responses"], where
-            shape = operation["responses"]["default"]["content"]["application/json"]["schema"]
-            assert shape == {"$ref": "#/components/schemas/ErrorReply"}, where
+            for status, name in (("4XX", "Refused"), ("5XX", "Failed")):
+                assert operation["responses"][status] == {"$ref": f"#/components/responses/{name}"}, where
+                shape = document["components"]["responses"][name]["content"]["application/json"]["schema"]
+                assert shape == {"$ref": "#/components/schemas/ErrorReply"}, where
             good = [code for code in operation["responses"] if code.startswith("2")]
             assert good, where
             if good[0] not in ("204",):
@@ -146,8 +168,8 @@ def test_the_messages_of_the_stream_are_described(document: dict[str, Any]) -> N
     client = {ref.rsplit("/", 1)[1] for ref in references(schemas["ClientMessage"])}
     server = {ref.rsplit("/", 1)[1] for ref in references(schemas["ServerMessage"])}
     assert {"Subscribe", "Rearm", "Unsubscribe", "Ack", "Resume", "CommandMessage"} <= client
-    assert {"Hello", "Status", "Events", "Reply", "ErrorMessage", "Notice"} <= server
-    assert {"Inject", "Heal", "Set", "Switch", "TimeScale", "Step"} <= set(schemas)
+    assert {"Hello", "Status", "EventsMessage", "Reply", "ErrorMessage", "Notice"} <= server
+    assert {"Inject", "HealFaults", "SetValues", "Switch", "TimeScale", "Step"} <= set(schemas)
     assert schemas["ErrorBody"]["required"] == ["code", "message"]
     assert TypeAdapter(ServerMessage) and CLIENT_MESSAGE
 

@@ -9,7 +9,7 @@ import pytest
 
 from core.block import FloatArray
 from core.board.board import Board
-from core.board.commands import Set
+from core.board.commands import SetValues
 from core.board.ensemble import Ensemble, make
 from core.errors import InputError
 from scenarios.run import build, run
@@ -83,7 +83,7 @@ def test_what_is_set_for_all_leaves_alone_what_a_twin_has_of_its_own() -> None:
     together = make({**BENCH, "twins": TWINS})
     assert isinstance(together, Ensemble)
     together.advance(100)
-    together.apply(Set(at_sample=100, set={"controllers.pid.proportional_v_um": 5.0}))
+    together.apply(SetValues(at_sample=100, set={"controllers.pid.proportional_v_um": 5.0}))
     together.advance(100)
     kept = {name: twin.spec.controllers["pid"].params.proportional_v_um for name, twin in together.twins.items()}  # type: ignore[attr-defined]
     assert kept == {"adaptive": 5.0, "classic": 2.0}

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.board.commands import Set
+from core.board.commands import SetValues
 from core.errors import InputError
 from core.own.text import UnitError
 from core.own.unit import unit
@@ -135,7 +135,7 @@ def test_a_fault_of_ones_own_cannot_come_while_the_board_runs() -> None:
     board = build(Scenario.load(look()))
     source = (ROOT / "core" / "faults" / "stiffness.py").read_text("utf-8")
     with pytest.raises(InputError) as raised:
-        board.apply(Set(set={"units.softer.source": source}), "test")
+        board.apply(SetValues(set={"units.softer.source": source}), "test")
     assert (raised.value.field, raised.value.code) == ("units", "not_live")
 
 

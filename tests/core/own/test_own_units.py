@@ -144,10 +144,10 @@ def test_an_index_from_data_never_leaves_its_vector() -> None:
 def test_a_unit_cannot_change_or_come_while_the_board_runs() -> None:
     board = build(with_unit("pi", PI))
     assert isinstance(board, Board)
-    from core.board.commands import Set
+    from core.board.commands import SetValues
 
     with pytest.raises(InputError) as raised:
-        board.apply(Set(set={"units.pi.source": odd()}), "test")
+        board.apply(SetValues(set={"units.pi.source": odd()}), "test")
     assert raised.value.code == "not_live"
 
 

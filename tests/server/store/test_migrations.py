@@ -70,13 +70,30 @@ def test_rows_of_the_first_version_are_carried_along(place: Any) -> None:
     database.close()
 
 
+SUMMARY = {
+    "scenario": "first-look",
+    "title": "First look",
+    "source": "",
+    "claim": "",
+    "verdict": None,
+    "seed": 3,
+    "ticks": 5,
+    "dt_s": 1e-5,
+    "elapsed_s": 0.1,
+    "digest": "d",
+    "trip": None,
+    "warnings": [],
+    "metrics": {"m": 1.5},
+    "expectations": [],
+    "ok": True,
+}
 OLD = {
     "runs": {
         "ended": {
             "state": "done",
             "label": "mine",
             "seeds": [3, 4, 5],
-            "summary": {"digest": "d", "metrics": {"m": 1.5}},
+            "summary": SUMMARY,
         },
         "failed": {"state": "failed", "seeds": [1], "error": {"code": "invalid", "message": "no"}, "attempts": 1},
         "begun": {"state": "running", "seeds": [1, 2], "progress": 0.4, "attempts": 2, "finished": None},

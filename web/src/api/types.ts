@@ -12,7 +12,7 @@ export type BenchmarkRow = Benchmark["results"][number]["rows"][number];
 /** A claim of a live bench with the measured figure. */
 export type Claim = Schemas["BenchClaim"];
 export type Device = Schemas["DeviceCard"];
-export type DeviceCatalogue = Schemas["Devices"];
+export type DeviceCatalogue = Schemas["DeviceList"];
 export type Equation = Schemas["EquationCard"];
 export type ForkFrom = Partial<Schemas["ForkFrom"]>;
 export type FaultProfile = Schemas["Profile"];

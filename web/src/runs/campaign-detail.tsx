@@ -45,7 +45,7 @@ export function CampaignDetail({ sweep, onChanged }: { sweep: SweepRun; onChange
         <h2>{sweepName(sweep)}</h2>
         <small>
           {formatNumber(sweep.done ?? 0, 0)} of {formatCount(sweep.runs, "run")} · {sweep.state}
-          {sweep.error && `: ${String(sweep.error.message)}`}
+          {sweep.error && `: ${sweep.error.message}`}
         </small>
         <NameField
           label={sweep.label ?? ""}

@@ -59,8 +59,8 @@ export function jobsOf(runs: readonly Run[], sweeps: readonly SweepRun[]): Job[]
 /** The state of a job, in words. */
 export function stateText(job: Job): string {
   if (job.state !== "done" || job.kind === "campaign") return job.state;
-  const summary = job.run.summary as { ok?: boolean; trip?: unknown; expectations?: unknown[] } | null;
+  const { summary } = job.run;
   if (summary?.trip) return "tripped";
-  if (!summary?.expectations?.length) return "done";
+  if (!summary?.expectations.length) return "done";
   return summary.ok ? "as expected" : "other than expected";
 }

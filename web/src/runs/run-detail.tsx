@@ -43,7 +43,7 @@ export function RunDetail({ run, onChanged }: { run: Run; onChanged(): void }) {
   if (!summary)
     return (
       <EmptyState title={UNDONE[run.state] ?? run.state}>
-        {(run.error?.message as string | undefined) ??
+        {run.error?.message ??
           (run.state === "cancelled"
             ? "Start it again to have its result."
             : `${formatPercent(run.progress, 0)} done.`)}

@@ -36,7 +36,7 @@ export type Status = Omit<Schemas["Status"], "parameters"> & { parameters: Bench
 export type ServerMessage =
   | Schemas["Hello"]
   | Status
-  | Schemas["Events"]
+  | Schemas["EventsMessage"]
   | Schemas["Narrated"]
   | CaptureList
   | Schemas["Reply"]

@@ -24,11 +24,11 @@ interface RecordedBench {
 interface RecordedAnswers {
   catalog: { blocks: BlockCard[] };
   scenarios: Schemas["ScenarioList"];
-  devices: Schemas["Devices"];
+  devices: Schemas["DeviceList"];
   gallery: Schemas["Gallery"];
   run: Schemas["Run"];
   sweep: Schemas["SweepRun"];
-  class: Schemas["Members"] & { class: Schemas["Class"] };
+  class: Schemas["MemberList"] & { class: Schemas["Class"] };
   sheet: Schemas["SheetView"];
   explanation: Schemas["Account"];
   turn: Schemas["Turn"];

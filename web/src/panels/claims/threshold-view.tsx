@@ -87,7 +87,7 @@ function Turned({ claim, knob }: { claim: Claim; knob: ClaimKnob }) {
             Find where it holds
           </Button>
         )}
-        {run?.error && <p className="note">{String(run.error.message)}</p>}
+        {run?.error && <p className="note">{run.error.message}</p>}
         {run?.state === "cancelled" && <p className="note">Cancelled.</p>}
       </Group>
       {found && (

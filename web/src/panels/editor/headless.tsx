@@ -65,8 +65,8 @@ const figuresOf = ({ family, name }: BlockCard): string =>
   family === "diagnose" ? `diagnosis.${name}.` : family === "identify" ? `identify.${name}.` : "control.";
 
 function Outcome({ run, card }: { run: Run; card: BlockCard }) {
-  const { digest, metrics = {} } = (run.summary ?? {}) as { digest?: string; metrics?: Record<string, number> };
-  const figures = Object.entries(metrics).filter(([name]) => name.startsWith(figuresOf(card)));
+  const digest = run.summary?.digest;
+  const figures = Object.entries(run.summary?.metrics ?? {}).filter(([name]) => name.startsWith(figuresOf(card)));
   return (
     <>
       <dl className={styles.list}>
