@@ -35,19 +35,19 @@ class _Line:
         self.passed_on += len(data)
 
 
-class _Watched:
+class Watched:
     """A bench with pages that show the same four traces and acknowledge every picture."""
 
     def __init__(self, watchers: int) -> None:
-        scenario, metrics = get("first-look"), Metrics()
-        self._session = LiveBench(scenario, build(scenario), None, 20 * TICKS, metrics, lambda: 0.0)
+        scenario, self.metrics = get("first-look"), Metrics()
+        self._session = LiveBench(scenario, build(scenario), None, 20 * TICKS, self.metrics, lambda: 0.0)
         self._session.begin(True)
         self._room = Room(self._session, dict)
         wanted = Subscribe(type="subscribe", panel=1, signals=SIGNALS, mode="roll", window_ms=4.0, width=800)
         for _ in range(watchers):
             line: Any = _Line()
             room, last = self._room, self._session.events.last
-            client = Client(line, self._session, metrics.sent, room.news, room.cuts, last)
+            client = Client(line, self._session, self.metrics.sent, room.news, room.cuts, last)
             client.panels[1] = Panel(room.cuts.view(wanted, self._session.indices(SIGNALS), None), 1)
             self._room.clients.add(client)
 
@@ -68,7 +68,7 @@ class _Watched:
 
 def watchers() -> list[dict[str, Any]]:
     """Measure one picture for some numbers of watchers, and a further watcher over the first."""
-    costs = interleaved({str(count): _Watched(count).cost for count in WATCHERS})
+    costs = interleaved({str(count): Watched(count).cost for count in WATCHERS})
     first, _, last = (str(count) for count in WATCHERS)
     further = [(many - one) / (WATCHERS[-1] - 1) / one for one, many in zip(costs[first], costs[last], strict=True)]
     names = {

@@ -1,4 +1,4 @@
-"""The C compiler of the machine, if it has one, and what it makes of C."""
+"""The C compiler of the machine, if it has one: C in, functions out."""
 
 from __future__ import annotations
 

@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 
 from core.board.board import CHUNK, Board
-from core.board.fold import Words
 from core.board.history import History
 from core.board.observer import follow
-from scenarios.speed.anchor.twin import ROOM, Array, Twin
+from scenarios.speed.anchor.difference import differences, same
+from scenarios.speed.anchor.twin import ROOM, Twin
 from scenarios.speed.boards import HISTORY_MB
 from scenarios.speed.timing import cpu_ns, loop_cost, must_run
 
@@ -19,15 +19,6 @@ TICKS = 40 * CHUNK
 """Ticks of one measurement."""
 OURS, C = "ours", "c"
 Costs = Mapping[str, Callable[[], float]]
-
-
-def same(first: Array, second: Array) -> bool:
-    """Say whether two arrays have the same bits; every NaN counts as the same number."""
-    if first.dtype.kind != "f":
-        return np.array_equal(first, second)
-    first, second = np.ascontiguousarray(first), np.ascontiguousarray(second)
-    is_same = first.view(f"u{first.itemsize}") == second.view(f"u{second.itemsize}")
-    return bool((is_same | (np.isnan(first) & np.isnan(second))).all())
 
 
 class Pair:
@@ -146,23 +137,3 @@ class Live(Advance):
         yield from differences(self.board, twin)
         for name, part in {"ring": "history", "low": "minima", "high": "maxima", "steady": "idle groups"}.items():
             yield from () if same(getattr(self.history, f"_{name}"), twin.arrays[name]) else [part]
-
-
-def differences(board: Board, twin: Twin) -> Iterator[str]:
-    """Name the parts in which a board and a twin differ now."""
-    ours = {
-        "state": board.wiring.s,
-        "signals": board.wiring.w,
-        "values that the observer saw last": board.observer.seen()[0],
-    }
-    for (part, numbers), name in zip(ours.items(), ("s", "w", "last"), strict=True):
-        yield from () if same(numbers, twin.arrays[name]) else [part]
-    yield from () if digest(board, twin.arrays["folds"]) == board.digest() else ["digest"]
-
-
-def digest(board: Board, folds: Words) -> str:
-    """Return the digest of a board that has other folds."""
-    own, board.folds = board.folds, folds
-    found = board.digest()
-    board.folds = own
-    return found

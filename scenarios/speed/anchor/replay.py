@@ -11,7 +11,8 @@ import numpy as np
 from core.board.board import CHUNK, Board
 from core.board.idle import leave_out_idle
 from scenarios.run import build
-from scenarios.speed.anchor.pair import OURS, C, Costs, differences, digest
+from scenarios.speed.anchor.difference import differences, digest
+from scenarios.speed.anchor.pair import OURS, C, Costs
 from scenarios.speed.anchor.text import Moment
 from scenarios.speed.anchor.twin import Array, Twin
 from scenarios.speed.side_by_side import SAMPLES, side_by_side, wired_seven_steps
@@ -30,7 +31,7 @@ class Segment:
 
 
 class Replay:
-    """The run on a board, with a note of what every command did, so that the C does the same without commands."""
+    """The run on a board, with a note of the effect of every command, so that the C does the same without commands."""
 
     part = "whole run"
     goal = 1.15

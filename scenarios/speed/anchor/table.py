@@ -1,4 +1,4 @@
-"""The table of the anchor: what a tick costs on a board and in C, and how many times the C that is."""
+"""The table of the anchor: the cost of a tick on a board and in C, and their ratio."""
 
 from __future__ import annotations
 

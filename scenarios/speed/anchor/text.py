@@ -10,7 +10,7 @@ from typing import Any, Self
 import numpy as np
 from llvmlite import ir
 
-from core.block import BoolArray, FloatArray, IntArray
+from core.block import BoolArray
 from core.board import fold, history, program
 from core.board.board import Board
 from core.board.wiring import Wiring
@@ -18,8 +18,8 @@ from core.compile import code
 from core.compile.places import PortsView, RecordView
 from core.compile.translate import Translation
 from core.ports import RESERVED, TICK, TIME_MS
-from core.record import RECORD, RecordLayout
-from scenarios.speed.anchor.writer import HEAD, Known, Writer, literal
+from scenarios.speed.anchor.known import known
+from scenarios.speed.anchor.writer import HEAD, Writer
 
 ARGUMENTS = "p", "s", "w", "io"
 
@@ -51,9 +51,9 @@ def board_text(moments: Sequence[Moment]) -> str:
     """
     wiring, arrays, functions, calls = moments[0].wiring, dict[str, str](), [], []
     for row in sorted({row for moment in moments for row in moment.running}):
-        instance, known = wiring.instances[row], _known(moments, row)
-        module = translated(instance.block)
-        functions.append(Writer(module.functions[0], known, arrays).text(f"step_{row}", ARGUMENTS))
+        instance, module = wiring.instances[row], translated(wiring.instances[row].block)
+        constants = known([moment.wiring for moment in moments], row)
+        functions.append(Writer(module.functions[0], constants, arrays).text(f"step_{row}", ARGUMENTS))
         table = wiring.table[row]
         offsets = zip(
             ARGUMENTS, (table[program.P_OFFSET], table[program.S_OFFSET], 0, table[program.IO_OFFSET]), strict=True
@@ -62,13 +62,13 @@ def board_text(moments: Sequence[Moment]) -> str:
         conditions = [] if all(row in moment.running for moment in moments) else [f"on[{row}]"]
         conditions += [f"number % {table[program.EVERY]} == 0"] if table[program.EVERY] != 1 else []
         calls.append(f"    if ({' && '.join(conditions)}) {call}" if conditions else f"    {call}")
-    constants = "\n".join(f"#define {name} {value}" for name, value in _constants(wiring).items())
+    defined = "\n".join(f"#define {name} {value}" for name, value in _constants(wiring).items())
     head = (
         "static inline __attribute__((always_inline)) void tick(int64_t number, double *restrict p, "
         "double *restrict s, double *restrict w, int64_t *restrict io, const uint8_t *restrict on)"
     )
     loop = resources.files(__package__).joinpath("board.c").read_text()
-    return "\n".join([HEAD, *arrays.values(), *functions, head, "{", *calls, "}", constants, loop])
+    return "\n".join([HEAD, *arrays.values(), *functions, head, "{", *calls, "}", defined, loop])
 
 
 def _constants(wiring: Wiring) -> dict[str, Any]:
@@ -113,42 +113,3 @@ def translated(block: Any) -> ir.Module:
 
     code.settled(write)
     return modules[-1]
-
-
-def _known(moments: Sequence[Moment], row: int) -> Known:
-    """Return the numbers of a row that are the same at all moments and may be constants."""
-    block = moments[0].wiring.instances[row].block
-    found: dict[tuple[str, int], float] = {}
-    for name, places, of in (
-        ("p", _deciding(block.Packed.layout), _packed),
-        ("s", _deciding(block.State.layout, choices=False), _state),
-        ("io", range(len(block.Ports.declared)), _ports),
-    ):
-        values = [of(moment.wiring, row) for moment in moments]
-        for place in places:
-            own = {literal(value[place].item(), "i64" if name == "io" else "double") for value in values}
-            if len(own) == 1:
-                found[name, place] = values[0][place].item()
-    return found
-
-
-def _packed(wiring: Wiring, row: int) -> FloatArray:
-    return wiring.packed(row)
-
-
-def _state(wiring: Wiring, row: int) -> FloatArray:
-    return wiring.state_of(wiring.instances[row].key)
-
-
-def _ports(wiring: Wiring, row: int) -> IntArray:
-    return wiring.ports(row)
-
-
-def _deciding(layout: RecordLayout, choices: bool = True, start: int = 0) -> list[int]:
-    """Return the places of choices and of the length of tails, those of nested records included."""
-    places = [start + field.offset for field in layout.fields if field.is_choice and choices]
-    places += [start + layout.size - 1] if layout.tails > 1 else []
-    for field in layout.fields:
-        if field.kind == RECORD and field.inner is not None:
-            places += _deciding(field.inner, choices, start + field.offset)
-    return places

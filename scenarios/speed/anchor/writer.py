@@ -7,43 +7,25 @@ known beforehand, such as the places of ports, become constants.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
 from llvmlite import ir
 
+from scenarios.speed.anchor.expressions import TYPES, expression, literal
+
 Known = Mapping[tuple[str, int], float]
 """Numbers in memory that never change, by the argument that points to them and the place behind it."""
 
-TYPES = {"double": "double", "float": "float", "i64": "int64_t", "i1": "_Bool"}
-REAL = {"fadd": "+", "fsub": "-", "fmul": "*", "fdiv": "/"}
-WHOLE = {"add": "+", "sub": "-", "mul": "*", "and": "&", "or": "|", "xor": "^", "shl": "<<", "lshr": ">>"}
-"""Signs for whole numbers without a sign; their overflow is defined."""
-SIGNED = {"sdiv": "/", "srem": "%", "ashr": ">>"}
-ORDER = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}
-CASTS = {"uitofp", "fptosi", "fptoui", "fpext", "fptrunc", "zext"}
 HEAD = """
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
-/* Unknown to the compiler: gcc 12 takes the whole number of a number below 1 for -0 where it should be 0. */
+/* 0, but gcc does not know: it would skip the whole number on the way from -0.5 to 0, and give -0. */
 int64_t nothing;
 static inline int64_t bits_of(double number) { int64_t bits; memcpy(&bits, &number, 8); return bits; }
 static inline double number_of(int64_t bits) { double number; memcpy(&number, &bits, 8); return number; }
 """
-
-
-def literal(value: Any, kind: str) -> str:
-    """Return a constant of C."""
-    if kind == "i1":
-        return str(int(bool(value)))
-    if kind == "i64":
-        return f"INT64_C({value})" if value > -(2**63) else "INT64_MIN"
-    value = float(value)
-    if math.isfinite(value):
-        return f"({value.hex()})"
-    return '__builtin_nan("")' if math.isnan(value) else f"({'-' if value < 0.0 else ''}__builtin_inf())"
 
 
 class Writer:
@@ -97,7 +79,8 @@ class Writer:
             name = self._texts[id(one)] = f"t{len(self._declared)}"
             self._declared.append(f"{TYPES[str(one.type)]} {name};")
             if one.opname != "phi":  # its predecessors write it
-                self._lines.append(f"{name} = {self._made(one)};")
+                made = self._memory(one.operands[0]) if one.opname == "load" else expression(one, self._values(one))
+                self._lines.append(f"{name} = {made};")
 
     def _declare(self, one: Any) -> None:
         name, kind = f"v{len(self._declared)}", one.type.pointee
@@ -130,9 +113,8 @@ class Writer:
             first, second = map(self._number, one.operands)
             if first is None or second is None:
                 return False
-            value = self._whole[id(one)] = {"add": first + second, "sub": first - second, "mul": first * second}[
-                one.opname
-            ]
+            sums = {"add": first + second, "sub": first - second, "mul": first * second}
+            value = self._whole[id(one)] = sums[one.opname]
         else:
             return False
         self._texts[id(one)] = literal(value, str(one.type))
@@ -148,6 +130,9 @@ class Writer:
         if isinstance(value, ir.Constant):
             return literal(0 if value.constant in (None, ir.Undefined) else value.constant, str(value.type))
         return self._texts[id(value)]
+
+    def _values(self, one: Any) -> list[str]:
+        return [self._value(value) for value in (one.args if one.opname == "call" else one.operands)]
 
     def _pointer(self, value: Any) -> str:
         if not isinstance(value, ir.GlobalVariable):
@@ -187,46 +172,6 @@ class Writer:
                 self._lines += [
                     f"{self._texts[id(one)]} = {self._value(value)};" for value, of in one.incomings if of is block
                 ]
-
-    def _made(self, one: Any) -> str:
-        """Return the expression for the result of an instruction."""
-        name, kind = one.opname, str(one.type)
-        if name == "load":
-            return self._memory(one.operands[0])
-        if name == "call":
-            return f"__builtin_{one.callee.name.split('.')[1]}({', '.join(map(self._value, one.args))})"
-        values = [self._value(value) for value in one.operands]
-        if name in ("icmp", "fcmp"):
-            return self._compared(one, *values)
-        if name == "select":
-            return "{} ? {} : {}".format(*values)
-        if name == "fneg":
-            return f"-{values[0]}"
-        if name == "frem":
-            return "fmod({}, {})".format(*values)
-        if name == "bitcast":
-            return f"{'number_of' if kind == 'double' else 'bits_of'}({values[0]})"
-        if name == "sitofp":
-            return f"(double)({values[0]} | nothing)"
-        if name in CASTS:
-            return f"({TYPES[kind]})({'(uint64_t)' if name == 'uitofp' else ''}{values[0]})"
-        if name in REAL:
-            return f"{values[0]} {REAL[name]} {values[1]}"
-        if name in SIGNED:
-            return f"{values[0]} {SIGNED[name]} {values[1]}"
-        if kind == "i1":
-            return f"{values[0]} {WHOLE[name]} {values[1]}"
-        return f"(int64_t)((uint64_t){values[0]} {WHOLE[name]} (uint64_t){values[1]})"
-
-    def _compared(self, one: Any, first: str, second: str) -> str:
-        sign, cast = one.op, ""
-        if one.opname == "fcmp":
-            if sign not in ("oeq", "olt", "ole", "ogt", "oge", "une"):
-                raise NotImplementedError(f"a comparison {sign}")
-            sign = sign[1:]
-        elif sign not in ("eq", "ne"):
-            cast, sign = ("(uint64_t)" if sign.startswith("u") else ""), sign[1:]
-        return f"{cast}{first} {ORDER[sign]} {cast}{second}"
 
 
 def _in_order(entry: Any) -> list[Any]:

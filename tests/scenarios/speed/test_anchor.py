@@ -11,7 +11,8 @@ from scenarios.speed import boards
 from scenarios.speed.anchor import compiler as gcc
 from scenarios.speed.anchor import table
 from scenarios.speed.anchor.compiler import compiler, libraries, library, version
-from scenarios.speed.anchor.pair import OURS, Advance, C, Live, Pair, Steps, same
+from scenarios.speed.anchor.difference import same
+from scenarios.speed.anchor.pair import OURS, Advance, C, Live, Pair, Steps
 from scenarios.speed.anchor.replay import Replay
 from scenarios.speed.anchor.table import BENCHES, PAIRS, Anchor, Row
 from scenarios.speed.anchor.text import Moment, board_text

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from scenarios.speed.anchor.compiler import compiler, library
-from scenarios.speed.anchor.pair import same
+from scenarios.speed.anchor.difference import same
+from scenarios.speed.anchor.expressions import literal
 from scenarios.speed.anchor.text import ARGUMENTS, translated
-from scenarios.speed.anchor.writer import HEAD, Writer, literal
+from scenarios.speed.anchor.writer import HEAD, Writer
 from tests.core.compile.test_translate import STEPS, WIDTH, Packed, arrays, call, unit
 
 __all__ = ["arrays"]
@@ -26,7 +27,7 @@ def numbers_known(p, io):
 
 @pytest.mark.skipif(compiler() is None, reason="there is no gcc on this machine")
 @pytest.mark.parametrize("known", [False, True], ids=["read", "constant"])
-def test_the_c_of_each_step_gives_the_bits_of_its_machine_code(arrays, known, tmp_path):  # noqa: F811
+def test_the_c_of_each_step_gives_the_bits_of_its_machine_code(arrays, known, tmp_path):
     p, s, w, io = arrays
     found, texts = {}, []
     for step in STEPS:
@@ -59,5 +60,5 @@ def test_a_constant_of_c_has_all_bits_of_the_number(value):
 
 def test_a_constant_of_c_may_be_no_number_or_a_whole_number():
     assert literal(math.nan, "double") == '__builtin_nan("")'
-    assert [literal(value, "i64") for value in (7, -(2**63))] == ["INT64_C(7)", "INT64_MIN"]
+    assert [literal(value, "i64") for value in (7, 2**64 - 1, 2**63)] == ["INT64_C(7)", "INT64_C(-1)", "INT64_MIN"]
     assert [literal(value, "i1") for value in (-1, 1, 0)] == ["1", "1", "0"]
