@@ -21,7 +21,7 @@ OURS, C = "ours", "c"
 Costs = Mapping[str, Callable[[], float]]
 
 
-class Pair:
+class TwinPair:
     """A board and its twin, both from the same tick on.
 
     Parameters
@@ -65,7 +65,7 @@ class Pair:
         yield from differences(self.board, twin)
 
 
-class Steps(Pair):
+class StepsPair(TwinPair):
     """The steps alone, through the table that the board has."""
 
     def costs(self) -> Costs:
@@ -79,7 +79,7 @@ class Steps(Pair):
         self.twin.steps(TICKS, 1)
 
 
-class Advance(Pair):
+class AdvancePair(TwinPair):
     """Steps, rows, digest, and the comparisons of the observer."""
 
     part = "advance"
@@ -108,7 +108,7 @@ class Advance(Pair):
         yield from differences(self.board, twin)
 
 
-class Live(Advance):
+class LivePair(AdvancePair):
     """The same with the history, which is full: before, the system hands out its memory page by page."""
 
     part = "live tick"

@@ -13,7 +13,7 @@ from core.board.idle import leave_out_idle
 from scenarios.run import build
 from scenarios.speed.anchor.difference import differences, digest
 from scenarios.speed.anchor.pair import OURS, C, Costs
-from scenarios.speed.anchor.text import Moment
+from scenarios.speed.anchor.text import BoardMoment
 from scenarios.speed.anchor.twin import Array, Twin
 from scenarios.speed.side_by_side import SAMPLES, side_by_side, wired_seven_steps
 from scenarios.speed.timing import cpu_ns
@@ -22,7 +22,7 @@ PARTS = "p", "s", "w", "io"
 
 
 @dataclass(frozen=True)
-class Segment:
+class ReplayPart:
     """Ticks without a command between them: the rows that run, and the numbers that the command before them wrote."""
 
     ticks: int
@@ -30,7 +30,7 @@ class Segment:
     written: dict[str, tuple[Array, Array]]
 
 
-class Replay:
+class ReplayInC:
     """The run on a board, with a note of the effect of every command, so that the C does the same without commands."""
 
     part = "whole run"
@@ -40,19 +40,19 @@ class Replay:
         self.board = build(side_by_side())
         leave_out_idle(self.board)
         self._start = Board.restore(self.board.checkpoint())
-        self.moments: list[Moment] = []
-        self._segments: list[Segment] = []
+        self.moments: list[BoardMoment] = []
+        self._parts: list[ReplayPart] = []
         while self.board.tick < SAMPLES:
-            self._segments.append(self._segment())
+            self._parts.append(self._part())
         self._differing: dict[str, None] = {}
         self.library: ctypes.CDLL | None = None
         """The C of all moments, once it is compiled."""
 
-    def _segment(self) -> Segment:
+    def _part(self) -> ReplayPart:
         board = self.board
         before = {name: getattr(board.wiring, name).copy() for name in PARTS}
         board.apply_due()
-        moment, written = Moment.of(board), {}
+        moment, written = BoardMoment.of(board), {}
         for name, old in before.items():
             new = getattr(moment.wiring, name)
             places = np.flatnonzero(old.view(np.uint64) != new.view(np.uint64))
@@ -62,7 +62,7 @@ class Replay:
         end = SAMPLES if upcoming is None else min(upcoming, SAMPLES)
         while board.tick < end:
             board.advance(end - board.tick)
-        return Segment(end - moment.tick, moment.on, written)
+        return ReplayPart(end - moment.tick, moment.on, written)
 
     def costs(self) -> Costs:
         """Return the measurements of a run, ns: of the board with its commands, and of the C."""
@@ -77,11 +77,11 @@ class Replay:
         twin = Twin(library, self._start)
 
         def work() -> None:
-            for segment in self._segments:
-                twin.arrays["on"][:] = segment.on
-                for name, (places, numbers) in segment.written.items():
+            for part in self._parts:
+                twin.arrays["on"][:] = part.on
+                for name, (places, numbers) in part.written.items():
                     twin.arrays[name][places] = numbers
-                end = twin.tick + segment.ticks
+                end = twin.tick + part.ticks
                 while twin.tick < end:
                     twin.advance(min(CHUNK, end - twin.tick))
             digest(self.board, twin.arrays["folds"])

@@ -16,9 +16,9 @@ from scenarios.library import get
 from scenarios.run import build
 from scenarios.speed import boards
 from scenarios.speed.anchor.compiler import compiler, libraries, version
-from scenarios.speed.anchor.pair import OURS, Advance, C, Live, Pair, Steps
-from scenarios.speed.anchor.replay import Replay
-from scenarios.speed.anchor.text import Moment, board_text
+from scenarios.speed.anchor.pair import OURS, AdvancePair, C, LivePair, StepsPair, TwinPair
+from scenarios.speed.anchor.replay import ReplayInC
+from scenarios.speed.anchor.text import BoardMoment, board_text
 from scenarios.speed.figure import ratio
 from scenarios.speed.timing import interleaved
 
@@ -28,13 +28,13 @@ BENCHES: dict[str, Callable[[], Board]] = {
     "seven steps": boards.with_all_diagnosers,
 }
 """The last is the bench of the run, with all six diagnosers."""
-PAIRS: tuple[type[Pair], ...] = Steps, Advance, Live
+PAIRS: tuple[type[TwinPair], ...] = StepsPair, AdvancePair, LivePair
 ROUNDS = 9
 RUN = "seven steps"
 
 
 @dataclass(frozen=True)
-class Row:
+class AnchorRow:
     """One line of the table: the costs of each round, ns, and the parts in which board and C differ."""
 
     bench: str
@@ -70,10 +70,10 @@ class Anchor:
     def __init__(self, rounds: int = ROUNDS) -> None:
         self._rounds, self.compiler, self.missing = rounds, "", ""
 
-    def rows(self) -> Iterator[Row]:
+    def rows(self) -> Iterator[AnchorRow]:
         """Measure line by line: a board and its C in turn on the same ticks."""
-        made, replay = {name: make() for name, make in BENCHES.items()}, Replay()
-        texts = {name: lambda board=board: board_text([Moment.of(board)]) for name, board in made.items()}
+        made, replay = {name: make() for name, make in BENCHES.items()}, ReplayInC()
+        texts = {name: lambda board=board: board_text([BoardMoment.of(board)]) for name, board in made.items()}
         made_in_c = self._in_c({**texts, "run": lambda: board_text(replay.moments)})
         for name, board in made.items():
             for kind in PAIRS:
@@ -82,9 +82,9 @@ class Anchor:
         replay.library = made_in_c.get("run")
         yield self._row(RUN, replay)
 
-    def _row(self, bench: str, pair: Pair | Replay) -> Row:
+    def _row(self, bench: str, pair: TwinPair | ReplayInC) -> AnchorRow:
         costs = interleaved(pair.costs(), self._rounds)
-        return Row(bench, pair.part, pair.goal, costs, [*pair.differences()])
+        return AnchorRow(bench, pair.part, pair.goal, costs, [*pair.differences()])
 
     def _in_c(self, texts: dict[str, Callable[[], str]]) -> dict[str, Any]:
         path = compiler()

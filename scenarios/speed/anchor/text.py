@@ -25,7 +25,7 @@ ARGUMENTS = "p", "s", "w", "io"
 
 
 @dataclass(frozen=True)
-class Moment:
+class BoardMoment:
     """The numbers of a board at a tick edge, and the rows that run from there on."""
 
     tick: int
@@ -44,7 +44,7 @@ class Moment:
         return np.isin(np.arange(len(self.wiring.instances)), self.running)
 
 
-def board_text(moments: Sequence[Moment]) -> str:
+def board_text(moments: Sequence[BoardMoment]) -> str:
     """Return the C of a board that has these moments; a number is a constant if it is the same at all of them.
 
     Numbers count that a step only reads to decide how it runs: the places of ports, choices and lengths.

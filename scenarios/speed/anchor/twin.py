@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 from core.block import FloatArray
 from core.board.board import CHUNK, Board
 from core.board.history import LANES, History
-from scenarios.speed.anchor.text import Moment
+from scenarios.speed.anchor.text import BoardMoment
 
 Array = NDArray[Any]
 ROOM = 4096
 """Changes of watched columns that are written down at most between two looks."""
 
 
-class _Board(ctypes.Structure):
+class _BoardInC(ctypes.Structure):
     """The same as in ``board.c``."""
 
     _fields_ = (
@@ -48,7 +48,7 @@ class Twin:
         self._library, self.tick = library, board.tick
         for function in (library.steps, library.advance, library.live):
             function.restype = ctypes.c_int64
-        moment, observer = Moment.of(board), board.checkpoint().parts["observer"]
+        moment, observer = BoardMoment.of(board), board.checkpoint().parts["observer"]
         wiring, outputs, taps = moment.wiring, board.signals.outputs, len(board.signals.taps)
         history = history or History(outputs, taps, 0)
         self._groups = -(-outputs // LANES)
@@ -65,7 +65,9 @@ class Twin:
             "last": observer._last,
             "changes": np.zeros((ROOM, 2), dtype=np.int64),
         }
-        self._board = _Board(dt_ms=board.dt_ms, watched=len(self._shift), room=ROOM, found=0, places=history.capacity)
+        self._board = _BoardInC(
+            dt_ms=board.dt_ms, watched=len(self._shift), room=ROOM, found=0, places=history.capacity
+        )
         for name, array in self.arrays.items():
             setattr(self._board, name, array.ctypes.data)
         self._rows = np.zeros((CHUNK, len(idle) * LANES))

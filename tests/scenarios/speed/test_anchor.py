@@ -12,10 +12,10 @@ from scenarios.speed.anchor import compiler as gcc
 from scenarios.speed.anchor import table
 from scenarios.speed.anchor.compiler import compiler, libraries, library, version
 from scenarios.speed.anchor.difference import same
-from scenarios.speed.anchor.pair import OURS, Advance, C, Live, Pair, Steps
-from scenarios.speed.anchor.replay import Replay
-from scenarios.speed.anchor.table import BENCHES, PAIRS, Anchor, Row
-from scenarios.speed.anchor.text import Moment, board_text
+from scenarios.speed.anchor.pair import OURS, AdvancePair, C, LivePair, StepsPair, TwinPair
+from scenarios.speed.anchor.replay import ReplayInC
+from scenarios.speed.anchor.table import BENCHES, PAIRS, Anchor, AnchorRow
+from scenarios.speed.anchor.text import BoardMoment, board_text
 
 needs_gcc = pytest.mark.skipif(compiler() is None, reason="there is no gcc on this machine")
 QUICKLY = "-O0 -ffp-contract=off -shared -fPIC -w".split()
@@ -28,10 +28,10 @@ def board():
 
 @pytest.fixture(scope="module")
 def text(board):
-    return board_text([Moment.of(board)])
+    return board_text([BoardMoment.of(board)])
 
 
-def run(pair: Pair) -> list[str]:
+def run(pair: TwinPair) -> list[str]:
     """Measure a pair once, and return the parts in which board and C differ afterwards."""
     for measure in pair.costs().values():
         assert measure() > 0.0
@@ -46,13 +46,13 @@ def test_the_c_of_a_board_gives_its_bits(board, text, tmp_path):
 
 
 FAULTS = [
-    (Steps, "(double)(first + i) * dt_ms", "(double)(first + i) * dt_ms * 1.5", "signals"),
-    (Advance, "folds[c] = a ^ (a", "folds[c] = a + (a", "digest"),
-    (Advance, "memcpy(rows + i * ROW, w", "memcpy(rows + i * ROW, w + 1", "rows"),
-    (Live, "ring[k * LANES + c] = x##k", "ring[k * LANES + c] = 2.0f * x##k", "history"),
-    (Live, "HALVES(LEAST, low)", "HALVES(MOST, low)", "minima"),
-    (Live, "== FACTOR - 1)", "== FACTOR - 2)", "maxima"),
-    (Live, "b->steady[g] + n : 0", "b->steady[g] : 1", "idle groups"),
+    (StepsPair, "(double)(first + i) * dt_ms", "(double)(first + i) * dt_ms * 1.5", "signals"),
+    (AdvancePair, "folds[c] = a ^ (a", "folds[c] = a + (a", "digest"),
+    (AdvancePair, "memcpy(rows + i * ROW, w", "memcpy(rows + i * ROW, w + 1", "rows"),
+    (LivePair, "ring[k * LANES + c] = x##k", "ring[k * LANES + c] = 2.0f * x##k", "history"),
+    (LivePair, "HALVES(LEAST, low)", "HALVES(MOST, low)", "minima"),
+    (LivePair, "== FACTOR - 1)", "== FACTOR - 2)", "maxima"),
+    (LivePair, "b->steady[g] + n : 0", "b->steady[g] : 1", "idle groups"),
 ]
 
 
@@ -97,14 +97,14 @@ def test_without_a_compiler_the_boards_are_measured_alone_and_one_line_says_so(m
 
 def test_a_row_has_the_median_of_the_ratios_within_rounds_and_that_of_the_lower_quartiles():
     costs = {OURS: [30.0, 20.0, 40.0, 24.0, 20.0], C: [10.0, 20.0, 20.0, 12.0, 20.0]}
-    row = Row("bench", "steps", 2.0, costs, []).document()
+    row = AnchorRow("bench", "steps", 2.0, costs, []).document()
     assert (row["ratio"], row["ratio_of_lower_quartiles"], row["ok"]) == (2.0, 20.0 / 12.0, True)
     assert (row["ours_ns"], row["ours_lower_quartile_ns"], row["c_ns"], row["rounds"]) == (24.0, 20.0, 20.0, 5)
-    assert not Row("bench", "steps", 1.9, costs, []).document()["ok"]
+    assert not AnchorRow("bench", "steps", 1.9, costs, []).document()["ok"]
 
 
 def test_a_row_whose_c_differs_is_not_ok_however_quick_the_board_is():
-    row = Row("bench", "steps", 2.0, {OURS: [1.0], C: [2.0]}, ["digest"]).document()
+    row = AnchorRow("bench", "steps", 2.0, {OURS: [1.0], C: [2.0]}, ["digest"]).document()
     assert not row["ok"] and row["differences"] == ["digest"]
 
 
@@ -113,14 +113,14 @@ def test_a_row_whose_c_differs_is_not_ok_however_quick_the_board_is():
 @pytest.mark.parametrize("name", BENCHES)
 def test_the_c_of_each_measured_bench_gives_its_bits(name, tmp_path):
     board = BENCHES[name]()
-    made = library(str(compiler()), board_text([Moment.of(board)]), tmp_path)
+    made = library(str(compiler()), board_text([BoardMoment.of(board)]), tmp_path)
     assert [run(kind(board, made)) for kind in PAIRS] == [[]] * len(PAIRS)
 
 
 @needs_gcc
 @pytest.mark.long
 def test_the_seven_steps_in_c_end_with_the_bits_of_the_run(tmp_path: Path):
-    replay = Replay()
+    replay = ReplayInC()
     replay.library = library(str(compiler()), board_text(replay.moments), tmp_path)
     assert run(replay) == []
     replay.board.wiring.s[0] += 1.0
