@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from functools import partial
 from typing import Any, cast
@@ -15,7 +14,9 @@ from core.errors import InputError
 from scenarios.library import get
 from scenarios.run import build
 from scenarios.speed import boards, campaign, gyroscope, naive, peers
+from scenarios.speed.anchor.table import Anchor
 from scenarios.speed.figure import Costs, figure, per_sample, ratio, scaled
+from scenarios.speed.machine import machine
 from scenarios.speed.side_by_side import DIAGNOSERS, SAMPLES, whole_seven_steps, wired_seven_steps
 from scenarios.speed.timing import ALIVE, advance_cost, block_costs, cpu_ns, interleaved, loop_cost
 from scenarios.speed.units import native_and_walled
@@ -106,19 +107,14 @@ class Speed:
             "6 + 6 self-tuning, consistency; trace, history, log, digest"
         )
         return [
-            figure(everything, scaled(costs, "everything", 1e-3), "us", most=1.2, stretch=0.8),
+            figure(everything, scaled(costs, "everything", 1e-3), "us"),
             figure(
                 "live benches first-look at 100 kHz real time, per core",
                 per_sample(costs, "first_look", SAMPLE_NS),
                 "x",
                 least=15.0,
             ),
-            figure(
-                f"plant, 3 controllers, {BANK}, per sample",
-                scaled(costs, "plant_3_controllers_bank", 1e-3),
-                "us",
-                most=0.23,
-            ),
+            figure(f"plant, 3 controllers, {BANK}, per sample", scaled(costs, "plant_3_controllers_bank", 1e-3), "us"),
             figure(
                 "the same over a plain numpy loop",
                 ratio(costs, "naive", "plant_3_controllers_bank"),
@@ -135,10 +131,9 @@ class Speed:
                 f"seven steps, {SAMPLES} samples, {len(DIAGNOSERS)} diagnosers, headless, wired before",
                 scaled(costs, "seven_steps", 1e-6),
                 "ms",
-                most=10.0,
             ),
             figure("the same from scenario to figures", scaled(costs, "seven_steps_whole", 1e-6), "ms"),
-            figure("all 9 controllers, per sample", scaled(costs, "controllers", 1e-3), "us", most=0.6),
+            figure("all 9 controllers, per sample", scaled(costs, "controllers", 1e-3), "us"),
             figure(
                 "planar plant with noise at 0.25 us, times real time at 100 kHz",
                 per_sample(costs, "planar", SAMPLE_NS),
@@ -149,13 +144,8 @@ class Speed:
 
     def _parts(self, costs: Costs) -> Figures:
         rows = [
-            figure(f"{BANK}, per step", scaled(costs, "bank", 1e-3), "us", most=0.15),
-            figure(
-                "recursive least squares, 4 parameters, per update",
-                scaled(costs, "least_squares", 1e-3),
-                "us",
-                most=0.03,
-            ),
+            figure(f"{BANK}, per step", scaled(costs, "bank", 1e-3), "us"),
+            figure("recursive least squares, 4 parameters, per update", scaled(costs, "least_squares", 1e-3), "us"),
             figure(
                 "linear plant, 1 s at 100 kHz, over signal.lsim",
                 ratio(costs, "lsim", "plant_record"),
@@ -185,7 +175,6 @@ class Speed:
                 f"gyroscope, {len(self.readers) - 1} controllers and an Allan deviation, per sample",
                 scaled(costs, "gyroscope_blocks", 1e-3),
                 "us",
-                most=1.5,
             ),
             figure(
                 "gyroscopes at 100 kHz real time, per core", per_sample(costs, "gyroscope", SAMPLE_NS), "x", least=10.0
@@ -229,22 +218,29 @@ def _over(rates: list[float], others: list[float]) -> list[float]:
     return [a / b for a, b in zip(rates, others, strict=True)]
 
 
-def speed() -> dict[str, Any]:
-    """Measure everything and return it with the targets, JSON-ready."""
-    measured = Speed()
-    costs = interleaved(measured.candidates())
-    figures = measured.table(costs)
-    if (os.cpu_count() or 1) > 1:
-        figures += campaigns()
-    else:
-        measured.missing.append("campaigns are not measured: this machine has one processor")
+def speed(quick: bool = False) -> dict[str, Any]:
+    """Measure everything, or the ratios to C alone, and return it with the goals, JSON-ready."""
+    host, anchor = machine(), Anchor()
+    found: dict[str, Any] = {"anchor": [row.document() for row in anchor.rows()], "figures": [], "blocks_ns": {}}
+    missing = [anchor.missing] if anchor.missing else []
+    if not quick:
+        measured = Speed()
+        costs = interleaved(measured.candidates())
+        found["figures"] = measured.table(costs)
+        missing += measured.missing
+        if host["processors"] > 1:
+            found["figures"] += campaigns()
+        else:
+            missing.append("campaigns are not measured: this machine has one processor")
+        found["blocks_ns"] = _blocks_ns(measured)
+    return {"machine": host | {"compiler": anchor.compiler}, **found, "missing": missing}
+
+
+def _blocks_ns(measured: Speed) -> dict[str, float]:
     gain, beside = boards.begun(boards.GAIN), boards.with_all_diagnosers()
-    return {
-        "figures": figures,
-        "blocks_ns": block_costs(boards.with_all_identifiers())
+    return (
+        block_costs(boards.with_all_identifiers())
         | block_costs(gain, "gain_adaptation")
         | block_costs(beside, *DIAGNOSERS)
-        | block_costs(measured.one, *measured.readers, alive=gyroscope.ALIVE),
-        "missing": measured.missing,
-        "ok": all(row["ok"] for row in figures),
-    }
+        | block_costs(measured.one, *measured.readers, alive=gyroscope.ALIVE)
+    )

@@ -16,11 +16,12 @@ from typer.core import TyperGroup
 import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 from core.cards import BlockCard
 from core.errors import InputError, one_line
-from core.format import format_short, format_si, unit_text
+from core.format import format_short, unit_text
 from core.registry import catalog
 from scenarios.library import get, ids
 from scenarios.report.text import gallery_text
 from scenarios.run import run as run_scenario
+from server.cli.bench import bench
 from server.cli.benchmark import benchmark
 from server.cli.export import fmu
 from server.cli.games import game
@@ -53,6 +54,7 @@ class OneLine(TyperGroup):
 app = typer.Typer(cls=OneLine, no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
 app.command()(run)
 app.command()(fmu)
+app.command()(bench)
 app.command()(benchmark)
 app.command()(lectures)
 app.command()(sheets)
@@ -157,26 +159,6 @@ def sweep(
         sys.stderr.write(f"combbench: warning: {text}\n")
     say(f"{ended.done} of {ended.total} runs, {ended.failed} could not be carried out; {ended.folder}/report.html")
     raise typer.Exit(1 if ended.failed or ended.done < ended.total else 0)
-
-
-@app.command()
-@plainly
-def bench(as_json: JsonOption = False) -> None:
-    """Measure speed, each figure as a ratio to a peer in the same run."""
-    from scenarios.speed.ratios import speed
-
-    report = speed()
-    if as_json:
-        say_json(report)
-        return
-    for row in report["figures"]:
-        mark = "info" if row["target"] == "information" else "ok  " if row["ok"] else "MISS"
-        value, low, high = (format_si(row[name], "") for name in ("value", "low", "high"))
-        say(f"{mark} {value:>7} {unit_text(row['unit']):<3} [{low} to {high}]  {row['target']:<24} {row['name']}")
-    say("cost of each block, ns per tick:")
-    say("  " + "  ".join(f"{name} {format_si(value, '')}" for name, value in report["blocks_ns"].items()))
-    for text in report["missing"]:
-        say(text)
 
 
 @app.command(name="catalog")
