@@ -103,7 +103,7 @@ class Speed:
 
     def _boards(self, costs: Costs) -> Figures:
         everything = (
-            "tick of a live bench with everything: nonlinear plant of 4 substeps, 9 controllers, Kalman bank, IMM, "
+            "tick of a live bench with everything: nonlinear plant of 4 substeps, 12 controllers, Kalman bank, IMM, "
             "6 + 6 self-tuning, consistency; trace, history, log, digest"
         )
         return [
@@ -133,7 +133,7 @@ class Speed:
                 "ms",
             ),
             figure("the same from scenario to figures", scaled(costs, "seven_steps_whole", 1e-6), "ms"),
-            figure("all 9 controllers, per sample", scaled(costs, "controllers", 1e-3), "us"),
+            figure("all 12 controllers, per sample", scaled(costs, "controllers", 1e-3), "us"),
             figure(
                 "planar plant with noise at 0.25 us, times real time at 100 kHz",
                 per_sample(costs, "planar", SAMPLE_NS),
