@@ -1,4 +1,4 @@
-"""Active disturbance rejection: an observer estimates what the device does not explain, and the law cancels it."""
+"""Active disturbance rejection: an observer estimates the unexplained acceleration, and the law cancels it."""
 
 from __future__ import annotations
 

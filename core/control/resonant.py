@@ -89,7 +89,7 @@ class Resonant(Block):
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
-        """Pack the resonators below half the sample rate; those above it could not be told from lower ones."""
+        """Pack the resonators below half the sample rate; samples do not show faster tones."""
         device, tone = context.device, 1e-3 * context.tone_hz * context.dt_ms
         p = cls.Packed.zeros()
         p.dt_ms = context.dt_ms
@@ -122,7 +122,7 @@ class Resonant(Block):
     def step(p: Packed, s: State, x: Ports) -> None:
         """Give up the voltage that the drive could not apply, turn the resonators, add the error, compute the voltage.
 
-        While another law drives, the resonators stay at rest.
+        While another law drives, all resonators are zero.
         """
         e = x.model - x.measured
         missed = s.voltage - x.applied if s.drove != 0.0 else 0.0
