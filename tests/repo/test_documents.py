@@ -71,14 +71,15 @@ def test_the_first_pages_lead_to_every_document(documents: dict[str, str]) -> No
 def test_what_is_installed_is_the_checkout_with_extras_that_it_has(root: Path, files: list[Path]) -> None:
     extras = tomllib.loads((root / "pyproject.toml").read_text())["project"]["optional-dependencies"]
     texts = {path: path.read_text() for path in files if path.suffix in (".md", ".py") and path.name != "CHANGELOG.md"}
-    named = {(extra, path) for path, text in texts.items() for extra in re.findall(r"pip install '\.\[(\w+)\]'", text)}
+    installed = r"pip install '(?:\.|combbench)\[(\w+)\](?: @ git\+ADDRESS)?'"
+    named = {(extra, path) for path, text in texts.items() for extra in re.findall(installed, text)}
     for path, text in texts.items():
         named |= {(extra, path) for extra in re.findall(r"\brequire\(\"\w+\", \"(\w+)\", \"", text)}
     assert {extra for extra, _ in named} >= {"fmi", "wall"}
     assert [(extra, path) for extra, path in named if extra not in extras] == []
-    assert [path for path, text in texts.items() if re.search(r"pip install [^\n]*combbench\[", text)] == [], (
-        "no index has the project"
-    )
+    assert [
+        path for path, text in texts.items() if re.search(r"pip install [^\n]*combbench\[\w+\](?! @ git)", text)
+    ] == [], "no index has the project"
 
 
 def test_links_between_documents_resolve(root: Path, files: list[Path]) -> None:
