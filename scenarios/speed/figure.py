@@ -17,7 +17,6 @@ def figure(
     *,
     least: float | None = None,
     most: float | None = None,
-    stretch: float | None = None,
 ) -> dict[str, Any]:
     """Return a row of the table, JSON-ready; without a target it is for information.
 
@@ -29,13 +28,11 @@ def figure(
         A value for each repeat.
     least, most : float, optional
         The target.
-    stretch : float, optional
-        A still better value.
     """
     value, best = median(values), most if least is None else least
     sign = "<=" if least is None else ">="
     reached = best is None or (value <= best if least is None else value >= best)
-    words = "information" if best is None else f"{sign} {best:g}" + (f" (stretch {stretch:g})" if stretch else "")
+    words = "information" if best is None else f"{sign} {best:g}"
     return {
         "name": name,
         "value": value,

@@ -22,14 +22,15 @@ def same(first: Array, second: Array) -> bool:
 
 def differences(board: Board, twin: Twin) -> Iterator[str]:
     """Name the parts in which a board and a twin differ now."""
+    yield from ["ticks"] if twin.has_stopped else []
     ours = {
         "state": board.wiring.s,
         "signals": board.wiring.w,
         "values that the observer saw last": board.observer.seen()[0],
     }
     for (part, numbers), name in zip(ours.items(), ("s", "w", "last"), strict=True):
-        yield from () if same(numbers, twin.arrays[name]) else [part]
-    yield from () if digest(board, twin.arrays["folds"]) == board.digest() else ["digest"]
+        yield from [] if same(numbers, twin.arrays[name]) else [part]
+    yield from [] if digest(board, twin.arrays["folds"]) == board.digest() else ["digest"]
 
 
 def digest(board: Board, folds: Words) -> str:

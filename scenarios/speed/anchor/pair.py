@@ -7,13 +7,14 @@ from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
+from core.board import fold, program
 from core.board.board import CHUNK, Board
 from core.board.history import History
 from core.board.observer import follow
 from scenarios.speed.anchor.difference import differences, same
 from scenarios.speed.anchor.twin import ROOM, Twin
 from scenarios.speed.boards import HISTORY_MB
-from scenarios.speed.timing import cpu_ns, loop_cost, must_run
+from scenarios.speed.timing import cpu_ns, must_run
 
 TICKS = 40 * CHUNK
 """Ticks of one measurement."""
@@ -66,13 +67,13 @@ class TwinPair:
 
 
 class StepsPair(TwinPair):
-    """The steps alone, through the table that the board has."""
+    """The steps alone, by the table that the board walks."""
 
-    def costs(self) -> Costs:
-        """Return the measurements of a tick, ns: of the board, and of its twin."""
-        wiring = self.board.wiring
-        keys = [one.key for row, one in enumerate(wiring.instances) if row not in wiring.resting]
-        return {**super().costs(), OURS: lambda: loop_cost(self.board, keys, TICKS)}
+    def _run_board(self) -> None:
+        board, wiring, nothing = self.board, self.board.wiring, np.zeros((TICKS, 0))
+        arrays = board._table, wiring.p, wiring.s, wiring.w, wiring.io
+        watches = np.zeros((0, 3))
+        program.run(TICKS, 1, board.dt_ms, *arrays, nothing, nothing, fold.begin(0), wiring.trip, watches)
 
     def _run_twin(self) -> None:
         assert self.twin is not None
@@ -101,10 +102,10 @@ class AdvancePair(TwinPair):
         twin.changes()
         twin.advance(CHUNK)
         rows = self.board.advance(CHUNK)
-        yield from () if same(rows.outputs, twin.outputs) and same(rows.taps, twin.taps) else ["rows"]
+        yield from [] if same(rows.outputs, twin.outputs) and same(rows.taps, twin.taps) else ["rows"]
         found = follow(rows.outputs, rows.taps, observer._columns, last, changes)
         seen = [(first + row, column) for column, row in changes[:found].tolist()]
-        yield from () if seen == twin.changes() else ["changes that the observer sees"]
+        yield from [] if seen == twin.changes() else ["changes that the observer sees"]
         yield from differences(self.board, twin)
 
 
@@ -136,4 +137,4 @@ class LivePair(AdvancePair):
     def _differences(self, twin: Twin) -> Iterator[str]:
         yield from differences(self.board, twin)
         for name, part in {"ring": "history", "low": "minima", "high": "maxima", "steady": "idle groups"}.items():
-            yield from () if same(getattr(self.history, f"_{name}"), twin.arrays[name]) else [part]
+            yield from [] if same(getattr(self.history, f"_{name}"), twin.arrays[name]) else [part]

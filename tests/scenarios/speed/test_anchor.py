@@ -46,6 +46,7 @@ def test_the_c_of_a_board_gives_its_bits(board, text, tmp_path):
 
 
 FAULTS = [
+    (StepsPair, "if (w[TRIP] != 0.0)", "if (w[TRIP] == 0.0)", "ticks"),
     (StepsPair, "(double)(first + i) * dt_ms", "(double)(first + i) * dt_ms * 1.5", "signals"),
     (AdvancePair, "folds[c] = a ^ (a", "folds[c] = a + (a", "digest"),
     (AdvancePair, "memcpy(rows + i * ROW, w", "memcpy(rows + i * ROW, w + 1", "rows"),
