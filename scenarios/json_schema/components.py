@@ -8,12 +8,16 @@ from __future__ import annotations
 
 from functools import cache
 
+from pydantic import WithJsonSchema
+
 from core.board.document import CHOSEN, generators
 from scenarios.json_schema.blocks import NAMES
 from scenarios.json_schema.definitions import Definitions, Schema, walked
 from scenarios.json_schema.documents import FILE, campaign
 from scenarios.reading import ADDRESS
 
+COMPONENT = "x-component"
+"""Stands for a reference to a component, until the whole OpenAPI document is built."""
 HERE = "#/components/schemas/"
 UNKNOWN = ("if", "then", "not", "allOf", "dependentRequired", "propertyNames", "maxProperties")
 """Keywords that generators do not know; without them a schema says less, and nothing else."""
@@ -21,6 +25,12 @@ CHOICES = {"plant": "plant", "reference": "reference", "controller": "control", 
 """Sections that hold one block, with its family."""
 FREE = ("controllers", "sensors", "twins")
 """Sections that repeat the tables of others, without a key that names the kind."""
+
+
+def described_by(*components: str) -> WithJsonSchema:
+    """Describe a table, which another reader checks with one clear line, by components of the OpenAPI document."""
+    found: list[Schema] = [{COMPONENT: component} for component in components]
+    return WithJsonSchema(found[0] if len(found) == 1 else {"anyOf": found})
 
 
 @cache

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field
 
-from core.board.commands import Trip
+from core.board.commands import COMMANDS, Trip
 from core.board.document import Document
 from core.cards import BlockCard
 from core.loop.score import Scores
 from core.signals import Signal
+from scenarios.json_schema.components import described_by
 
 State = Literal["running", "paused", "tripped"]
 
@@ -21,7 +22,7 @@ class ActiveFault(BaseModel):
 
     name: str
     severity: float
-    profile: dict[str, Any]
+    profile: Annotated[dict[str, Any], described_by("Profile")]
     parameters: dict[str, Any] = Field(default={}, description="Its other parameters, chosen or default")
     since_tick: int
 
@@ -33,7 +34,9 @@ class Pending(BaseModel):
     actor: str
     tick: int | None
     when: str | None
-    command: Document = Field(description="As an event of a scenario")
+    command: Annotated[Document, described_by(*(one.__name__ for one in COMMANDS.values()))] = Field(
+        description="As an event of a scenario"
+    )
 
 
 class Snapshot(BaseModel):

@@ -6,13 +6,14 @@ import shutil
 from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 from sqlalchemy import Select, delete, or_, select, update
 from sqlalchemy.orm import Session, defer
 
 from core.errors import InputError
+from scenarios.json_schema.components import described_by
 from scenarios.key import code_version
 from server.errors import ApiError, not_found
 from server.store.base import now
@@ -27,6 +28,10 @@ MOST = 200
 LONGEST_LABEL = 120
 Kind = Literal["run", "campaign", "threshold"]
 State = Literal["queued", "running", "done", "failed", "cancelled", "aborted"]
+
+
+Failure = Annotated[dict[str, Any], described_by("ErrorBody")]
+"""Why a run, a campaign or a search was not carried out."""
 
 
 class Run(BaseModel):
@@ -48,7 +53,7 @@ class Run(BaseModel):
     finished: datetime | None
     progress: float
     summary: dict[str, Any] | None
-    error: dict[str, Any] | None
+    error: Failure | None
 
 
 class RunFilter(BaseModel):

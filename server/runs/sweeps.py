@@ -16,6 +16,7 @@ from scenarios.campaign.survey import Survey
 from scenarios.campaign.sweep import Sweep
 from scenarios.key import code_version, content_hash, run_key
 from server.errors import ApiError
+from server.runs.listing import Failure
 from server.runs.queue import Queue, Requested, check_length
 from server.runs.surveys import CampaignStanding, Surveys
 from server.settings import Settings
@@ -40,7 +41,7 @@ class SweepRun(BaseModel):
     done: int = 0
     created: datetime
     finished: datetime | None
-    error: dict[str, Any] | None
+    error: Failure | None
 
 
 class Sweeps(Requested[SweepRun]):

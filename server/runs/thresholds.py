@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import Callable
-from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -15,6 +14,7 @@ from scenarios.campaign.halving import Threshold, ThresholdGoal
 from scenarios.campaign.threshold import Search
 from scenarios.key import content_hash, run_key
 from scenarios.schema import Scenario
+from server.runs.listing import Failure
 from server.runs.queue import Requested, check_length
 from server.store.models import RequestRow
 
@@ -29,7 +29,7 @@ class ThresholdRun(BaseModel):
     scenario_id: str
     progress: float = 0.0
     found: Threshold | None = Field(None, validation_alias="summary", description="Null until it is done")
-    error: dict[str, Any] | None
+    error: Failure | None
 
 
 class Thresholds(Requested[ThresholdRun]):
