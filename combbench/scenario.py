@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, Self
 
 from combbench.result import Result
 from core.board.hosted import NOTHING
 from core.board.outside import Conclusion, Law
-from core.nesting import read_toml
-from scenarios import edit, library, schema
-from scenarios.reading import read_text
+from scenarios import edit, schema
 from scenarios.run import run as run_headless
+from scenarios.source import Source, document_of
 
 
 class Scenario(schema.Scenario):
@@ -21,7 +19,7 @@ class Scenario(schema.Scenario):
     @classmethod
     def load(
         cls,
-        source: str | Path | dict[str, Any],
+        source: Source,
         like: schema.Scenario | None = None,
         *,
         set: dict[str, Any] | None = None,
@@ -30,8 +28,9 @@ class Scenario(schema.Scenario):
 
         Parameters
         ----------
-        source : str, Path or dict
-            An id of the library, a path to a TOML file, the text of such a file, or a document.
+        source : str, Path, bytes, file or dict
+            An id of the library, a path to a TOML file, the text of such a file, or a document; `document_of` has the
+            rule for texts.
         like : Scenario, optional
             A scenario that may be alike; parts that both have are taken from there.
         set : dict, optional
@@ -42,23 +41,12 @@ class Scenario(schema.Scenario):
         InputError
             Naming the field, or the line of malformed TOML; for a path that leads nowhere.
         """
-        read = cls(_document(source), like)
+        read = cls(document_of(source), like)
         return cls(edit.written(read.document, set), read) if set else read
 
 
-def _document(source: str | Path | dict[str, Any]) -> dict[str, Any]:
-    """Return the document that a source names or is."""
-    if isinstance(source, dict):
-        return source
-    if isinstance(source, Path) or source.endswith(".toml"):
-        return read_toml(read_text(Path(source), "scenario"), "scenario", f"TOML in {source}")
-    if "=" in source or "\n" in source:
-        return read_toml(source, "scenario")
-    return library.get(source).document
-
-
 def run(
-    scenario: schema.Scenario | str | Path | dict[str, Any],
+    scenario: schema.Scenario | Source,
     *,
     seed: int | None = None,
     set: dict[str, Any] | None = None,
@@ -71,7 +59,7 @@ def run(
 
     Parameters
     ----------
-    scenario : Scenario, str, Path or dict
+    scenario : Scenario, str, Path, bytes, file or dict
         As for `Scenario.load`.
     seed : int, optional
         Instead of the scenario's own.

@@ -65,10 +65,11 @@ def compile_apart(name: str, text: str) -> None:
 
 def with_units(document: Document, files: Iterable[Path], field: str = "--unit") -> Document:
     """Return a document with units from files, each under the name of its file."""
-    units = dict(document.get("units", {}))
-    for file in files:
-        units[file.stem] = {"source": read_text(file, field)}
-    return {**document, "units": units} if units else document
+    own = document.get("units", {})
+    units = {file.stem: {"source": read_text(file, field)} for file in files}
+    if not units or not isinstance(own, dict):  # units that are no table are refused when the document is read
+        return document
+    return {**document, "units": {**own, **units}}
 
 
 def beside(units: Document, document: Document) -> Document:

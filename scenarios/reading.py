@@ -41,8 +41,20 @@ def read_text(path: Path, field: str) -> str:
         When it cannot be read, or is no text.
     """
     try:
-        return path.read_text("utf-8-sig")
+        return decoded(path.read_bytes(), str(path), field)
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror}", field) from None
+
+
+def decoded(content: bytes, name: str, field: str) -> str:
+    """Return the text in the bytes of a file, with line ends as on Unix.
+
+    Raises
+    ------
+    InputError
+        When it is no text.
+    """
+    try:
+        return content.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError:
-        raise InputError(f"{path} is not UTF-8 text", field) from None
+        raise InputError(f"{name} is not UTF-8 text", field) from None

@@ -8,12 +8,16 @@ from __future__ import annotations
 
 from functools import cache
 
+from pydantic import WithJsonSchema
+
 from core.board.document import CHOSEN, generators
 from scenarios.json_schema.blocks import NAMES
 from scenarios.json_schema.definitions import Definitions, Schema, walked
-from scenarios.json_schema.documents import campaign
+from scenarios.json_schema.documents import FILE, campaign
 from scenarios.reading import ADDRESS
 
+COMPONENT = "x-component"
+"""Stands for a reference to a component, until the whole OpenAPI document is built."""
 HERE = "#/components/schemas/"
 UNKNOWN = ("if", "then", "not", "allOf", "dependentRequired", "propertyNames", "maxProperties")
 """Keywords that generators do not know; without them a schema says less, and nothing else."""
@@ -23,9 +27,15 @@ FREE = ("controllers", "sensors", "twins")
 """Sections that repeat the tables of others, without a key that names the kind."""
 
 
+def described_by(*components: str) -> WithJsonSchema:
+    """Describe a table, which another reader checks with one clear line, by components of the OpenAPI document."""
+    found: list[Schema] = [{COMPONENT: component} for component in components]
+    return WithJsonSchema(found[0] if len(found) == 1 else {"anyOf": found})
+
+
 @cache
 def components() -> dict[str, Schema]:
-    """Return the components by name, each of which another needs or a request takes."""
+    """Return the components of requests by name, with the components that they refer to."""
     known = Definitions()
     known.add("Campaign", campaign(known))
     for name in ("Campaign", "Scenario"):  # the address is for files, and generators write its name as "schema"
@@ -39,7 +49,9 @@ def components() -> dict[str, Schema]:
     for key in FREE:
         scenario[key] = {"description": scenario[key]["description"], "type": "object", "additionalProperties": True}
     scenario["slots"] = {"description": scenario["slots"]["description"], **_without_title(known.found["SlotsTable"])}
+    known.found["Campaign"]["properties"]["scenario"]["anyOf"].remove(FILE)  # a server reads no files of its callers
     known.found["ScenarioId"] = {"title": "ScenarioId", "type": "string", "description": "An id of the library."}
+    known.found["Device"]["properties"]["id"] = {"type": "string", "description": "name in the catalogue"}
     unions = {name: one["required"][0] for name, one in known.found.items() if "oneOf" in one}
     members = {_name(ref): unions[name] for name in unions for ref in known.found[name]["oneOf"]}
     found = {name: _component(schema, members.get(name)) for name, schema in known.found.items()}

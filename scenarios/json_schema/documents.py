@@ -23,6 +23,7 @@ from scenarios.seeds import BOTH_ENDS
 from scenarios.sheets.sheet import AnyStep, SheetHead
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
+FILE: Schema = {"type": "string", "pattern": r"\.toml$", "description": "A file, from the folder of the campaign."}
 OF_EDITORS: Schema = {"type": "string", "description": "address of this JSON Schema, for editors"}
 OWN_BLOCK: Schema = {
     "type": "object",
@@ -57,7 +58,7 @@ def campaign(definitions: Definitions) -> Schema:
     head = definitions.model(CampaignHead)
     head["properties"]["scenario"] = {
         "description": head["properties"]["scenario"]["description"],
-        "anyOf": [library_id(definitions), ref("Scenario")],
+        "anyOf": [library_id(definitions), FILE, ref("Scenario")],
     }
     seeds = head["properties"]["seeds"]
     head["properties"]["seeds"] = {

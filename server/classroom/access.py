@@ -41,6 +41,8 @@ _DOORS = {
         GET /watch
         GET /watch/{{secret}}
         POST {CLASS}/join
+        GET {API}/schemas
+        GET {API}/schemas/{{name}}
     """,
     Need.SESSION: f"""
         GET /design  *

@@ -26,6 +26,7 @@ from server.cli.export import fmu
 from server.cli.games import game
 from server.cli.lessons import lectures, sheets
 from server.cli.run import run
+from server.cli.schema import schema
 from server.cli.terminal import JsonOption, plainly, say, say_json
 from server.cli.units import UnitOption, check
 from server.version import VERSION
@@ -57,6 +58,7 @@ app.command()(lectures)
 app.command()(sheets)
 app.command()(check)
 app.command()(game)
+app.command()(schema)
 
 MOST_WORKERS = 1024
 NOT_WRITTEN = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE)

@@ -22,7 +22,7 @@ from scenarios.campaign.survey import Survey, listed
 from scenarios.campaign.sweep import Sweep
 from scenarios.library import get
 from scenarios.own import with_units
-from scenarios.reading import read_text
+from scenarios.reading import read_text, schema_line
 from scenarios.report.campaign import surveyed_report
 from scenarios.report.html import as_toml
 from scenarios.report.traces import write_text
@@ -139,7 +139,7 @@ def carry_out(
     campaign = Campaign(sweep, results, scheduler=scheduler, processes=own, on_progress=follow)
     try:
         database.migrate()
-        write_text(named, as_toml({**sweep.document, "id": sweep.head.id}))
+        write_text(named, schema_line("campaign") + as_toml({**sweep.document, "id": sweep.head.id}))
         try:
             campaign.run()
         finally:

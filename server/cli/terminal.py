@@ -12,10 +12,9 @@ from typing import Annotated, Any, ParamSpec, TypeVar
 import typer
 
 from core.errors import InputError
-from scenarios.library import get
 from scenarios.own import with_units
-from scenarios.reading import read_text
 from scenarios.schema import Scenario
+from scenarios.source import document_of
 
 AssignOption = Annotated[
     list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="Any field of the scenario.")
@@ -53,8 +52,5 @@ def plainly(command: Callable[P, T]) -> Callable[P, T]:
 
 
 def load(name: str, units: Sequence[Path] | None = None) -> Scenario:
-    """Return a scenario of the library, or from a file, with units from files."""
-    path = Path(name)
-    is_file = path.suffix == ".toml" or path.is_file()
-    found = Scenario.load(read_text(path, "scenario")) if is_file else get(name)
-    return Scenario.load(with_units(found.document, units)) if units else found
+    """Return the scenario that a command names (`document_of`), with units from files."""
+    return Scenario.load(with_units(document_of(name), units or ()))

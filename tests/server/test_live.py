@@ -68,7 +68,8 @@ def test_what_happened_live_is_saved_and_run_headless_with_the_same_bits(live: A
     answer = live.http.get(f"/api/v1/benches/{bench['id']}/scenario")
     assert answer.headers["content-type"].startswith("text/plain")
     digest = live.http.get(f"/api/v1/benches/{bench['id']}/digest").json()
-    assert answer.text.startswith(f"# {digest['tick']} ticks, digest {digest['digest']}\n")
+    told = f"# {digest['tick']} ticks, digest {digest['digest']}"
+    assert answer.text.split("\n")[:2] == ["#:schema ./scenario.schema.json", told]
     result = run(Scenario.load(answer.text))
     assert (result.board.tick, result.digest) == (digest["tick"], digest["digest"])
 
