@@ -8,12 +8,16 @@ from __future__ import annotations
 
 from functools import cache
 
+from pydantic import WithJsonSchema
+
 from core.board.document import CHOSEN, generators
 from scenarios.json_schema.blocks import NAMES
 from scenarios.json_schema.definitions import Definitions, Schema, walked
 from scenarios.json_schema.documents import FILE, campaign
 from scenarios.reading import ADDRESS
 
+COMPONENT = "x-component"
+"""Stands for a reference to a component, until the whole OpenAPI document is built."""
 HERE = "#/components/schemas/"
 UNKNOWN = ("if", "then", "not", "allOf", "dependentRequired", "propertyNames", "maxProperties")
 """Keywords that generators do not know; without them a schema says less, and nothing else."""
@@ -23,9 +27,15 @@ FREE = ("controllers", "sensors", "twins")
 """Sections that repeat the tables of others, without a key that names the kind."""
 
 
+def described_by(*components: str) -> WithJsonSchema:
+    """Describe a table, which another reader checks with one clear line, by components of the OpenAPI document."""
+    found: list[Schema] = [{COMPONENT: component} for component in components]
+    return WithJsonSchema(found[0] if len(found) == 1 else {"anyOf": found})
+
+
 @cache
 def components() -> dict[str, Schema]:
-    """Return the components by name, each of which another needs or a request takes."""
+    """Return the components of requests by name, with the components that they refer to."""
     known = Definitions()
     known.add("Campaign", campaign(known))
     for name in ("Campaign", "Scenario"):  # the address is for files, and generators write its name as "schema"

@@ -9,9 +9,10 @@ from typing import Annotated, Any, Self
 
 from fastapi import Request, Response
 from fastapi.routing import APIRoute
-from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from core.nesting import DEEPEST, TOO_DEEP, depth
+from scenarios.json_schema.components import described_by
 
 
 class Body(BaseModel):
@@ -50,13 +51,10 @@ class AnswerBody(BaseModel):
         return cls.model_validate({**values, **given}, from_attributes=True)
 
 
-DOCUMENT = "x-document"
-"""Names the component that describes a document, until the OpenAPI document is built; its reader checks the document,
-with one clear line."""
-ScenarioDocument = Annotated[dict[str, Any], WithJsonSchema({DOCUMENT: "Scenario"})]
-CampaignDocument = Annotated[dict[str, Any], WithJsonSchema({DOCUMENT: "Campaign"})]
-DeviceDocument = Annotated[dict[str, Any], WithJsonSchema({DOCUMENT: "Device"})]
-EnvironmentDocument = Annotated[dict[str, Any], WithJsonSchema({DOCUMENT: "Environment"})]
+ScenarioDocument = Annotated[dict[str, Any], described_by("Scenario")]
+CampaignDocument = Annotated[dict[str, Any], described_by("Campaign")]
+DeviceDocument = Annotated[dict[str, Any], described_by("Device")]
+EnvironmentDocument = Annotated[dict[str, Any], described_by("Environment")]
 Source = Annotated[str | ScenarioDocument, Field(description="Library id, TOML text, or document")]
 MemberIds = Annotated[list[str] | None, Field(max_length=500, description="Ids of students; null: the whole class")]
 Values = Annotated[dict[str, Any], Field(description="Values by dotted path; they replace values of the scenario")]

@@ -8,9 +8,9 @@ from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from pydantic import TypeAdapter
 
+from scenarios.json_schema.components import COMPONENT
 from scenarios.json_schema.components import components as documents
 from scenarios.json_schema.definitions import walked
-from server.api.bodies import DOCUMENT
 from server.api.examples import EXAMPLES
 from server.api.tags import TAGS
 from server.classroom.access import Need, need_of
@@ -118,8 +118,8 @@ def build(app: FastAPI) -> dict[str, Any]:
 
 
 def _described(table: dict[str, Any]) -> dict[str, Any]:
-    """Refer to the component that describes a document, in the place of its name."""
-    component = table.pop(DOCUMENT, None)
+    """Refer to the component that describes a table, in the place of its name."""
+    component = table.pop(COMPONENT, None)
     return table if component is None else {"$ref": REF.format(model=component), **table}
 
 

@@ -194,7 +194,7 @@ async def begin_for_all(class_id: Id, body: SheetForAll, service: ServiceDep) ->
     return Outcomes.of(refusals)
 
 
-@router.get("/classes/{class_id}/grades", responses={200: {"model": GradeList, "content": {"text/csv": {}}}})
+@router.get("/classes/{class_id}/grades", response_model=GradeList, responses={200: {"content": {"text/csv": {}}}})
 async def get_grades(
     class_id: Id, service: ServiceDep, kind: Annotated[Literal["json", "csv"], Query(alias="format")] = "json"
 ) -> Response:

@@ -7,17 +7,24 @@ from collections import deque
 from collections.abc import Callable
 from datetime import UTC, datetime
 from itertools import islice
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Annotated, Any, cast
 
 from pydantic import Field
 
+from core.board.commands import COMMANDS
 from core.board.document import Document
 from core.board.log import Log, LogEntry
+from scenarios.json_schema.components import described_by
+from server.bench.commands import RUN_KINDS
 
 if TYPE_CHECKING:
     from server.bench.replay import TickSource
 
 KEPT = 4000
+
+
+Logged = Annotated[Document, described_by(*(one.__name__ for one in (*COMMANDS.values(), *RUN_KINDS.values())))]
+"""A command as the log has it."""
 
 
 class Event(LogEntry):
@@ -26,7 +33,7 @@ class Event(LogEntry):
     seq: int = Field(description="Number of the event on this bench: 1, 2, 3, ...")
     actor: str = Field(description="Who did it: a person's page, the API, the scenario or the board itself")
     text: str = Field(description="One line for a person, past tense")
-    command: Document | None = Field(None, description="The command, as an event of a scenario if it is to the board")
+    command: Logged | None = Field(None, description="The command, as an event of a scenario if it is to the board")
     at: datetime = Field(description="Wall clock, UTC")
 
 

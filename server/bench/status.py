@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field
 
-from core.board.commands import Trip
+from core.board.commands import COMMANDS, Trip
 from core.board.document import Document
 from core.cards import BlockCard
 from core.faults.fault import Profile
 from core.loop.score import Scores
 from core.signals import Signal
+from scenarios.json_schema.components import described_by
 
 State = Literal["running", "paused", "tripped"]
 
@@ -34,7 +35,9 @@ class Pending(BaseModel):
     actor: str
     tick: int | None
     when: str | None
-    command: Document = Field(description="As an event of a scenario")
+    command: Annotated[Document, described_by(*(one.__name__ for one in COMMANDS.values()))] = Field(
+        description="As an event of a scenario"
+    )
 
 
 class Snapshot(BaseModel):

@@ -164,6 +164,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/schemas": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Schemas
+         * @description List the JSON Schemas of the documents that people write.
+         */
+        get: operations["list_schemas"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/schemas/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Schema
+         * @description Return the JSON Schema of a kind of document; saved documents name its file.
+         */
+        get: operations["get_schema"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/units": {
         parameters: {
             query?: never;
@@ -2930,9 +2970,7 @@ export interface components {
             /** Severity */
             severity: number;
             /** Profile */
-            profile: {
-                [key: string]: unknown;
-            };
+            profile: components["schemas"]["Profile"];
             /**
              * Parameters
              * @description Its other parameters, chosen or default
@@ -4500,9 +4538,7 @@ export interface components {
              * Command
              * @description The command, as an event of a scenario if it is to the board
              */
-            command?: {
-                [key: string]: unknown;
-            } | null;
+            command?: components["schemas"]["ResetTrip"] | components["schemas"]["Heal"] | components["schemas"]["Inject"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | null;
             /** Old */
             old?: unknown;
             /** New */
@@ -5019,6 +5055,38 @@ export interface components {
             reason: string | null;
             /** Points */
             points: number | null;
+        };
+        /**
+         * Grade
+         * @description A sheet of a student.
+         */
+        Grade: {
+            /** Student */
+            student: string;
+            /** Member */
+            member: string;
+            /** Sheet */
+            sheet: string;
+            /** Title */
+            title: string;
+            /** Done */
+            done: boolean;
+            /** Points */
+            points: number;
+            /** Of */
+            of: number;
+            /** Recordings */
+            recordings: string[];
+            /** Steps */
+            steps: components["schemas"]["StepGrade"][];
+        };
+        /**
+         * Grades
+         * @description The work of the students of a class at sheets.
+         */
+        Grades: {
+            /** Grades */
+            grades: components["schemas"]["Grade"][];
         };
         /**
          * Hand
@@ -6593,9 +6661,7 @@ export interface components {
              * Command
              * @description As an event of a scenario
              */
-            command: {
-                [key: string]: unknown;
-            };
+            command: components["schemas"]["ResetTrip"] | components["schemas"]["Heal"] | components["schemas"]["Inject"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"];
         };
         /**
          * Play
@@ -7235,9 +7301,7 @@ export interface components {
                 [key: string]: unknown;
             } | null;
             /** Error */
-            error: {
-                [key: string]: unknown;
-            } | null;
+            error: components["schemas"]["ErrorBody"] | null;
         };
         /**
          * RunComparison
@@ -7392,6 +7456,29 @@ export interface components {
              * @description Parts of its claims that are not read or cannot be judged
              */
             warnings: string[];
+        };
+        /**
+         * SchemaCard
+         * @description A JSON Schema in a list.
+         */
+        SchemaCard: {
+            /** Name */
+            name: string;
+            /** Title */
+            title: string;
+            /**
+             * Url
+             * @description Its address, which is its $id too
+             */
+            url: string;
+        };
+        /**
+         * SchemaList
+         * @description The JSON Schemas.
+         */
+        SchemaList: {
+            /** Schemas */
+            schemas: components["schemas"]["SchemaCard"][];
         };
         /**
          * Scores
@@ -7941,6 +8028,42 @@ export interface components {
             answer: string;
         };
         /**
+         * StepGrade
+         * @description A step of a student's sheet.
+         */
+        StepGrade: {
+            /** Step */
+            step: string;
+            /** Kind */
+            kind: string;
+            /**
+             * State
+             * @description done, left out, or open
+             */
+            state: string;
+            /**
+             * Earned
+             * @description Points before losses; points of a prediction once it is judged
+             */
+            earned: number;
+            /**
+             * Lost
+             * @description Points that wrong answers and hints cost
+             */
+            lost: number;
+            /** Of */
+            of: number;
+            /** Answers */
+            answers: string[];
+            /** Reasons */
+            reasons: string[];
+            /**
+             * Tick
+             * @description Tick of the bench at which it was done
+             */
+            tick: number;
+        };
+        /**
          * StepPeriod
          * @description Pause, then run one period of the drive at once.
          */
@@ -8141,9 +8264,7 @@ export interface components {
             /** Finished */
             finished: string | null;
             /** Error */
-            error: {
-                [key: string]: unknown;
-            } | null;
+            error: components["schemas"]["ErrorBody"] | null;
         };
         /**
          * SweptSine
@@ -8264,9 +8385,7 @@ export interface components {
             /** @description Null until it is done */
             found?: components["schemas"]["Threshold"] | null;
             /** Error */
-            error: {
-                [key: string]: unknown;
-            } | null;
+            error: components["schemas"]["ErrorBody"] | null;
         };
         /**
          * ThresholdTurn
@@ -10335,11 +10454,8 @@ export interface components {
          * @description A lateral comb resonator, from measured values or from its drawing.
          */
         Device: {
-            /**
-             * @description name in the catalogue
-             * @enum {unknown}
-             */
-            id?: "ch3" | "ch4" | "double-integrator" | "fabricated-1" | "fabricated-2" | "first-order-gain" | "gyro-2-2" | "gyro-4-5" | "gyro-a" | "gyro-b" | "gyro-c" | "gyro-lcr-350" | "lcr-350" | "second-order-gain" | "table-1-1-350-max" | "table-1-1-350-min" | "table-1-1-350-std" | "table-1-1-400-max" | "table-1-1-400-min" | "table-1-1-400-std" | "table-1-1-450-max" | "table-1-1-450-min" | "table-1-1-450-std" | "table-1-1-500-max" | "table-1-1-500-min" | "table-1-1-500-std" | "unstable-first-order";
+            /** @description name in the catalogue */
+            id?: string;
             /**
              * @description what people read
              * @default
@@ -14775,6 +14891,8 @@ export type GameCard = components['schemas']['GameCard'];
 export type GameList = components['schemas']['GameList'];
 export type GivenLayout = components['schemas']['GivenLayout'];
 export type GivenView = components['schemas']['GivenView'];
+export type Grade = components['schemas']['Grade'];
+export type Grades = components['schemas']['Grades'];
 export type Hand = components['schemas']['Hand'];
 export type HandIn = components['schemas']['HandIn'];
 export type Hands = components['schemas']['Hands'];
@@ -14884,6 +15002,8 @@ export type ScenarioCard = components['schemas']['ScenarioCard'];
 export type ScenarioList = components['schemas']['ScenarioList'];
 export type ScenarioSource = components['schemas']['ScenarioSource'];
 export type ScenarioText = components['schemas']['ScenarioText'];
+export type SchemaCard = components['schemas']['SchemaCard'];
+export type SchemaList = components['schemas']['SchemaList'];
 export type Scores = components['schemas']['Scores'];
 export type SectionView = components['schemas']['SectionView'];
 export type Seek = components['schemas']['Seek'];
@@ -14912,6 +15032,7 @@ export type Standing = components['schemas']['Standing'];
 export type Start = components['schemas']['Start'];
 export type Step = components['schemas']['Step'];
 export type StepAnswer = components['schemas']['StepAnswer'];
+export type StepGrade = components['schemas']['StepGrade'];
 export type StepPeriod = components['schemas']['StepPeriod'];
 export type StepView = components['schemas']['StepView'];
 export type StudentGame = components['schemas']['StudentGame'];
@@ -15337,6 +15458,67 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ScenarioText"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    list_schemas: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SchemaList"];
+                };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    get_schema: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description scenario, campaign, sheet or lecture */
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/schema+json": Record<string, never>;
                 };
             };
             /** @description Refused or failed */
@@ -20637,7 +20819,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": unknown;
+                    "application/json": components["schemas"]["Grades"];
                     "text/csv": unknown;
                 };
             };
