@@ -1,4 +1,4 @@
-"""A scenario by its source: what a person names on the command line or in Python, and where it is read from."""
+"""The document of a scenario from its source, as people name it on the command line and in Python."""
 
 from __future__ import annotations
 
@@ -17,13 +17,12 @@ Source = str | PathLike[str] | bytes | IO[str] | IO[bytes] | dict[str, Any]
 def document_of(source: Source) -> Document:
     """Return the document of a scenario.
 
-    A document stands for itself, a path object for its file, bytes and an open file for the TOML in them. A text is, in
-    this order:
+    A document is its own source, a path object means its file, bytes and an open file hold TOML. A text means the first
+    of these:
 
-    1. an id of the library, whatever files are there;
+    1. an id of the library, whatever files exist;
     2. TOML, if it has several lines;
-    3. a path, if it ends in ``.toml`` or something is there under this name; ``./first-look`` is a file though
-       ``first-look`` is an id;
+    3. a path, if it ends in ``.toml`` or exists; ``./first-look`` is a path, ``first-look`` an id;
     4. TOML, if it has an equals sign.
 
     Raises
@@ -44,7 +43,7 @@ def document_of(source: Source) -> Document:
         return library.get(source).document
     if "\n" in source:
         return read_toml(source, "scenario")
-    if source.endswith(".toml") or _is_there(source):
+    if source.endswith(".toml") or _exists(source):
         return _of_file(Path(source))
     if "=" in source:
         return read_toml(source, "scenario")
@@ -59,8 +58,8 @@ def _of_file(path: Path) -> Document:
     return read_toml(read_text(path, "scenario"), "scenario", f"TOML in {path}")
 
 
-def _is_there(name: str) -> bool:
-    """Whether there is a file or a folder of a name; a text may be too long for one."""
+def _exists(name: str) -> bool:
+    """Whether a file or a folder has this name; a text may be too long for a name."""
     try:
         return Path(name).exists()
     except (OSError, ValueError):

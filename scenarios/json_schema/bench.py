@@ -46,11 +46,10 @@ ABOUT = {
     "rate": "the angular rate of the frame of a gyroscope",
     "waveform": "the waveform that a controller of a gyroscope may put out",
 }
-"""The meaning of each section."""
+"""The meaning of each section; the generators of an installed plant may have other names."""
 CHOOSES = ("plant", "reference", "slots", "controller", "controllers", "sensor", "sensors", "identifiers", "diagnosers",
            "readouts", "twins")  # fmt: skip
 """Sections that name blocks, besides the generators: units of a bench's own may be among these blocks."""
-
 
 UNIT: Schema = {
     "type": "object",
@@ -69,7 +68,7 @@ def bench(definitions: Definitions) -> tuple[dict[str, Schema], tuple[str, ...]]
     choosing = (*CHOOSES, *generators())
     found |= {key: definitions.add(f"{pascal(key)}Table", found[key]) for key in choosing if key in found}
     found["twins"] = definitions.add("TwinsTable", _twins(definitions, found))
-    return {**settings, **{key: {"description": ABOUT[key], **found[key]} for key in sections()}}, choosing
+    return {**settings, **{key: {"description": ABOUT.get(key, key), **found[key]} for key in sections()}}, choosing
 
 
 def device(definitions: Definitions) -> Schema:
@@ -108,13 +107,13 @@ def _slots() -> Schema:
 def _twins(definitions: Definitions, found: dict[str, Schema]) -> Schema:
     """Return the schema of the twins: a table without its kind changes values of the bench, which is not looked up."""
 
-    def partial(key: str) -> Schema:
+    def table(key: str) -> Schema:
         if key in CHOSEN:
             return named(_if_named("kind", family(definitions, CHOSEN[key])))
         kinds = {"plant": "model", "controller": "kind", "sensor": "kind"}
         return _if_named(kinds[key], found[key]) if key in kinds else found[key]
 
-    tables = {key: partial(key) for key in OWN}
+    tables = {key: table(key) for key in OWN}
     return named({"type": "object", "properties": tables, "additionalProperties": False}, MOST_TWINS)
 
 
@@ -133,7 +132,7 @@ def _packages(definitions: Definitions) -> Schema:
 
 
 def _of_plants(choose: Callable[[type[Block]], str]) -> list[str]:
-    """Return what the plants choose where a bench chooses nothing."""
+    """Return the usual block of each plant, for a bench that chooses none."""
     return [choose(plant) for plant in registry.blocks("plant").values()]
 
 

@@ -35,7 +35,7 @@ def described_by(*components: str) -> WithJsonSchema:
 
 @cache
 def components() -> dict[str, Schema]:
-    """Return the components by name, each of which another needs or a request takes."""
+    """Return the components of requests by name, with the components that they refer to."""
     known = Definitions()
     known.add("Campaign", campaign(known))
     for name in ("Campaign", "Scenario"):  # the address is for files, and generators write its name as "schema"

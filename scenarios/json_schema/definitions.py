@@ -46,14 +46,29 @@ class Definitions:
         is_model = isinstance(kind, type) and issubclass(kind, BaseModel)
         make = kind.model_json_schema if is_model else TypeAdapter(kind).json_schema
         schema: Schema = make(ref_template=REF)
-        for name, part in schema.pop("$defs", {}).items():
-            self.add(name, plain(part))
-        return plain(schema)
+        parts = {name: plain(part) for name, part in schema.pop("$defs", {}).items()}
+        free = {name: self._free(name, part) for name, part in parts.items()}
+        names = {ref(name)["$ref"]: ref(free[name])["$ref"] for name in parts}
+        for name, part in parts.items():
+            self.add(free[name], _renamed(part, names))
+        return _renamed(plain(schema), names)
+
+    def _free(self, name: str, schema: Schema) -> str:
+        """Return a name for the part of a model; classes of installed packages may have a name that is taken."""
+        titled = {"title": name, **schema}
+        is_free = name in self._fixed or self.found.get(name, titled) == titled
+        return name if is_free else self._free(f"{name}2", schema)
 
 
 def ref(name: str) -> Schema:
     """Return a reference to a definition."""
     return {"$ref": REF.format(model=name)}
+
+
+def _renamed(schema: Schema, names: dict[str, str]) -> Schema:
+    """Return a schema with other references."""
+    made: Schema = walked(schema, lambda one: {**one, "$ref": names[one["$ref"]]} if one.get("$ref") in names else one)
+    return made
 
 
 def plain(schema: Schema) -> Schema:

@@ -31,7 +31,7 @@ def event(definitions: Definitions) -> Schema:
 
 
 def library_event(definitions: Definitions) -> Schema:
-    """Add an event of a bench without units of its own, whose faults are those of the library; return the reference."""
+    """Add an event of a bench without units of its own: all its blocks are in the library; return the reference."""
     cases = []
     for name in blocks("faults"):
         severity, parameters = fault_parameters(definitions, name)

@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 from jsonschema import Draft202012Validator
 from jsonschema.exceptions import best_match
+from pydantic import Field, create_model
 from typer.testing import CliRunner
 
 from core import registry
@@ -23,6 +24,7 @@ from scenarios import lectures, library, sheets
 from scenarios.campaign.sweep import CampaignHead, Sweep
 from scenarios.json_schema.bench import ABOUT
 from scenarios.json_schema.components import components
+from scenarios.json_schema.definitions import Definitions
 from scenarios.json_schema.documents import DOCUMENTS, json_schema
 from scenarios.lecture import Lecture, LectureHead
 from scenarios.schema import Scenario, ScenarioHead
@@ -318,6 +320,17 @@ def test_units_of_a_bench_may_have_any_kind_and_parameters() -> None:
     own = {"units": {"mine": {"source": "..."}}, "controller": {"kind": "mine", "gain": 1}}
     assert refusal("scenario", own) == ""
     assert refusal("scenario", {**own, "contrller": {}}) != ""
+
+
+def test_parts_of_two_models_may_have_one_name() -> None:
+    def named_after(field: str) -> Any:
+        part = create_model("Part", **{field: (float, Field(1.0, description=field))})
+        return create_model("Whole", part=(part, Field(description="a part")))
+
+    known = Definitions()
+    first, second, again = (known.model(named_after(field))["properties"]["part"] for field in ("one", "other", "one"))
+    assert (first["$ref"], second["$ref"], again["$ref"]) == ("#/$defs/Part", "#/$defs/Part2", "#/$defs/Part")
+    assert [*known.found["Part2"]["properties"]] == ["other"]
 
 
 def test_components_are_plain_and_take_the_library() -> None:

@@ -2,10 +2,10 @@ import { ApiError, at, client, data } from "./client";
 import type {
   AliasSource,
   BodeOf,
+  Campaign,
   Command,
   CompareWith,
   Design,
-  Document,
   ExcitationSource,
   ForkFrom,
   LinkWords,
@@ -84,7 +84,7 @@ export const api = {
   startRun: (body: NewRun) => data(client.POST("/api/v1/runs", { body })),
   cancelRun: (id: string) => data(client.DELETE("/api/v1/runs/{run_id}", run(id))),
   sweeps: async (query: RunFilter) => (await data(client.GET("/api/v1/sweeps", { params: { query } }))).sweeps,
-  startSweep: (sweep: Document, label: string) => data(client.POST("/api/v1/sweeps", { body: { sweep, label } })),
+  startSweep: (sweep: Campaign, label: string) => data(client.POST("/api/v1/sweeps", { body: { sweep, label } })),
   renameSweep: (id: string, label: string) =>
     data(client.PATCH("/api/v1/sweeps/{sweep_id}", { ...sweep(id), body: { label } })),
   removeSweeps: (ids?: string[]) => data(client.POST("/api/v1/sweeps/remove", { body: { ids } })),

@@ -212,7 +212,12 @@ it("shows how fifty runs are spread: over two quantities, or counted over one", 
 
 it("says that nothing is done yet, and why a campaign failed", async () => {
   server.on("GET", "/sweeps/sweep-1/points", { ...points, points: [], found: 0 });
-  const failed = { ...sweep, done: 0, state: "failed" as const, error: { message: "the disk is full" } };
+  const failed = {
+    ...sweep,
+    done: 0,
+    state: "failed" as const,
+    error: { code: "failed", message: "the disk is full" },
+  };
   mount(<CampaignDetail sweep={failed} onChanged={() => undefined} />);
   expect(await screen.findByText("No result")).toBeVisible();
   expect(screen.getByText(/failed: the disk is full$/)).toBeVisible();

@@ -1,4 +1,4 @@
-import type { Document } from "../api/types";
+import type { Campaign } from "../api/types";
 import { metricTitle } from "../ui/metric-name";
 import { roundTo } from "../ui/unit-scale";
 
@@ -69,6 +69,9 @@ export function parseValue(text: string): unknown {
   }
 }
 
+/** A number as it was typed; the server refuses another value and names its field. */
+const numberOf = (text: string) => parseValue(text) as number;
+
 /** Several values, separated by commas; "1:10:4" is four values evenly spaced from 1 to 10. */
 export function parseValues(text: string): unknown[] {
   return text
@@ -108,7 +111,7 @@ export function runOf(draft: Draft) {
 }
 
 /** The campaign's document, as a file would have it. */
-export function campaignOf(draft: Draft): Document {
+export function campaignOf(draft: Draft): Campaign {
   const { scenario, firstSeed, seeds, vary, points, hypercubeSeed, devices } = draft;
   const ranges = filled(draft.ranges);
   return {
@@ -128,7 +131,7 @@ export function campaignOf(draft: Draft): Document {
           ranges: Object.fromEntries(
             ranges.map(({ path, min, max, log }) => [
               path.trim(),
-              { min: parseValue(min), max: parseValue(max), scale: log ? "log" : "linear" },
+              { min: numberOf(min), max: numberOf(max), scale: log ? ("log" as const) : ("linear" as const) },
             ]),
           ),
         },
