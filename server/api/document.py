@@ -9,6 +9,7 @@ from fastapi.openapi.utils import get_openapi
 from pydantic import TypeAdapter
 
 from server.api.examples import EXAMPLES
+from server.api.paging import LINK
 from server.classroom.access import Need, need_of
 from server.errors import ErrorReply
 from server.stream.wire import ClientMessage, ServerMessage
@@ -25,7 +26,6 @@ BEARER = {
     "description": "The access token that the server prints at its start; for a student, the session of a class",
 }
 PARAMETERS = {
-    "after": "Number of the last known entry",
     "bench_id": "Id of a bench",
     "benchmark_id": "Id of a benchmark",
     "class_id": "Id of a class",
@@ -38,7 +38,6 @@ PARAMETERS = {
     "game_id": "Id of a game",
     "kind": "Kind of the listed links; left out: all kinds",
     "lecture_id": "Id of a lecture",
-    "limit": "Largest number of entries",
     "link_id": "Id of a link",
     "member_id": "Id of a student",
     "name": "Id of a diagnoser or a read-out; on a twin: <twin>:<id>",
@@ -100,7 +99,7 @@ def build(app: FastAPI) -> dict[str, Any]:
 
 
 def _complete(operation: dict[str, Any], is_open: bool) -> None:
-    """Add the permitted callers, the meaning of parameters, the shape of bodies, and the one shape of all failures."""
+    """Add who may call, the meaning of parameters, the next page, the shape of bodies, and the shape of failures."""
     operation["security"] = [] if is_open else [{"token": []}]
     for parameter in operation.get("parameters", []):
         parameter.setdefault("description", PARAMETERS.get(parameter["name"], ""))
@@ -108,6 +107,8 @@ def _complete(operation: dict[str, Any], is_open: bool) -> None:
         if name == "application/json":
             values = EXAMPLES.get(operation["operationId"], ())
             content["examples"] = {f"example-{number}": {"value": value} for number, value in enumerate(values, 1)}
+    if {"after", "limit"} <= {parameter["name"] for parameter in operation.get("parameters", [])}:
+        operation["responses"]["200"]["headers"] = {"Link": LINK}
     operation["responses"].pop("422", None)
     shape = {"application/json": {"schema": {"$ref": REF.format(model="ErrorReply")}}}
     operation["responses"]["default"] = {"description": "Refused or failed", "content": shape}

@@ -11,6 +11,7 @@ from pydantic import BaseModel, Field
 from server.api.bodies import Body
 from server.api.deps import CallerDep, PersonDep, RateLimited, ServiceDep, SessionDep
 from server.api.files import FORMAT_RESPONSES, CutDep, stored_trace
+from server.api.paging import AgePage
 from server.api.router import Router
 from server.bench.recording import Wanted
 from server.bench.status import Bench
@@ -62,16 +63,16 @@ async def stop_recording(recording_id: str, session: SessionDep, service: Servic
 
 
 @router.get("/benches/{bench_id}/recordings")
-async def list_bench_recordings(session: SessionDep, service: ServiceDep) -> RecordingList:
-    """List the recordings of a bench."""
-    return RecordingList(recordings=await service.recordings.all([session.id]))
+async def list_bench_recordings(session: SessionDep, service: ServiceDep, page: AgePage) -> RecordingList:
+    """List the recordings of a bench, newest first."""
+    return RecordingList(recordings=await service.recordings.all([session.id], page))
 
 
 @router.get("/recordings")
-async def list_recordings(service: ServiceDep, person: PersonDep) -> RecordingList:
-    """List all recordings, also of deleted benches; a student sees the recordings of the own benches."""
+async def list_recordings(service: ServiceDep, person: PersonDep, page: AgePage) -> RecordingList:
+    """List all recordings, newest first, also of deleted benches; a student sees the recordings of the own benches."""
     benches = None if person.is_teacher else service.people.benches_of(person)
-    return RecordingList(recordings=await service.recordings.all(benches))
+    return RecordingList(recordings=await service.recordings.all(benches, page))
 
 
 @router.get("/recordings/{recording_id}")

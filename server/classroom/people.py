@@ -16,6 +16,7 @@ from typing import cast
 from sqlalchemy import delete, select, update
 
 from server.classroom.access import Need
+from server.paging import Key
 from server.security.person import Person, Role, hash_of, new_secret
 from server.store.base import now
 from server.store.change import Change
@@ -24,6 +25,11 @@ from server.store.people import PersonRow
 
 MOST_EARLIER = 100
 """Earlier benches of a student that are remembered."""
+
+
+def by_arrival(person: Person) -> Key:
+    """Return the key of a person in a list of people."""
+    return person.joined, person.id
 
 
 class People:
@@ -54,7 +60,7 @@ class People:
             self._take(row)
 
     def _take(self, row: PersonRow) -> Person:
-        person = Person(row.id, row.name, cast(Role, row.role), row.class_id or "", row.until)
+        person = Person(row.id, row.name, cast(Role, row.role), row.class_id or "", row.until, row.joined)
         self._by_hash[row.secret_hash], self._hashes[row.id] = person, row.secret_hash
         if row.bench_id:
             self._benches[row.id] = row.bench_id

@@ -30,6 +30,7 @@ from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
 from server.errors import ApiError, body_of
 from server.metrics import Metrics
+from server.paging import Page
 from server.runs.listing import Kind, Requests, RunFilter, change, fresh
 from server.runs.worker import NICE, NotKept
 from server.settings import Settings
@@ -89,9 +90,9 @@ class Requested(ABC, Generic[Shown]):
     def shown(self, row: RequestRow) -> Shown:
         """Return a request as the interface shows it, with its progress while it is under way."""
 
-    async def all(self, wanted: RunFilter) -> list[Shown]:
+    async def all(self, wanted: RunFilter, page: Page) -> list[Shown]:
         """List the selected requests, newest first."""
-        return [self.shown(row) for row in await self._requests.all(self.kind, wanted)]
+        return [self.shown(row) for row in await self._requests.all(self.kind, wanted, page)]
 
     async def get(self, row_id: str) -> Shown:
         """Return one, or refuse with 404."""

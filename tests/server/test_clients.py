@@ -58,6 +58,9 @@ def test_a_campaign(lab: Any) -> None:
     points = lab.points(sweep)
     assert [point["labels"]["controller.adaptation_gain"] for point in points] == [10.0, 30.0]
     assert [point["runs"] for point in points] == [2, 2]
+    assert lab.points(sweep, limit=1) == points[:1]
+    pages = lab.pages(f"/sweeps/{sweep['id']}/points", limit=1, sort="runs")
+    assert [[point["labels"] for point in page["points"]] for page in pages] == [[one["labels"]] for one in points]
 
 
 def test_a_live_bench_and_its_stream(lab: Any) -> None:
