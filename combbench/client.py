@@ -11,6 +11,8 @@ It needs Python 3.11 and numpy; the stream needs the package websockets too.
 
 from __future__ import annotations
 
+import contextlib
+import http.client
 import io
 import itertools
 import json
@@ -104,10 +106,27 @@ class Client:
         """Make a live bench; with ``paused=True`` it stands still until it is stepped."""
         return Bench(self, self.ask("POST", "/benches", {"scenario": scenario, **fields})["id"])
 
+    def watch(self, path: str) -> Iterator[tuple[str, dict[str, Any]]]:
+        """Return the events of work under way, such as ``/runs/<id>``, with their data: how far it is, last its end."""
+        event = ""
+        with self._open("GET", f"{path}/progress") as answer:
+            for line in answer:
+                name, _, value = line.decode().rstrip("\n").partition(": ")
+                if name == "event":
+                    event = value
+                elif name == "data":
+                    yield event, json.loads(value)
+
     def _ended(self, kind: str, thing: dict[str, Any]) -> dict[str, Any]:
+        path = f"{kind}/{thing['id']}"
         while thing["state"] in ("queued", "running"):
-            time.sleep(0.1)
-            thing = self.ask("GET", f"{kind}/{thing['id']}")
+            # A server may be too old for such streams, or have too many open; a stream may break off.
+            with contextlib.suppress(Refused, OSError, http.client.HTTPException):
+                for event, data in self.watch(path):
+                    thing = thing if event == "progress" else data
+            if thing["state"] in ("queued", "running"):
+                time.sleep(0.1)
+                thing = self.ask("GET", path)
         if thing["state"] != "done":
             raise Refused(thing["state"], (thing["error"] or {}).get("message", thing["state"]))
         return thing

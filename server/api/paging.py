@@ -32,7 +32,7 @@ def pages(*kinds: Any, usual: int = MOST, most: int = MOST) -> Any:
     usual, most : int
         Rows of a page without a limit, and the largest limit.
     """
-    keys: TypeAdapter[Any] = TypeAdapter(GenericAlias(tuple, kinds))
+    keys: TypeAdapter[Any] = TypeAdapter(GenericAlias(tuple, kinds))  # type: ignore[arg-type]
     rows = Query(usual, ge=1, le=most, description=f"Most rows of this page: {usual} unless given, at most {most}")
     place = Query(
         None,

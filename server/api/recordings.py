@@ -79,7 +79,7 @@ async def list_recordings(service: ServiceDep, person: PersonDep, page: AgePage)
 async def get_recording(recording_id: str, service: ServiceDep, person: PersonDep) -> RecordingDetail:
     """Describe a recording: scenario, seed, events, versions, layout."""
     recording = await service.recordings.get(recording_id)
-    _must_see(service, person, recording)
+    must_see(service, person, recording)
     return recording
 
 
@@ -121,11 +121,11 @@ async def get_recording_trace(
 ) -> Response:
     """Download a recording, or a part of it."""
     recording, path = await service.recordings.finished(recording_id)
-    _must_see(service, person, recording)
+    must_see(service, person, recording)
     return await stored_trace(service, path, recording.name, kind, cut)
 
 
-def _must_see(service: Service, person: Person, recording: RecordingDetail) -> None:
+def must_see(service: Service, person: Person, recording: RecordingDetail) -> None:
     """Refuse a recording of another's bench, as if it were not there."""
     if not service.people.may_see_recordings(person, recording.bench_id):
         raise not_found("recording", recording.id)

@@ -63,6 +63,19 @@ def test_a_campaign(lab: Any) -> None:
     assert [[point["labels"] for point in page["points"]] for page in pages] == [[one["labels"]] for one in points]
 
 
+def test_a_run_is_waited_for_with_and_without_a_stream_of_progress(client: Any, lab: Any) -> None:
+    wanted = {"scenario": "first-look", "set": {"samples": 700, "expect": []}}
+    path = f"/runs/{lab.ask('POST', '/runs', {**wanted, 'seed': 71})['id']}"
+    *_, (event, found) = lab.watch(path)
+    assert event == "done" and found == lab.ask("GET", path)
+    begun = lab.ask("POST", "/runs", {**wanted, "seed": 72})
+    path, lab.watch = (
+        f"/runs/{begun['id']}",
+        lambda _: (_ for _ in ()).throw(client.Refused("not_found", "no such door")),
+    )
+    assert lab._ended("/runs", begun) == lab.ask("GET", path)
+
+
 def test_a_live_bench_and_its_stream(lab: Any) -> None:
     """A column for each tick: minimum, maximum and the sample itself are one number, up to float32."""
     with lab.bench("first-look", paused=True, seed=3) as bench:
