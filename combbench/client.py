@@ -11,7 +11,10 @@ It needs Python 3.11 and numpy; the stream needs the package websockets too.
 
 from __future__ import annotations
 
+import contextlib
+import http.client
 import io
+import itertools
 import json
 import os
 import struct
@@ -57,13 +60,25 @@ class Client:
 
     def ask(self, method: str, path: str, body: Any = None, **query: Any) -> Any:
         """Ask for a path below /api/v1; return JSON as Python values, anything else as bytes."""
+        with self._open(method, path, body, **query) as answer:
+            return _content(answer)
+
+    def pages(self, path: str, **query: Any) -> Iterator[Any]:
+        """Return the pages of a list, one after the other; ``limit`` is the number of rows of each."""
+        following: dict[str, Any] | None = query
+        while following is not None:
+            with self._open("GET", path, **following) as answer:
+                yield _content(answer)
+                link = answer.headers.get("Link", "")
+            address = link.partition("<")[2].partition(">")[0]
+            following = urllib.parse.parse_qs(urllib.parse.urlsplit(address).query) if address else None
+
+    def _open(self, method: str, path: str, body: Any = None, **query: Any) -> Any:
         headers = {"Authorization": f"Bearer {self.token}", "Content-Type": "application/json"}
         address = self.address + path + (f"?{urllib.parse.urlencode(query, doseq=True)}" if query else "")
         data = None if body is None else json.dumps(body).encode()
         try:
-            with urllib.request.urlopen(urllib.request.Request(address, data, headers, method=method)) as answer:
-                found = answer.read()
-                return json.loads(found) if found and answer.headers.get_content_type() == "application/json" else found
+            return urllib.request.urlopen(urllib.request.Request(address, data, headers, method=method))
         except urllib.error.HTTPError as refused:
             said = json.loads(refused.read())["error"]
             raise Refused(said["code"], said["message"], said["field"], said["hint"]) from None
@@ -83,18 +98,35 @@ class Client:
         return self._ended("/sweeps", self.ask("POST", "/sweeps", {"sweep": campaign, **fields}))
 
     def points(self, sweep: dict[str, Any], **query: Any) -> list[dict[str, Any]]:
-        """Return the points of a campaign with their figures."""
-        found: list[dict[str, Any]] = self.ask("GET", f"/sweeps/{sweep['id']}/points", **query)["points"]
-        return found
+        """Return the points of a campaign with their figures: all of them, or the first ``limit``."""
+        pages = self.pages(f"/sweeps/{sweep['id']}/points", **query)
+        return [point for page in itertools.islice(pages, 1 if "limit" in query else None) for point in page["points"]]
 
     def bench(self, scenario: Any, **fields: Any) -> Bench:
         """Make a live bench; with ``paused=True`` it stands still until it is stepped."""
         return Bench(self, self.ask("POST", "/benches", {"scenario": scenario, **fields})["id"])
 
+    def watch(self, path: str) -> Iterator[tuple[str, dict[str, Any]]]:
+        """Return the events of work under way, such as ``/runs/<id>``, with their data: how far it is, last its end."""
+        event = ""
+        with self._open("GET", f"{path}/progress") as answer:
+            for line in answer:
+                name, _, value = line.decode().rstrip("\n").partition(": ")
+                if name == "event":
+                    event = value
+                elif name == "data":
+                    yield event, json.loads(value)
+
     def _ended(self, kind: str, thing: dict[str, Any]) -> dict[str, Any]:
+        path = f"{kind}/{thing['id']}"
         while thing["state"] in ("queued", "running"):
-            time.sleep(0.1)
-            thing = self.ask("GET", f"{kind}/{thing['id']}")
+            # A server may be too old for such streams, or have too many open; a stream may break off.
+            with contextlib.suppress(Refused, OSError, http.client.HTTPException):
+                for event, data in self.watch(path):
+                    thing = thing if event == "progress" else data
+            if thing["state"] in ("queued", "running"):
+                time.sleep(0.1)
+                thing = self.ask("GET", path)
         if thing["state"] != "done":
             raise Refused(thing["state"], (thing["error"] or {}).get("message", thing["state"]))
         return thing
@@ -138,6 +170,12 @@ class Bench:
                     raise Refused(said["error"]["code"], said["error"]["message"], said["error"]["field"])
                 elif said["type"] == "ping":
                     stream.send(json.dumps({"type": "pong"}))
+
+
+def _content(answer: Any) -> Any:
+    """Read an answer."""
+    found = answer.read()
+    return json.loads(found) if found and answer.headers.get_content_type() == "application/json" else found
 
 
 def _picture(data: bytes, signals: tuple[str, ...], head: int, dt_ms: float) -> Picture:

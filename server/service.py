@@ -37,6 +37,7 @@ from server.clock import Clock, ManualClock
 from server.computing.computing import Computing
 from server.lag import Lateness, probe
 from server.metrics import Metrics
+from server.progress import ProgressStreams
 from server.runs.figures import ScenarioFigures
 from server.runs.jobs import Jobs
 from server.runs.kernels import Kernels
@@ -111,7 +112,8 @@ class Service:
         )
         self.records = RecordingControl(self.engine, self.recordings, settings.max_recording_ticks)
         self.links = Links(self.database, settings.max_links)
-        self.queue = Queue(self.database, settings, self.metrics)
+        self.progress = ProgressStreams(self.clock)
+        self.queue = Queue(self.database, settings, self.metrics, self.progress)
         self.jobs, self.thresholds = Jobs(self.queue, settings), Thresholds(self.queue, settings)
         self.sweeps = Sweeps(self.queue, settings, self.database)
         self.figures = ScenarioFigures(self.queue, settings)
@@ -183,7 +185,7 @@ class Service:
         await self.queue.recover()
         tasks = [asyncio.create_task(self.hub.run()), asyncio.create_task(probe(self.lag))]
         tasks.append(asyncio.create_task(self.keeping.run(self.clock)))
-        lasting = (self.audit, self.checkpoints, self.classes, self.driving, self.idling, self.sheets)
+        lasting = (self.audit, self.checkpoints, self.classes, self.driving, self.idling, self.progress, self.sheets)
         tasks += [asyncio.create_task(part.run(self.clock)) for part in lasting]
         tasks.append(asyncio.create_task(self.queue.warm(self._calm)))
         tasks.append(asyncio.create_task(self.computing.warm(self._calm)))
@@ -288,6 +290,7 @@ class Service:
     async def close_streams(self) -> None:
         """Tell every page that the server stops, and close its stream."""
         self.hub.close_all("the server is stopping")
+        self.progress.close()
         await asyncio.sleep(0.1)
 
     async def _calm(self) -> None:

@@ -111,6 +111,11 @@ class Survey:
         order = np.argsort(-values if descending else values, kind="stable")  # nan comes last
         return there[order]
 
+    def place_after(self, order: IntArray, number: int) -> int:
+        """Return the place in an order of points that follows a point."""
+        there = np.flatnonzero(order == number)
+        return int(there[0]) + 1 if len(there) else int(np.searchsorted(order, number))
+
     def page(self, points: Sequence[int] | IntArray, figures: Sequence[str] | None = None) -> list[PointTally]:
         """Add up the runs of some points, in the order given; with figures named, these alone."""
         wanted, places = np.unique(np.asarray(points, np.int64), return_inverse=True)

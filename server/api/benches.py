@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Self
 
-from fastapi import Body, Query, Response
+from fastapi import Body, Response
 from pydantic import BaseModel, Field, model_validator
 
 from core.own.admission import kept
@@ -12,14 +12,16 @@ from scenarios.schema import Scenario
 from server.api.bodies import Body as StrictBody
 from server.api.bodies import Source, Values
 from server.api.deps import CallerDep, PersonDep, RateLimited, SeenDep, ServiceDep, SessionDep
+from server.api.paging import AgePage, Number, pages
 from server.api.router import Router
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Command
 from server.bench.description import document_of
-from server.bench.events import Event
+from server.bench.events import KEPT, Event
 from server.bench.status import Bench
 from server.bench.view import View
 from server.classroom.hiding import HINT, blind_of
 from server.errors import ApiError
+from server.paging import Page
 
 MAX_NAME = 80
 
@@ -151,10 +153,10 @@ async def create_bench(body: NewBench, service: ServiceDep, person: PersonDep, r
 
 
 @router.get("")
-async def list_benches(service: ServiceDep, person: PersonDep) -> BenchList:
+async def list_benches(service: ServiceDep, person: PersonDep, page: AgePage) -> BenchList:
     """List the live benches of the teacher; a class lists the benches of its students. A student gets the own bench."""
     if person.is_teacher:
-        return BenchList(benches=service.views.all(person))
+        return BenchList(benches=service.views.all(person, page))
     found = service.benches.find(service.people.bench_of(person))
     return BenchList(benches=[service.views.of(found, person)] if found is not None else [])
 
@@ -202,14 +204,10 @@ async def command(
 
 
 @router.get("/{bench_id}/events")
-async def list_events(
-    session: SeenDep,
-    after: Annotated[int, Query(ge=0, le=2**53)] = 0,
-    limit: Annotated[int | None, Query(ge=1, le=100_000)] = None,
-) -> EventList:
-    """List the events after an event."""
-    lost, events = session.events.after(after, limit)
-    return EventList(events=events, last=session.events.last, lost=lost)
+async def list_events(session: SeenDep, page: Annotated[Page, pages(Number, usual=KEPT, most=100_000)]) -> EventList:
+    """List the events of a bench, oldest first; `after` is the number of an event, whose followers are listed."""
+    lost, events = session.events.after(page.after[0] if page.after else 0)
+    return EventList(events=page.rows(events, lambda one: (one.seq,)), last=session.events.last, lost=lost)
 
 
 @router.get("/{bench_id}/scenario", response_class=Response, responses={200: {"content": {"text/plain": {}}}})

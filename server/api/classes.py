@@ -11,10 +11,12 @@ from server.api.benches import NewBench
 from server.api.bodies import Body, MemberIds
 from server.api.deps import RateLimited, ServiceDep
 from server.api.joining import address_of, give_session
+from server.api.paging import AgePage
 from server.api.router import Router
 from server.api.students import Outcomes, refusal, student_of, students_of
 from server.bench.commands import Command
 from server.classroom.classes import Class
+from server.classroom.people import by_arrival
 from server.classroom.sheet_work import brief
 from server.classroom.tile import Tile, tile_of
 from server.security.person import Person
@@ -84,9 +86,9 @@ async def open_class(body: NewClass, service: ServiceDep, request: Request, resp
 
 
 @router.get("")
-async def list_classes(service: ServiceDep, request: Request) -> ClassList:
-    """List the classes."""
-    return ClassList(classes=[_addressed(one, service, request) for one in await service.classes.all()])
+async def list_classes(service: ServiceDep, request: Request, page: AgePage) -> ClassList:
+    """List the classes, oldest first."""
+    return ClassList(classes=[_addressed(one, service, request) for one in await service.classes.all(page)])
 
 
 @router.get("/{class_id}")
@@ -128,12 +130,13 @@ async def join_class(class_id: str, body: Join, request: Request, response: Resp
 
 
 @router.get("/{class_id}/members", response_model=MemberList)
-async def list_members(class_id: str, service: ServiceDep) -> Response:
+async def list_members(class_id: str, service: ServiceDep, page: AgePage, response: Response) -> Response:
     """List the students of a class with name, bench, state, verdict, truth and a small trace."""
     await service.classes.row(class_id)
-    found = MemberList(members=[_tile(service, person) for person in service.people.students(class_id)])
+    students = page.cut(service.people.students(class_id), by_arrival)
+    found = MemberList(members=[_tile(service, person) for person in students])
     # written at once: checking sixty tiles again takes the loop ten times as long
-    return Response(found.model_dump_json(), media_type="application/json")
+    return Response(found.model_dump_json(), media_type="application/json", headers=dict(response.headers))
 
 
 @router.delete("/{class_id}/members/{member_id}", status_code=204, dependencies=[RateLimited])

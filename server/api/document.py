@@ -13,8 +13,10 @@ from scenarios.json_schema.components import components as documents
 from scenarios.json_schema.definitions import walked
 from server.api.examples import EXAMPLES
 from server.api.tags import TAGS
+from server.api.paging import LINK
 from server.classroom.access import Need, need_of
 from server.errors import ErrorReply
+from server.progress import Progress
 from server.stream.wire import ClientMessage, ServerMessage
 
 REF = "#/components/schemas/{model}"
@@ -29,7 +31,6 @@ BEARER = {
     "description": "The access token that the server prints at its start; for a student, the session of a class",
 }
 PARAMETERS = {
-    "after": "Number of the last known entry",
     "bench_id": "Id of a bench",
     "benchmark_id": "Id of a benchmark",
     "class_id": "Id of a class",
@@ -42,7 +43,6 @@ PARAMETERS = {
     "game_id": "Id of a game",
     "kind": "Kind of the listed links; left out: all kinds",
     "lecture_id": "Id of a lecture",
-    "limit": "Largest number of entries",
     "link_id": "Id of a link",
     "member_id": "Id of a student",
     "name": "Id of a diagnoser or a read-out; on a twin: <twin>:<id>",
@@ -96,6 +96,7 @@ def build(app: FastAPI) -> dict[str, Any]:
         ("ClientMessage", ClientMessage, "validation"),
         ("ServerMessage", ServerMessage, "serialization"),
         ("ErrorReply", ErrorReply, "validation"),
+        ("Progress", Progress, "serialization"),
     ):
         described = TypeAdapter(kind).json_schema(mode=mode, ref_template=REF)  # type: ignore[arg-type]
         for inner, definition in described.pop("$defs", {}).items():
@@ -124,7 +125,7 @@ def _described(table: dict[str, Any]) -> dict[str, Any]:
 
 
 def _complete(operation: dict[str, Any], is_open: bool) -> None:
-    """Add the permitted callers, the meaning of parameters, examples of bodies, the type of files, and all failures."""
+    """Add callers, meanings of parameters, examples of bodies, the next page, the type of files, and all failures."""
     operation["security"] = [] if is_open else [{"token": []}]
     for parameter in operation.get("parameters", []):
         parameter.setdefault("description", PARAMETERS.get(parameter["name"], ""))
@@ -133,6 +134,8 @@ def _complete(operation: dict[str, Any], is_open: bool) -> None:
             values = EXAMPLES.get(operation["operationId"], ())
             content["examples"] = {f"example-{number}": {"value": value} for number, value in enumerate(values, 1)}
     responses = operation["responses"]
+    if {"after", "limit"} <= {parameter["name"] for parameter in operation.get("parameters", [])}:
+        responses["200"]["headers"] = {"Link": LINK}
     responses.pop("422", None)
     for response in responses.values():
         for media, content in response.get("content", {}).items():

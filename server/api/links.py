@@ -10,6 +10,7 @@ from pydantic import BaseModel, Field
 
 from server.api.bodies import Body, ScenarioDocument
 from server.api.deps import IdentityDep, PersonDep, RateLimited, ServiceDep
+from server.api.paging import AgePage
 from server.api.router import Router
 from server.bench.build import prepare
 from server.bench.description import beginning_of, experiment_of
@@ -72,9 +73,11 @@ async def make_link(body: NewLink, service: ServiceDep, person: PersonDep, respo
 
 
 @router.get("")
-async def list_links(service: ServiceDep, kind: Literal["experiment", "layout"] | None = None) -> LinkList:
-    """List the links."""
-    return LinkList(links=await service.links.all(kind))
+async def list_links(
+    service: ServiceDep, page: AgePage, kind: Literal["experiment", "layout"] | None = None
+) -> LinkList:
+    """List the links, newest first."""
+    return LinkList(links=await service.links.all(kind, page))
 
 
 @router.get("/{link_id}")

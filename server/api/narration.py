@@ -9,8 +9,10 @@ from pydantic import BaseModel, Field
 
 from scenarios.narrator.sentence import Sentence
 from server.api.deps import SeenDep
+from server.api.paging import Number, pages
 from server.api.router import Router
-from server.bench.narration import NarrationPlace
+from server.bench.narration import KEPT, NarrationPlace
+from server.paging import Page
 
 router = Router(prefix="/benches", tags=["benches"])
 
@@ -27,10 +29,14 @@ class NarrationList(BaseModel):
 @router.get("/{bench_id}/narration")
 async def list_narration(
     session: SeenDep,
-    after: Annotated[int, Query(ge=0, le=2**53)] = 0,
+    page: Annotated[Page, pages(Number, usual=KEPT)],
     jumps: Annotated[int | None, Query(ge=0, le=2**53, description="Number of jumps in the last answer")] = None,
 ) -> NarrationList:
-    """List the sentences of the narrator after a sentence; all sentences if the bench has jumped since."""
-    known = NarrationPlace(session.narration.mark.jumps if jumps is None else jumps, after)
+    """List the sentences of the narrator; `after` is the number of a sentence, whose followers are listed.
+
+    All sentences are listed if the bench has jumped since.
+    """
+    known = NarrationPlace(session.narration.mark.jumps if jumps is None else jumps, page.after[0] if page.after else 0)
     mark, first, sentences = session.narration.after(known)
-    return NarrationList(sentences=sentences, after=first, last=mark.last, jumps=mark.jumps)
+    rows = page.rows(list(enumerate(sentences, first + 1)), lambda row: row[:1], jumps=mark.jumps)
+    return NarrationList(sentences=[one for _, one in rows], after=first, last=mark.last, jumps=mark.jumps)

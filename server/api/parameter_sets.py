@@ -12,9 +12,11 @@ from core.board.tuning import absent, difference, tuned
 from server.api.benches import CommandResult
 from server.api.bodies import Body
 from server.api.deps import CallerDep, PersonDep, RateLimited, ServiceDep, SessionDep
+from server.api.paging import pages
 from server.api.router import Router
 from server.classroom.access import Need
 from server.errors import ApiError
+from server.paging import Page
 from server.store.parameter_sets import ParameterSet, ParameterSetDetail
 
 router = Router(tags=["parameter sets"])
@@ -79,9 +81,9 @@ async def apply_parameter_set(set_id: str, session: SessionDep, service: Service
 
 
 @router.get("/parameter-sets")
-async def list_parameter_sets(service: ServiceDep) -> ParameterSetList:
-    """List the sets."""
-    return ParameterSetList(sets=await service.parameter_sets.all())
+async def list_parameter_sets(service: ServiceDep, page: Annotated[Page, pages(str)]) -> ParameterSetList:
+    """List the sets by name."""
+    return ParameterSetList(sets=await service.parameter_sets.all(page))
 
 
 @router.get("/parameter-sets/{set_id}")

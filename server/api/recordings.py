@@ -11,6 +11,7 @@ from pydantic import BaseModel, Field
 from server.api.bodies import Body
 from server.api.deps import CallerDep, PersonDep, RateLimited, ServiceDep, SessionDep
 from server.api.files import FORMAT_RESPONSES, CutDep, stored_trace
+from server.api.paging import AgePage
 from server.api.router import Router
 from server.bench.recording import Wanted
 from server.bench.status import Bench
@@ -62,23 +63,23 @@ async def stop_recording(recording_id: str, session: SessionDep, service: Servic
 
 
 @router.get("/benches/{bench_id}/recordings")
-async def list_bench_recordings(session: SessionDep, service: ServiceDep) -> RecordingList:
-    """List the recordings of a bench."""
-    return RecordingList(recordings=await service.recordings.all([session.id]))
+async def list_bench_recordings(session: SessionDep, service: ServiceDep, page: AgePage) -> RecordingList:
+    """List the recordings of a bench, newest first."""
+    return RecordingList(recordings=await service.recordings.all([session.id], page))
 
 
 @router.get("/recordings")
-async def list_recordings(service: ServiceDep, person: PersonDep) -> RecordingList:
-    """List all recordings, also of deleted benches; a student sees the recordings of the own benches."""
+async def list_recordings(service: ServiceDep, person: PersonDep, page: AgePage) -> RecordingList:
+    """List all recordings, newest first, also of deleted benches; a student sees the recordings of the own benches."""
     benches = None if person.is_teacher else service.people.benches_of(person)
-    return RecordingList(recordings=await service.recordings.all(benches))
+    return RecordingList(recordings=await service.recordings.all(benches, page))
 
 
 @router.get("/recordings/{recording_id}")
 async def get_recording(recording_id: str, service: ServiceDep, person: PersonDep) -> RecordingDetail:
     """Describe a recording: scenario, seed, events, versions, layout."""
     recording = await service.recordings.get(recording_id)
-    _must_see(service, person, recording)
+    must_see(service, person, recording)
     return recording
 
 
@@ -120,11 +121,11 @@ async def get_recording_trace(
 ) -> Response:
     """Download a recording, or a part of it."""
     recording, path = await service.recordings.finished(recording_id)
-    _must_see(service, person, recording)
+    must_see(service, person, recording)
     return await stored_trace(service, path, recording.name, kind, cut)
 
 
-def _must_see(service: Service, person: Person, recording: RecordingDetail) -> None:
+def must_see(service: Service, person: Person, recording: RecordingDetail) -> None:
     """Refuse a recording of another's bench, as if it were not there."""
     if not service.people.may_see_recordings(person, recording.bench_id):
         raise not_found("recording", recording.id)

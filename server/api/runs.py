@@ -15,6 +15,7 @@ from scenarios.seeds import parse_seeds
 from server.api.bodies import Body, Source, Values
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import FORMAT_RESPONSES, HTML, PYTHON, SVG, CutDep, file_name, report_response, stored_trace
+from server.api.paging import RequestPage
 from server.api.router import Router
 from server.bench.build import prepare
 from server.runs.compare import MOST, RunComparison, RunTraces, compare_runs, traces
@@ -108,9 +109,9 @@ def _seeds(asked: str | list[int], most: int) -> list[int]:
 
 
 @router.get("")
-async def list_runs(service: ServiceDep, wanted: FilterDep) -> RunList:
+async def list_runs(service: ServiceDep, wanted: FilterDep, page: RequestPage) -> RunList:
     """List runs, newest first; text, state and scenario choose among them."""
-    return RunList(runs=await service.jobs.all(wanted))
+    return RunList(runs=await service.jobs.all(wanted, page))
 
 
 @router.post("/remove", dependencies=[RateLimited])

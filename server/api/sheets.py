@@ -10,6 +10,7 @@ from pydantic import BaseModel, Field
 from server.api.bodies import AnswerBody, Body, MemberIds
 from server.api.deps import PersonDep, RateLimited, ServiceDep
 from server.api.files import HTML
+from server.api.paging import Number, pages
 from server.api.router import Router
 from server.api.students import Outcomes, refusal, student_of, students_of
 from server.classroom.grades import Grade, grades_csv, grades_of
@@ -17,6 +18,7 @@ from server.classroom.sheet_report import sheet_report
 from server.classroom.sheet_view import SheetView
 from server.classroom.sheet_work import SheetBrief, brief
 from server.errors import ApiError, not_found
+from server.paging import Page
 from server.security.person import Person
 from server.service import Service
 
@@ -81,7 +83,7 @@ class GradeList(BaseModel):
 
 
 @router.get("/sheets")
-async def list_sheets(person: PersonDep, service: ServiceDep) -> SheetList:
+async def list_sheets(person: PersonDep, service: ServiceDep, page: Annotated[Page, pages(Number, str)]) -> SheetList:
     """List the sheets."""
     works = {work.sheet_id: work for work in service.sheets.works(person.id)}
     current = service.sheets.current(person)
@@ -94,7 +96,7 @@ async def list_sheets(person: PersonDep, service: ServiceDep) -> SheetList:
                 own=service.sheets.shelf.is_own(sheet.id),
                 work=brief(works[sheet.id], sheet) if sheet.id in works else None,
             )
-            for sheet in service.sheets.all()
+            for sheet in page.cut(service.sheets.all(), service.sheets.shelf.key)
         ],
         current=current[0].sheet_id if current is not None else None,
     )

@@ -6,8 +6,10 @@ from pydantic import BaseModel, Field
 
 from server.api.bodies import Body
 from server.api.deps import CallerDep, PersonDep, RateLimited, ServiceDep, SessionDep
+from server.api.paging import AgePage
 from server.api.router import Router
 from server.bench.status import Bench, Snapshot
+from server.paging import by_age
 
 router = Router(prefix="/benches/{bench_id}/snapshots", tags=["snapshots"])
 
@@ -34,9 +36,9 @@ async def take_snapshot(
 
 
 @router.get("")
-async def list_snapshots(session: SessionDep) -> SnapshotList:
-    """List the moments kept."""
-    return SnapshotList(snapshots=session.snapshots.all())
+async def list_snapshots(session: SessionDep, page: AgePage) -> SnapshotList:
+    """List the moments kept, oldest first."""
+    return SnapshotList(snapshots=page.cut(session.snapshots.all(), by_age))
 
 
 @router.delete("/{snapshot_id}", status_code=204, dependencies=[RateLimited])

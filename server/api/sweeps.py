@@ -18,9 +18,11 @@ from scenarios.report.script import campaign_script
 from server.api.bodies import Body, CampaignDocument
 from server.api.deps import RateLimited, ServiceDep
 from server.api.files import HTML, PYTHON, file_name, report_response, written_response
+from server.api.paging import Number, RequestPage, pages
 from server.api.router import Router
 from server.api.runs import Ended, FilterDep, NewLabel, Removed
 from server.errors import ApiError
+from server.paging import Page
 from server.runs.listing import clean_label
 from server.runs.sweeps import SweepRun
 from server.store.traces import MEDIA_TYPES
@@ -83,9 +85,9 @@ async def start_sweep(body: NewSweep, service: ServiceDep, response: Response) -
 
 
 @router.get("")
-async def list_sweeps(service: ServiceDep, wanted: FilterDep) -> SweepList:
+async def list_sweeps(service: ServiceDep, wanted: FilterDep, page: RequestPage) -> SweepList:
     """List campaigns, newest first; text, state and scenario choose among them."""
-    return SweepList(sweeps=await service.sweeps.all(wanted))
+    return SweepList(sweeps=await service.sweeps.all(wanted, page))
 
 
 @router.post("/remove", dependencies=[RateLimited])
@@ -116,22 +118,22 @@ async def cancel_sweep(sweep_id: str, service: ServiceDep) -> SweepRun:
 async def get_sweep_points(
     sweep_id: str,
     service: ServiceDep,
+    page: Annotated[Page, pages(Number, usual=MOST_POINTS, most=MOST_POINTS)],
     offset: Annotated[int, Query(ge=0, description="Number of points to skip")] = 0,
-    limit: Annotated[
-        int | None, Query(ge=1, le=MOST_POINTS, description="Largest number of points; left out: all")
-    ] = None,
     sort: Annotated[str, Query(max_length=200, description="Order: an axis, a figure, runs, ok or tripped")] = "",
     descending: bool = False,
 ) -> SweepPoints:
-    """Return figures, confusion, delays and receiver operating characteristics of the runs done so far."""
+    """Return figures, confusion, delays and receiver operating characteristics of the runs done so far.
+
+    Points without runs are listed only where neither a page nor an order is asked for.
+    """
 
     def read(survey: Survey) -> dict[str, Any]:
         order = survey.order(sort, descending=descending)
-        is_page = limit is not None or sort or offset
-        chosen = order[offset : None if limit is None else offset + limit] if is_page else range(survey.points)
-        if len(chosen) > MOST_POINTS:
-            text = f"these are {len(chosen)} points, at most {MOST_POINTS} are sent at once"
-            raise ApiError(422, "too_long", text, "limit", "ask page by page")
+        first = offset + (survey.place_after(order, page.after[0]) if page.after else 0)
+        is_page = page.limit != MOST_POINTS or page.after or sort or offset
+        rows = order[first:].tolist() if is_page else list(range(survey.points))
+        chosen = page.rows(rows, lambda number: (number,))
         about = {"found": len(order), "quantities": survey.quantities, "figures": survey.figures}
         about["words"] = diagnosis_words(survey.sweep.base.spec.diagnosers)
         return {"points": survey.page(chosen), "runs": survey.runs(), **about}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Iterator
 from contextlib import suppress
+from operator import itemgetter
 from typing import Annotated, Literal
 
 from fastapi import Path
@@ -20,9 +21,11 @@ from scenarios.own import copies
 from scenarios.starters import starters
 from server.api.bodies import Body
 from server.api.deps import RateLimited, ServiceDep
+from server.api.paging import Number, pages
 from server.api.router import Router
 from server.bench.build import prepare
 from server.errors import not_found
+from server.paging import Page
 from server.service import Service
 
 router = Router(prefix="/units", tags=["units"])
@@ -93,9 +96,14 @@ class UnitCheck(BaseModel):
 
 
 @router.get("")
-def list_units(service: ServiceDep) -> UnitList:
+def list_units(service: ServiceDep, page: Annotated[Page, pages(Number, str)]) -> UnitList:
     """List the units to begin with, and whether this person may bring any."""
-    return UnitList(units=[_entry(one, origin) for one, origin in _readable(service)], refusal=refusal())
+    first_fixed = len(service.units.all())
+    rows = [
+        ((max(number - first_fixed + 1, 0), one.name), _entry(one, origin))
+        for number, (one, origin) in enumerate(_readable(service))
+    ]
+    return UnitList(units=[entry for _, entry in page.cut(rows, itemgetter(0))], refusal=refusal())
 
 
 @router.get("/{name}")

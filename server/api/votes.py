@@ -9,9 +9,11 @@ from pydantic import BaseModel, Field
 from scenarios.lecture import Span
 from server.api.bodies import Body
 from server.api.deps import PersonDep, RateLimited, ServiceDep
+from server.api.paging import pages
 from server.api.router import Router
 from server.classroom.votes import Asked, Ballot, OpenVote, Vote
 from server.errors import ApiError
+from server.paging import Page
 
 router = Router(tags=["votes"])
 
@@ -65,9 +67,9 @@ async def open_vote(body: NewVote, service: ServiceDep) -> Vote:
 
 
 @router.get("/votes")
-async def list_votes(service: ServiceDep) -> VoteList:
+async def list_votes(service: ServiceDep, page: Annotated[Page, pages(str)]) -> VoteList:
     """List the votes: one of each class, and one by hands."""
-    return VoteList(votes=await service.votes.all())
+    return VoteList(votes=await service.votes.all(page))
 
 
 @router.get("/votes/{vote_id}")

@@ -12,7 +12,9 @@ from pydantic import BaseModel, Field
 
 from server.api.bodies import Body
 from server.api.deps import IdentityDep, RateLimited, ServiceDep, SessionDep
+from server.api.paging import AgePage
 from server.api.router import Router
+from server.classroom.people import by_arrival
 from server.errors import ApiError, not_found
 from server.store.base import now
 
@@ -62,9 +64,9 @@ async def make_watcher(body: NewWatcher, session: SessionDep, service: ServiceDe
 
 
 @router.get("")
-async def list_watchers(session: SessionDep, service: ServiceDep) -> WatcherList:
-    """List the links to watch the bench."""
-    people = service.people.watchers(session.id)
+async def list_watchers(session: SessionDep, service: ServiceDep, page: AgePage) -> WatcherList:
+    """List the links to watch the bench, oldest first."""
+    people = page.cut(service.people.watchers(session.id), by_arrival)
     return WatcherList(watchers=[Watcher(id=one.id, until=one.until or now()) for one in people])
 
 

@@ -78,6 +78,8 @@ class Recorder:
         self.id = recording_id
         self._file, self._schema, self._dt_ms = file, schema, dt_ms
         self._left, self._on_end = max_ticks, on_end
+        self.taken = 0
+        """Ticks taken so far."""
         self._full = FULL
         self._queue: queue.SimpleQueue[tuple[int, Samples] | PastSpan | str | None] = queue.SimpleQueue()
         self._bytes = 0
@@ -87,6 +89,16 @@ class Recorder:
         self._end_tick: float = math.inf
         self._thread = threading.Thread(target=self._write, name=f"combbench-recorder-{recording_id[:8]}")
         self._thread.start()
+
+    @property
+    def has_begun(self) -> bool:
+        """Whether it waits for nothing."""
+        return self._end_tick < math.inf
+
+    @property
+    def total(self) -> int:
+        """Ticks at which it ends by itself."""
+        return self.taken + self._left
 
     @property
     def is_open(self) -> bool:
@@ -136,7 +148,7 @@ class Recorder:
 
     def _take(self, ticks: int) -> None:
         """Count ticks against the limit."""
-        self._left -= ticks
+        self.taken, self._left = self.taken + ticks, self._left - ticks
         if self._left <= 0:
             self.stop(self._full)
 

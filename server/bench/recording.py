@@ -20,6 +20,7 @@ from server.bench.engine import Engine
 from server.bench.events import Event
 from server.bench.recorder import CLOSED, STOPPED, WANTED, PastSpan, Recorder
 from server.errors import ApiError, not_found
+from server.progress import Progress
 from server.store.recordings import About, Recording, Recordings
 from server.version import VERSION
 
@@ -228,6 +229,7 @@ class RecordingControl:
 
     def __init__(self, engine: Engine, store: Recordings, most_ticks: int) -> None:
         self._engine, self._store, self._most_ticks = engine, store, most_ticks
+        self._open: dict[str, Recorder] = {}
 
     async def begin(self, session: LiveBench, wanted: Wanted, actor: str, room_bytes: int) -> Recording:
         """Begin to record every signal of a bench, now or when a condition holds.
@@ -271,11 +273,12 @@ class RecordingControl:
 
         def ended(first: int, ticks: int, reason: str) -> None:
             close(first, ticks, reason, reason not in WANTED)
+            self._open.pop(recording.id, None)
             with contextlib.suppress(RuntimeError):  # the engine may have stopped
                 self._engine.submit(session.recordings.forget, recording.id)
 
         most = min(self._most_ticks, room_bytes // row_bytes)
-        recorder = Recorder(recording.id, file, schema, session.dt_ms, most, ended)
+        recorder = self._open[recording.id] = Recorder(recording.id, file, schema, session.dt_ms, most, ended)
         try:
             tick = await self._engine.call(
                 session.recordings.begin, recorder, wanted.name, actor, wanted.past_ticks, wanted.ticks, condition
@@ -289,6 +292,16 @@ class RecordingControl:
             await asyncio.to_thread(recorder.join)
             return await self._store.get(recording.id)
         return self._store.begin(recording, tick)
+
+    def progress(self, recording_id: str) -> Progress | None:
+        """Return how far a recording is; None once its file is whole."""
+        recorder = self._open.get(recording_id)
+        if recorder is None:
+            return None
+        state = "recording" if recorder.has_begun else "armed"
+        return Progress(
+            state=state, fraction=recorder.taken / max(recorder.total, 1), done=recorder.taken, total=recorder.total
+        )
 
     async def end(self, session: LiveBench, recording_id: str) -> Recording:
         """End a recording and wait until its file is whole."""

@@ -67,6 +67,7 @@ _DOORS = {
         GET POST {API}/benches  *
         GET {API}/recordings
         GET {API}/recordings/{{recording_id}}
+        GET {API}/recordings/{{recording_id}}/progress
         GET {API}/recordings/{{recording_id}}/trace
         GET {API}/gallery  *
         GET {API}/gallery/{{scenario_id}}/figure  *
@@ -160,6 +161,7 @@ _DOORS = {
         GET {API}/runs/compare
         GET {API}/runs/compare/trace
         GET PATCH DELETE {API}/runs/{{run_id}}
+        GET {API}/runs/{{run_id}}/progress
         GET {API}/runs/{{run_id}}/scenario
         GET {API}/runs/{{run_id}}/trace
         GET {API}/runs/{{run_id}}/report
@@ -168,6 +170,7 @@ _DOORS = {
         POST GET {API}/sweeps
         POST {API}/sweeps/remove
         GET PATCH DELETE {API}/sweeps/{{sweep_id}}
+        GET {API}/sweeps/{{sweep_id}}/progress
         GET {API}/sweeps/{{sweep_id}}/points
         GET {API}/sweeps/{{sweep_id}}/distribution
         GET {API}/sweeps/{{sweep_id}}/picture
@@ -176,6 +179,7 @@ _DOORS = {
         GET {API}/sweeps/{{sweep_id}}/script
         POST {API}/thresholds
         GET DELETE {API}/thresholds/{{threshold_id}}
+        GET {API}/thresholds/{{threshold_id}}/progress
         POST {API}/gallery/run
         POST {API}/sheets
         DELETE {API}/sheets/{{sheet_id}}

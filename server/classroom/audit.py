@@ -13,6 +13,7 @@ from sqlalchemy import delete, func, select
 from server.bench.bench import LiveBench
 from server.bench.events import Event
 from server.clock import Clock
+from server.paging import WHOLE, Page
 from server.store.base import now
 from server.store.change import Change
 from server.store.database import Database
@@ -97,12 +98,13 @@ class Audit:
         newest = select(func.max(AuditRow.id)).scalar_subquery()
         await self._database.run(lambda session: session.execute(delete(AuditRow).where(AuditRow.id <= newest - MOST)))
 
-    async def entries(self, *, class_id: str = "", bench_id: str = "", limit: int = 1000) -> list[AuditEntry]:
+    async def entries(self, *, class_id: str = "", bench_id: str = "", page: Page = WHOLE) -> list[AuditEntry]:
         """Return the actions in a class or on a bench, newest first."""
         await self.write()
-        query = select(AuditRow).order_by(AuditRow.id.desc()).limit(limit)
+        query = page.chosen(select(AuditRow), AuditRow.id, newest_first=True)
         query = query.where(AuditRow.class_id == class_id if class_id else AuditRow.bench_id == bench_id)
-        rows = await self._database.run(lambda session: list(session.scalars(query)))
+        found = await self._database.run(lambda session: list(session.scalars(query)))
+        rows = page.rows(found, lambda row: (row.id,))
         return [AuditEntry.model_validate(row) for row in rows]
 
     def forgetting(self, class_id: str) -> Change:

@@ -16,6 +16,7 @@ from typing import cast
 from sqlalchemy import delete, select, update
 
 from server.classroom.access import Need
+from server.paging import Key
 from server.security.person import Person, Role, hash_of, new_secret
 from server.store.base import now
 from server.store.change import Change
@@ -24,6 +25,11 @@ from server.store.people import PersonRow
 
 MOST_EARLIER = 100
 """Earlier benches of a student that are remembered."""
+
+
+def by_arrival(person: Person) -> Key:
+    """Return the key of a person in a list of people."""
+    return person.joined, person.id
 
 
 class People:
@@ -54,7 +60,7 @@ class People:
             self._take(row)
 
     def _take(self, row: PersonRow) -> Person:
-        person = Person(row.id, row.name, cast(Role, row.role), row.class_id or "", row.until)
+        person = Person(row.id, row.name, cast(Role, row.role), row.class_id or "", row.until, row.joined)
         self._by_hash[row.secret_hash], self._hashes[row.id] = person, row.secret_hash
         if row.bench_id:
             self._benches[row.id] = row.bench_id
@@ -215,13 +221,16 @@ class People:
 
     async def until_refused(self, person: Person, need: Need, bench_id: str) -> bool:
         """Wait until a person may no longer pass a door; return whether the reason is the end of the session."""
-        while self._lasts(person) and self.may(person, need, bench_id):
+        while self.lasts(person) and self.may(person, need, bench_id):
             left = None if person.until is None else (person.until - now()).total_seconds()
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._changed.wait(), left)
-        return not self._lasts(person)
+        return not self.lasts(person)
 
-    def _lasts(self, person: Person) -> bool:
+    def lasts(self, person: Person) -> bool:
+        """Return whether the session of a person lasts."""
+        if person.is_teacher:
+            return True
         known = self._by_hash.get(self._hashes.get(person.id, ""))  # who came back has another session
         return known is person and (person.until is None or person.until > now())
 

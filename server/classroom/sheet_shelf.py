@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import secrets
+from datetime import datetime
 
 from sqlalchemy import delete, select
 
@@ -13,6 +14,7 @@ from scenarios import sheets as library
 from scenarios.sheets.check import check
 from scenarios.sheets.sheet import Sheet
 from server.errors import ApiError, not_found
+from server.paging import Key
 from server.store.base import now
 from server.store.change import Change
 from server.store.database import Database
@@ -36,6 +38,7 @@ class Shelf:
     def __init__(self, database: Database) -> None:
         self._database = database
         self._own: dict[str, Sheet] = {}
+        self._opened: dict[str, datetime] = {}
 
     async def recover(self) -> None:
         """Read the stored sheets of users."""
@@ -43,12 +46,20 @@ class Shelf:
         for row in await self._database.run(lambda session: list(session.scalars(query))):
             try:
                 self._own[row.id] = await asyncio.to_thread(check, row.text, row.id)
+                self._opened[row.id] = row.created
             except InputError as error:
                 log.warning("a user's sheet cannot be read any more: %s", error)
 
     def all(self) -> list[Sheet]:
         """List the sheets: the library in its order, then the sheets of users."""
         return [library.get(name) for name in library.ids()] + list(self._own.values())
+
+    def key(self, sheet: Sheet) -> Key:
+        """Return the key of a sheet in the list."""
+        names = library.ids()
+        if self.is_own(sheet.id):
+            return len(names), f"{self._opened[sheet.id].isoformat()} {sheet.id}"
+        return names.index(sheet.id), ""
 
     def is_own(self, sheet_id: str) -> bool:
         """Whether it is a user's sheet."""
@@ -66,8 +77,9 @@ class Shelf:
         sheet = await asyncio.to_thread(check, text, name)
         if len(self._own) >= MOST_OWN:
             raise ApiError(409, "limit", f"{MOST_OWN} sheets are open, the limit", hint="delete one first")
-        await self._database.run(lambda session: session.add(SheetRow(id=name, text=text, created=now())))
-        self._own[name] = sheet
+        opened = now()
+        await self._database.run(lambda session: session.add(SheetRow(id=name, text=text, created=opened)))
+        self._own[name], self._opened[name] = sheet, opened
         return sheet
 
     def deletion(self, sheet_id: str) -> Change:

@@ -12,6 +12,7 @@ from sqlalchemy.orm import Session
 
 from scenarios.lecture import Span
 from server.errors import ApiError, not_found
+from server.paging import Page
 from server.security.person import Person
 from server.store.change import Change
 from server.store.database import Database
@@ -106,11 +107,11 @@ class Votes:
 
         return await self._shown(opened)
 
-    async def all(self) -> list[Vote]:
+    async def all(self, page: Page) -> list[Vote]:
         """List the votes."""
-        return await self._database.run(
-            lambda session: [_vote(session, row) for row in session.scalars(select(VoteRow))]
-        )
+        query = page.chosen(select(VoteRow), VoteRow.id)
+        found = await self._database.run(lambda session: [_vote(session, row) for row in session.scalars(query)])
+        return page.rows(found, lambda vote: (vote.id,))
 
     async def get(self, vote_id: str) -> Vote:
         """Return a vote."""

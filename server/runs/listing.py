@@ -15,6 +15,7 @@ from sqlalchemy.orm import Session, defer
 from core.errors import InputError
 from scenarios.key import code_version
 from server.errors import ApiError, ErrorBody, not_found
+from server.paging import Page, by_age
 from server.runs.summary import RunSummary
 from server.store.base import now
 from server.store.database import Database
@@ -23,8 +24,6 @@ from server.store.models import RequestRow
 ACTIVE = ("queued", "running")
 AT_ONCE = 500
 """Rows deleted by one statement."""
-MOST = 200
-"""Rows of one list."""
 LONGEST_LABEL = 120
 Kind = Literal["run", "campaign", "threshold"]
 State = Literal["queued", "running", "done", "failed", "cancelled", "aborted"]
@@ -60,9 +59,9 @@ class RunFilter(BaseModel):
     scenario: str = Field("", max_length=200, description="Only rows of this scenario")
 
     def of(self, kind: Kind) -> Select[Any]:
-        """Return the requested rows, newest first."""
+        """Return the requested rows."""
         row = RequestRow
-        query = select(row).where(row.kind == kind).order_by(row.created.desc()).limit(MOST)
+        query = select(row).where(row.kind == kind)
         for word in self.text.split():
             named = (column.icontains(word, autoescape=True) for column in (row.label, row.title, row.scenario_id))
             query = query.where(or_(*named))
@@ -131,9 +130,10 @@ class Requests:
 
         return await self._database.run(work)
 
-    async def all(self, kind: Kind, wanted: RunFilter) -> list[RequestRow]:
+    async def all(self, kind: Kind, wanted: RunFilter, page: Page) -> list[RequestRow]:
         """List the selected rows, newest first, without their documents."""
-        return await self._rows(wanted.of(kind).options(defer(RequestRow.document)))
+        query = page.chosen(wanted.of(kind), RequestRow.created, RequestRow.id, newest_first=True)
+        return page.rows(await self._rows(query.options(defer(RequestRow.document))), by_age)
 
     async def some(self, kind: Kind, ids: Sequence[str]) -> list[RequestRow]:
         """Return the known rows among some ids."""

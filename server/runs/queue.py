@@ -20,6 +20,7 @@ from collections.abc import Awaitable, Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, ClassVar, Generic, TypeVar
 
+from pydantic import BaseModel
 from sqlalchemy.exc import DBAPIError
 
 from core.errors import InputError
@@ -30,7 +31,9 @@ from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
 from server.errors import ApiError, body_of
 from server.metrics import Metrics
-from server.runs.listing import Kind, Requests, RunFilter, change, fresh
+from server.paging import Page
+from server.progress import Ending, Progress, ProgressStreams
+from server.runs.listing import ACTIVE, Kind, Requests, RunFilter, change, fresh
 from server.runs.worker import NICE, NotKept
 from server.settings import Settings
 from server.store.base import now
@@ -40,7 +43,7 @@ from server.store.results import Results
 
 log = logging.getLogger(__name__)
 
-Shown = TypeVar("Shown")
+Shown = TypeVar("Shown", bound=BaseModel)
 CANCEL_S = 5.0
 LONGEST_WAIT_S = 5
 """Between two tries to note how a request ended; the first two follow at once."""
@@ -89,13 +92,20 @@ class Requested(ABC, Generic[Shown]):
     def shown(self, row: RequestRow) -> Shown:
         """Return a request as the interface shows it, with its progress while it is under way."""
 
-    async def all(self, wanted: RunFilter) -> list[Shown]:
+    async def all(self, wanted: RunFilter, page: Page) -> list[Shown]:
         """List the selected requests, newest first."""
-        return [self.shown(row) for row in await self._requests.all(self.kind, wanted)]
+        return [self.shown(row) for row in await self._requests.all(self.kind, wanted, page)]
 
     async def get(self, row_id: str) -> Shown:
         """Return one, or refuse with 404."""
         return self.shown(await self._requests.get(self.kind, row_id))
+
+    async def look(self, row_id: str) -> Progress | Ending | None:
+        """Return how far a request is, or its end; None while the end is written."""
+        if (progress := self._queue.progress(row_id)) is not None:
+            return progress
+        row = await self._requests.get(self.kind, row_id)
+        return None if row.state in ACTIVE else Ending(state=row.state, result=self.shown(row))
 
     async def rename(self, row_id: str, label: str) -> Shown:
         """Give one a name; an empty one takes it away."""
@@ -130,10 +140,12 @@ class Queue:
         Limits, number of processes, folder.
     metrics : Metrics
         Where ended requests are counted.
+    streams : ProgressStreams
+        Learn of the end of a request at once.
     """
 
-    def __init__(self, database: Database, settings: Settings, metrics: Metrics) -> None:
-        self._database, self._settings, self._metrics = database, settings, metrics
+    def __init__(self, database: Database, settings: Settings, metrics: Metrics, streams: ProgressStreams) -> None:
+        self._database, self._settings, self._metrics, self._streams = database, settings, metrics, streams
         workers = max(1, settings.run_workers)
         self.kinds: dict[str, Requested[Any]] = {}
         self.results, self.processes = Results(database), Processes(workers, NICE)
@@ -176,6 +188,15 @@ class Queue:
             raise ApiError(409, "conflict", f"the {kind} is {row.state}; it cannot be cancelled any more")
         self._cancel(row_id, task)
         await asyncio.wait([task], timeout=CANCEL_S)
+
+    def progress(self, row_id: str) -> Progress | None:
+        """Return how far a request is that waits or is under way."""
+        if row_id not in self._tasks:
+            return None
+        campaign = self.campaigns.get(row_id)
+        if campaign is None:
+            return Progress(state="queued", fraction=0.0, done=0, total=0)
+        return Progress(state="running", fraction=campaign.progress, done=campaign.done, total=campaign.total)
 
     async def warm(self, ready: Callable[[], Awaitable[None]]) -> None:
         """Start the worker processes before the first request, once the kernels are compiled."""
@@ -259,6 +280,7 @@ class Queue:
             if campaign is not None and campaign.total:
                 values = {"done": campaign.done, "runs": campaign.total, "summary": campaign.kept}
             await self._end(row.id, state, error=error, **values)
+            self._streams.ring()
             if campaign is not None:
                 await kind.ended(row, campaign.done)
 

@@ -25,8 +25,8 @@ class Person:
         The role, which decides over most doors.
     class_id : str
         The class of a student.
-    until : datetime, optional
-        When the session ends.
+    until, joined : datetime, optional
+        When the session ends, and when the person came first.
     """
 
     id: str
@@ -34,6 +34,7 @@ class Person:
     role: Role
     class_id: str = ""
     until: datetime | None = None
+    joined: datetime | None = None
 
     @property
     def is_teacher(self) -> bool:

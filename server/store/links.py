@@ -12,6 +12,7 @@ from sqlalchemy import delete, func, select
 from sqlalchemy.orm import Session
 
 from server.errors import ApiError, not_found
+from server.paging import WHOLE, Page, by_age
 from server.store.database import Database
 from server.store.experiment import THIS_VERSION, Experiment
 from server.store.models import LinkRow
@@ -111,13 +112,14 @@ class Links:
 
         return LinkDetail.model_validate(await self._database.run(keep))
 
-    async def all(self, kind: Kind | None = None) -> list[Link]:
+    async def all(self, kind: Kind | None = None, page: Page = WHOLE) -> list[Link]:
         """List links, newest first; without closed idle benches."""
         columns = [getattr(LinkRow, name) for name in Link.model_fields]
-        query = select(*columns).where(LinkRow.kind != "bench").order_by(LinkRow.created.desc())
+        query = select(*columns).where(LinkRow.kind != "bench")
         if kind is not None:
             query = query.where(LinkRow.kind == kind)
-        rows = await self._database.run(lambda session: list(session.execute(query)))
+        query = page.chosen(query, LinkRow.created, LinkRow.id, newest_first=True)
+        rows = page.rows(await self._database.run(lambda session: list(session.execute(query))), by_age)
         return [Link.model_validate(row) for row in rows]
 
     async def get(self, link_id: str) -> LinkDetail:

@@ -11,6 +11,7 @@ from sqlalchemy import delete, func, select
 from sqlalchemy.orm import Session
 
 from server.errors import ApiError, not_found
+from server.paging import Page
 from server.store.database import Database
 from server.store.models import ParameterSetRow
 
@@ -61,10 +62,11 @@ class ParameterSets:
 
         return ParameterSetDetail.model_validate(await self._database.run(add))
 
-    async def all(self) -> list[ParameterSet]:
+    async def all(self, page: Page) -> list[ParameterSet]:
         """List the sets by name."""
-        query = select(ParameterSetRow).order_by(ParameterSetRow.name)
-        rows = await self._database.run(lambda session: list(session.scalars(query)))
+        query = page.chosen(select(ParameterSetRow), ParameterSetRow.name)
+        found = await self._database.run(lambda session: list(session.scalars(query)))
+        rows = page.rows(found, lambda row: (row.name,))
         return [ParameterSet.model_validate(row) for row in rows]
 
     async def get(self, set_id: str) -> ParameterSetDetail:

@@ -18,6 +18,7 @@ from sqlalchemy.exc import DBAPIError
 
 from scenarios.arrow import pa
 from server.errors import ApiError, not_found
+from server.paging import WHOLE, Page, by_age
 from server.store.database import Database, reason_of
 from server.store.earlier import in_this_notation
 from server.store.experiment import THIS_VERSION
@@ -170,13 +171,13 @@ class Recordings:
                 values["state"] = "cut_short" if values["ticks"] else values["state"]
             await asyncio.to_thread(self._close, recording_id, values)
 
-    async def all(self, benches: list[str] | None = None) -> list[Recording]:
+    async def all(self, benches: list[str] | None = None, page: Page = WHOLE) -> list[Recording]:
         """List recordings, newest first: all of them, or the recordings of some benches."""
         await self._settle()
-        query = select(RecordingRow).order_by(RecordingRow.created.desc())
+        query = page.chosen(select(RecordingRow), RecordingRow.created, RecordingRow.id, newest_first=True)
         if benches is not None:
             query = query.where(RecordingRow.bench_id.in_(benches))
-        rows = await self._database.run(lambda session: list(session.scalars(query)))
+        rows = page.rows(await self._database.run(lambda session: list(session.scalars(query))), by_age)
         return [Recording.model_validate(row).model_copy(update=self._unclosed.get(row.id)) for row in rows]
 
     async def get(self, recording_id: str) -> RecordingDetail:

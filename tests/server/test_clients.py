@@ -58,6 +58,22 @@ def test_a_campaign(lab: Any) -> None:
     points = lab.points(sweep)
     assert [point["labels"]["controller.adaptation_gain"] for point in points] == [10.0, 30.0]
     assert [point["runs"] for point in points] == [2, 2]
+    assert lab.points(sweep, limit=1) == points[:1]
+    pages = lab.pages(f"/sweeps/{sweep['id']}/points", limit=1, sort="runs")
+    assert [[point["labels"] for point in page["points"]] for page in pages] == [[one["labels"]] for one in points]
+
+
+def test_a_run_is_waited_for_with_and_without_a_stream_of_progress(client: Any, lab: Any) -> None:
+    wanted = {"scenario": "first-look", "set": {"samples": 700, "expect": []}}
+    path = f"/runs/{lab.ask('POST', '/runs', {**wanted, 'seed': 71})['id']}"
+    *_, (event, found) = lab.watch(path)
+    assert event == "done" and found == lab.ask("GET", path)
+    begun = lab.ask("POST", "/runs", {**wanted, "seed": 72})
+    path, lab.watch = (
+        f"/runs/{begun['id']}",
+        lambda _: (_ for _ in ()).throw(client.Refused("not_found", "no such door")),
+    )
+    assert lab._ended("/runs", begun) == lab.ask("GET", path)
 
 
 def test_a_live_bench_and_its_stream(lab: Any) -> None:

@@ -1,4 +1,4 @@
-import { ApiError, at, client, data } from "./client";
+import { ApiError, at, client, data, every, rows } from "./client";
 import type {
   AliasSource,
   BodeOf,
@@ -71,7 +71,10 @@ export const api = {
   /** `first`: the cards in sight, whose figures are made before the others. */
   gallery: (first: string[]) => data(client.GET("/api/v1/gallery", { params: { query: { first } } })),
   benchmark: (benchmark_id: string) => data(client.GET("/api/v1/benchmarks/{benchmark_id}", at({ benchmark_id }))),
-  runs: async (query: RunFilter) => (await data(client.GET("/api/v1/runs", { params: { query } }))).runs,
+  runs: (filter: RunFilter) =>
+    every("runs", (page) => client.GET("/api/v1/runs", { params: { query: { ...filter, ...page } } })),
+  newestRuns: (filter: RunFilter, most: number) =>
+    rows("runs", (page) => client.GET("/api/v1/runs", { params: { query: { ...filter, ...page } } }), most),
   renameRun: (id: string, label: string) =>
     data(client.PATCH("/api/v1/runs/{run_id}", { ...run(id), body: { label } })),
   removeRuns: (ids?: string[]) => data(client.POST("/api/v1/runs/remove", { body: { ids } })),
@@ -83,7 +86,8 @@ export const api = {
     (await data(client.GET("/api/v1/runs/{run_id}/scenario", { ...run(id), parseAs: "text" }))) as string,
   startRun: (body: NewRun) => data(client.POST("/api/v1/runs", { body })),
   cancelRun: (id: string) => data(client.DELETE("/api/v1/runs/{run_id}", run(id))),
-  sweeps: async (query: RunFilter) => (await data(client.GET("/api/v1/sweeps", { params: { query } }))).sweeps,
+  newestSweeps: (filter: RunFilter, most: number) =>
+    rows("sweeps", (page) => client.GET("/api/v1/sweeps", { params: { query: { ...filter, ...page } } }), most),
   startSweep: (sweep: Campaign, label: string) => data(client.POST("/api/v1/sweeps", { body: { sweep, label } })),
   renameSweep: (id: string, label: string) =>
     data(client.PATCH("/api/v1/sweeps/{sweep_id}", { ...sweep(id), body: { label } })),
@@ -100,7 +104,7 @@ export const api = {
     data(
       client.GET("/api/v1/benches/{bench_id}/trace", at({ bench_id }, { signals, start_tick, end_tick, columns })),
     ) as Promise<Trace>,
-  recordings: async () => (await data(client.GET("/api/v1/recordings"))).recordings,
+  recordings: () => every("recordings", (query) => client.GET("/api/v1/recordings", { params: { query } })),
   recording: (id: string) => data(client.GET("/api/v1/recordings/{recording_id}", recording(id))),
   record: (id: string, body: Wanted) =>
     data(client.POST("/api/v1/benches/{bench_id}/recordings", { ...bench(id), body })),
@@ -113,7 +117,7 @@ export const api = {
     ),
   compare: (id: string, body: CompareWith) =>
     data(client.POST("/api/v1/recordings/{recording_id}/compare", { ...recording(id), body })),
-  benches: async () => (await data(client.GET("/api/v1/benches"))).benches,
+  benches: () => every("benches", (query) => client.GET("/api/v1/benches", { params: { query } })),
   bench: (id: string) => data(client.GET("/api/v1/benches/{bench_id}", bench(id))),
   createBench: (body: NewBench) => data(client.POST("/api/v1/benches", { body })),
   /** Do something to a bench that is not on the page. */
@@ -127,8 +131,8 @@ export const api = {
     data(client.PATCH("/api/v1/benches/{bench_id}", { ...bench(id), body: { name } })),
   seek: (id: string, tick: number) => command(id, { kind: "seek", tick }),
   reopenBench: (id: string) => data(client.POST("/api/v1/benches/{bench_id}/reopen", bench(id))),
-  links: async (kind: "experiment" | "layout") =>
-    (await data(client.GET("/api/v1/links", { params: { query: { kind } } }))).links,
+  links: (kind: "experiment" | "layout") =>
+    every("links", (page) => client.GET("/api/v1/links", { params: { query: { kind, ...page } } })),
   link: (id: string) => data(client.GET("/api/v1/links/{link_id}", link(id))),
   makeLink: (body: NewLink) => data(client.POST("/api/v1/links", { body })),
   changeLink: (id: string, body: LinkWords) => data(client.PATCH("/api/v1/links/{link_id}", { ...link(id), body })),
@@ -140,9 +144,9 @@ export const api = {
   /** A second bench from tick 0 with other values; with `repeat` at the tick of the first, all done again. */
   variant: (id: string, set: Record<string, unknown>, repeat = false) =>
     data(client.POST("/api/v1/benches/{bench_id}/variant", { ...bench(id), body: { set, repeat } })),
-  snapshots: async (id: string) =>
-    (await data(client.GET("/api/v1/benches/{bench_id}/snapshots", bench(id)))).snapshots,
-  parameterSets: async () => (await data(client.GET("/api/v1/parameter-sets"))).sets,
+  snapshots: (bench_id: string) =>
+    every("snapshots", (query) => client.GET("/api/v1/benches/{bench_id}/snapshots", at({ bench_id }, query))),
+  parameterSets: () => every("sets", (query) => client.GET("/api/v1/parameter-sets", { params: { query } })),
   saveParameterSet: (id: string, name: string) =>
     data(client.POST("/api/v1/benches/{bench_id}/parameter-sets", { ...bench(id), body: { name } })),
   applyParameterSet: (bench_id: string, set_id: string) =>

@@ -1,4 +1,4 @@
-import { at, client, data } from "./client";
+import { at, client, data, every, rows } from "./client";
 import type { Class, Command, Document, DrivingTurn, NewBench, NewClass, Tile } from "./types";
 
 const ofClass = (class_id: string) => at({ class_id });
@@ -6,14 +6,16 @@ const ofBench = (bench_id: string) => at({ bench_id });
 
 /** The REST calls around classes, and around links to watch a bench. */
 export const classes = {
-  all: async () => (await data(client.GET("/api/v1/classes"))).classes,
+  all: () => every("classes", (query) => client.GET("/api/v1/classes", { params: { query } })),
   open: (body: NewClass) => data(client.POST("/api/v1/classes", { body })),
   end: (id: string) => data(client.DELETE("/api/v1/classes/{class_id}", ofClass(id))),
   newCode: (id: string, minutes: number) =>
     data(client.POST("/api/v1/classes/{class_id}/code", { ...ofClass(id), body: { minutes } })),
   closeJoining: (id: string) => data(client.DELETE("/api/v1/classes/{class_id}/code", ofClass(id))),
-  members: async (id: string) =>
-    (await data(client.GET("/api/v1/classes/{class_id}/members", ofClass(id)))).members as Tile[],
+  members: (class_id: string) =>
+    every("members", (query) => client.GET("/api/v1/classes/{class_id}/members", at({ class_id }, query))) as Promise<
+      Tile[]
+    >,
   sendAway: (class_id: string, member_id: string) =>
     data(client.DELETE("/api/v1/classes/{class_id}/members/{member_id}", at({ class_id, member_id }))),
   command: (id: string, command: Command, members: string[] | null) =>
@@ -32,11 +34,12 @@ export const classes = {
   /** Ask for a bench, hand it over, take it back; `to` is whom it concerns. */
   drive: (bench: string, what: DrivingTurn, to = "") =>
     data(client.POST("/api/v1/benches/{bench_id}/driving", { ...ofBench(bench), body: { do: what, to } })),
-  benchAudit: async (bench: string) =>
-    (await data(client.GET("/api/v1/benches/{bench_id}/audit", ofBench(bench)))).entries,
-  audit: async (id: string) => (await data(client.GET("/api/v1/classes/{class_id}/audit", ofClass(id)))).entries,
-  watchers: async (bench: string) =>
-    (await data(client.GET("/api/v1/benches/{bench_id}/watchers", ofBench(bench)))).watchers,
+  benchAudit: (bench_id: string, most: number) =>
+    rows("entries", (page) => client.GET("/api/v1/benches/{bench_id}/audit", at({ bench_id }, page)), most),
+  audit: (class_id: string, most: number) =>
+    rows("entries", (page) => client.GET("/api/v1/classes/{class_id}/audit", at({ class_id }, page)), most),
+  watchers: (bench_id: string) =>
+    every("watchers", (query) => client.GET("/api/v1/benches/{bench_id}/watchers", at({ bench_id }, query))),
   /** Let people without the access token watch a bench by a link that was shared. */
   letWatch: (bench: string, link: string, hours: number) =>
     data(client.POST("/api/v1/benches/{bench_id}/watchers", { ...ofBench(bench), body: { hours, link } })),

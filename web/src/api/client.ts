@@ -24,11 +24,55 @@ export function at(path: unknown, query?: unknown) {
   return { params: { path, query } };
 }
 
+type Answer<T> = Promise<{ data?: T; error?: unknown; response: Response }>;
+
 /** The data of an answer; a refusal becomes an `ApiError` with its reason and its advice. */
-export async function data<T>(answer: Promise<{ data?: T; error?: unknown; response: Response }>): Promise<T> {
+export async function data<T>(answer: Answer<T>): Promise<T> {
   const { data, error, response } = await answer;
   if (!response.ok) throw new ApiError(response.status, errorBody(error, response.status));
   return data as T;
+}
+
+/** Which page of a list is asked for. */
+interface PageQuery {
+  limit: number;
+  after?: string;
+}
+
+/** Rows from the beginning of a list. */
+export interface Rows<R> {
+  rows: R[];
+  /** Whether the list has no further rows. */
+  isWhole: boolean;
+}
+
+const PAGE = 1000;
+
+/** The rows under a name in the answers of a list, page by page until there are enough. */
+export async function rows<K extends string, R>(
+  name: K,
+  ask: (query: PageQuery) => Answer<Record<K, R[]>>,
+  most = Number.POSITIVE_INFINITY,
+): Promise<Rows<R>> {
+  const found: R[] = [];
+  let after: string | undefined;
+  do {
+    const answer = ask({ limit: Math.min(most, PAGE), after });
+    found.push(...(await data(answer))[name]);
+    after = nextCursor((await answer).response);
+  } while (after !== undefined && found.length < most);
+  return { rows: found, isWhole: after === undefined };
+}
+
+/** All rows under a name in the answers of a list. */
+export const every = async <K extends string, R>(
+  name: K,
+  ask: (query: PageQuery) => Answer<Record<K, R[]>>,
+): Promise<R[]> => (await rows(name, ask)).rows;
+
+function nextCursor({ headers }: Response): string | undefined {
+  const address = /<([^>]*)>; rel="next"/.exec(headers.get("Link") ?? "")?.[1];
+  return address === undefined ? undefined : (new URL(address).searchParams.get("after") ?? undefined);
 }
 
 /** A proxy or a crash may answer in another shape; then the status is all there is. */

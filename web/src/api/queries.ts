@@ -1,6 +1,6 @@
 import { keepPreviousData, QueryClient, useQuery } from "@tanstack/react-query";
 import { useCallback, useEffect, useState } from "react";
-import { ApiError } from "./client";
+import { ApiError, type Rows } from "./client";
 import { usePanelVisible } from "./panel-visible";
 
 /** The questions to the server and their answers; equal questions share one answer. */
@@ -51,6 +51,25 @@ export function useAnswer<T>(
     since: dataUpdatedAt ? new Date(dataUpdatedAt) : undefined,
     again: useCallback(() => void refetch(), [refetch]),
   };
+}
+
+/** Rows of a long list that come at once. */
+const SOME = 200;
+
+/** A list that may be long: its first rows, and more on request. */
+export function useList<T>(
+  question: readonly unknown[],
+  ask: (most: number) => Promise<Rows<T>>,
+  every: (rows: T[] | undefined) => number | undefined,
+): Answer<T[]> & { more: (() => void) | undefined } {
+  const [most, setMost] = useState(SOME);
+  const { value, ...answer } = useAnswer(
+    [...question, most],
+    () => ask(most),
+    (list) => every(list?.rows),
+  );
+  const list = useLast(value);
+  return { ...answer, value: list?.rows, more: list?.isWhole === false ? () => setMost(most + SOME) : undefined };
 }
 
 interface Asked<T> {

@@ -1,9 +1,10 @@
 import { Box, Group } from "@mantine/core";
 import { classes } from "../api/classes";
-import { useAnswer } from "../api/queries";
+import { useList } from "../api/queries";
 import { EmptyState } from "../ui/empty-state";
 import { formatTick } from "../ui/format";
 import { Sheet } from "../ui/sheet";
+import { ShowOlder } from "../ui/show-older";
 import { Stale } from "../ui/stale";
 
 const EVERY_MS = 3000;
@@ -27,9 +28,9 @@ export function DoneSheet({ opened, onClose, ...rest }: DoneSheetProps) {
 }
 
 function Done({ group, owners }: Pick<DoneSheetProps, "group" | "owners">) {
-  const { value, error, since, again } = useAnswer(
+  const { value, error, since, again, more } = useList(
     ["audit", group],
-    () => classes.audit(group),
+    (most) => classes.audit(group, most),
     () => EVERY_MS,
   );
   return (
@@ -66,6 +67,7 @@ function Done({ group, owners }: Pick<DoneSheetProps, "group" | "owners">) {
           );
         })}
       </ol>
+      <ShowOlder more={more} />
     </>
   );
 }

@@ -152,9 +152,30 @@ it("asks for the runs of a text, a state and a scenario, and shows all again", a
   server.on("GET", "/sweeps", { sweeps: [] });
   await user.type(jobs.getByRole("searchbox"), "none");
   expect(await jobs.findByText("No run matches")).toBeVisible();
-  expect(last()).toEqual({ text: "none", state: "done", scenario: "first-look" });
+  expect(last()).toEqual({ text: "none", state: "done", scenario: "first-look", limit: "200" });
   expect(server.asked("GET", "/sweeps").at(-1)?.query).toEqual(last());
   await user.click(jobs.getByRole("button", { name: "Show all" }));
   await waitFor(() => expect(jobs.getByText("Nothing has been run yet")).toBeVisible());
   expect(jobs.getByRole("searchbox")).toHaveValue("");
+});
+
+it("shows older runs on request, and says that there are some", async () => {
+  const rows = Array.from({ length: 300 }, (_, n) => ({
+    ...run,
+    id: `many-${n}`,
+    label: `run ${n}`,
+    created: new Date(1e12 - n * 1e3).toISOString(),
+  }));
+  server.on("GET", "/sweeps", { sweeps: [] });
+  server.on("GET", "/runs", ({ query }: { query: Record<string, string> }) => {
+    const first = Number(query.after ?? 0);
+    const end = first + Number(query.limit);
+    const headers = end < 300 ? { Link: `<http://lab/api/v1/runs?after=${end}>; rel="next"` } : undefined;
+    return Response.json({ runs: rows.slice(first, end) }, { headers });
+  });
+  const { user, jobs } = await mountPage();
+  expect(jobs.getAllByRole("checkbox")).toHaveLength(200);
+  await user.click(jobs.getByRole("button", { name: "Show older" }));
+  await waitFor(() => expect(jobs.getAllByRole("checkbox")).toHaveLength(300));
+  expect(jobs.queryByRole("button", { name: "Show older" })).not.toBeInTheDocument();
 });

@@ -2,11 +2,13 @@ import { Button, Stack } from "@mantine/core";
 import { useDebouncedValue } from "@mantine/hooks";
 import { useCallback, useEffect, useRef, useState } from "react";
 import { api } from "../api/api";
-import { useAnswer } from "../api/queries";
+import type { Rows } from "../api/client";
+import { useList } from "../api/queries";
 import type { RunFilter } from "../api/types";
 import { PageHead } from "../bench/page-head";
 import { showError } from "../bench/send";
 import { EmptyState } from "../ui/empty-state";
+import { ShowOlder } from "../ui/show-older";
 import { Stale } from "../ui/stale";
 import { CampaignDetail } from "./campaign-detail";
 import { JobFilter } from "./job-filter";
@@ -25,18 +27,20 @@ const CALM_MS = 15_000;
 const PAUSE_MS = 250;
 const ALL: RunFilter = {};
 
-async function jobsLike(filter: RunFilter): Promise<Job[]> {
-  const [runs, sweeps] = await Promise.all([api.runs(filter), api.sweeps(filter)]);
-  return jobsOf(runs, sweeps);
+/** The newest runs and campaigns of both lists. */
+async function jobsLike(filter: RunFilter, most: number): Promise<Rows<Job>> {
+  const [runs, sweeps] = await Promise.all([api.newestRuns(filter, most), api.newestSweeps(filter, most)]);
+  const jobs = jobsOf(runs.rows, sweeps.rows);
+  return { rows: jobs.slice(0, most), isWhole: runs.isWhole && sweeps.isWhole && jobs.length <= most };
 }
 
 /** Headless runs and campaigns: start them, watch them, read their results. */
 export function RunsPage() {
   const [filter, setFilter] = useState(ALL);
   const [wanted] = useDebouncedValue(filter, PAUSE_MS);
-  const { value, error, since, again } = useAnswer(
+  const { value, error, since, again, more } = useList(
     ["jobs", wanted],
-    () => jobsLike(wanted),
+    (most) => jobsLike(wanted, most),
     (jobs) => (jobs?.some((job) => job.isActive) ? BUSY_MS : CALM_MS),
   );
   const [chosen, choose] = useChosen();
@@ -72,7 +76,10 @@ export function RunsPage() {
         <Stale error={error} since={since} onRetry={again} />
         <JobFilter filter={filter} scenarios={scenarios} onChange={setFilter} />
         {value && value.length > 0 ? (
-          <JobList jobs={value} chosen={chosen} onChoose={choose} onChanged={again} />
+          <>
+            <JobList jobs={value} chosen={chosen} onChoose={choose} onChanged={again} />
+            <ShowOlder more={more} />
+          </>
         ) : value && isFiltered ? (
           <EmptyState
             title="No run matches"

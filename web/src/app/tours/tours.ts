@@ -38,7 +38,7 @@ const injectMass = command({ fault: "added_mass", severity: 0.05 } as Command);
 let run: Promise<string | undefined> | undefined;
 
 async function startRun(): Promise<string | undefined> {
-  const there = await api.runs({});
+  const there = await api.runs({ scenario: "ch1-step" });
   const { id } = await api.startRun({ scenario: "ch1-step" });
   return there.some((one) => one.id === id) ? undefined : id;
 }

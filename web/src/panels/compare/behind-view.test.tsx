@@ -53,7 +53,7 @@ it("offers benches and recordings of the same rate, and finished runs", async ()
     "A recording",
     "A run",
   ]);
-  expect(server.asked("GET", "/runs")[0].query).toEqual({ state: "done" });
+  expect(server.asked("GET", "/runs")[0].query).toEqual({ state: "done", limit: "1000" });
 });
 
 it("puts a bench behind the traces, at the same time, and takes it away", async () => {

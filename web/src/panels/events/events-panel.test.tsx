@@ -83,3 +83,13 @@ it("offers no headless run for a command that runs the bench", async () => {
   const items = await screen.findAllByRole("menuitem");
   expect(items.map((item) => item.textContent)).toEqual(["REST, with curl", "Python"]);
 });
+
+it("shows older events on request", async () => {
+  const board = connect(bench);
+  const { user } = mount(<EventsPanel />);
+  await board.events(Array.from({ length: 301 }, (_, n) => ({ ...injected, seq: events.length + n + 1 })));
+  expect(rows()).toHaveLength(301); // 300 events and the button
+  await user.click(screen.getByRole("button", { name: "Show older" }));
+  expect(rows()).toHaveLength(301);
+  expect(screen.queryByRole("button", { name: "Show older" })).not.toBeInTheDocument();
+});

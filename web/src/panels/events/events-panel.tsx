@@ -3,7 +3,7 @@ import { IconGitBranch } from "@tabler/icons-react";
 import { useState } from "react";
 import { classes } from "../../api/classes";
 import { useMay } from "../../api/me";
-import { useAnswer } from "../../api/queries";
+import { useList } from "../../api/queries";
 import type { LogEntry } from "../../api/types";
 import { useClasses } from "../../api/use-classes";
 import { eventTone } from "../../bench/flag-words";
@@ -12,10 +12,12 @@ import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
 import { formatMoment, formatTick } from "../../ui/format";
 import { jump } from "../../ui/hover";
+import { ShowOlder } from "../../ui/show-older";
 import { Stale } from "../../ui/stale";
 import { CopyMenu } from "./copy-menu";
 import styles from "./events.module.css";
 
+/** Events that are shown at first, and that are added each time. */
 const SHOWN = 300;
 
 /** Everything that happened, numbered, newest first; a click takes the scopes there. */
@@ -50,6 +52,7 @@ const CHANGES = new Set(["inject", "heal", "set", "switch"]);
 
 function Events() {
   const events = useBench((s) => s.events);
+  const [shown, setShown] = useState(SHOWN);
   const earliest = useBench((s) => s.bench?.earliest_tick);
   const teaches = useMay("teach");
   const canBranch = ({ kind, tick }: LogEntry) =>
@@ -64,7 +67,7 @@ function Events() {
   return (
     <ol className={styles.list} aria-label="Events, newest first">
       {events
-        .slice(-SHOWN)
+        .slice(-shown)
         .reverse()
         .map((event) => (
           <Box component="li" key={event.seq} className="line" pr={8}>
@@ -93,6 +96,11 @@ function Events() {
             )}
           </Box>
         ))}
+      {events.length > shown && (
+        <li>
+          <ShowOlder more={() => setShown(shown + SHOWN)} />
+        </li>
+      )}
     </ol>
   );
 }
@@ -101,9 +109,9 @@ const EVERY_MS = 3000;
 
 /** Actions of users on a bench, drivers and arrivals, newest first; the list outlives the bench. */
 function WhoDid({ bench }: { bench: string }) {
-  const { value, error, since, again } = useAnswer(
+  const { value, error, since, again, more } = useList(
     ["bench-audit", bench],
-    () => classes.benchAudit(bench),
+    (most) => classes.benchAudit(bench, most),
     () => EVERY_MS,
   );
   return (
@@ -123,6 +131,7 @@ function WhoDid({ bench }: { bench: string }) {
           </li>
         ))}
       </ol>
+      <ShowOlder more={more} />
     </>
   );
 }
