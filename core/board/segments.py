@@ -34,11 +34,12 @@ class SharedSegment:
     def __init__(self, steps: Segment) -> None:
         self.steps, self.address = steps, 0
         """Its steps, and where its function is: 0 as long as its code is not loaded."""
+        self._codes: list[LoadedCode] = []  # all of them: a board may run any
 
     def load(self, code: bytes) -> None:
         """Load its machine code; every board takes it at a tick edge."""
-        self._code = LoadedCode(code)
-        self.address = self._code.address
+        self._codes.append(LoadedCode(code))
+        self.address = self._codes[-1].address
 
 
 class Part(NamedTuple):
