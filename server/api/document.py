@@ -12,8 +12,8 @@ from scenarios.json_schema.components import COMPONENT
 from scenarios.json_schema.components import components as documents
 from scenarios.json_schema.definitions import walked
 from server.api.examples import EXAMPLES
-from server.api.tags import TAGS
 from server.api.paging import LINK
+from server.api.tags import TAGS
 from server.classroom.access import Need, need_of
 from server.errors import ErrorReply
 from server.progress import Progress
