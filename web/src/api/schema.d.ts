@@ -360,7 +360,7 @@ export interface paths {
         };
         /**
          * List Events
-         * @description List the events after an event.
+         * @description List the events of a bench, oldest first; `after` is the number of an event, whose followers are listed.
          */
         get: operations["list_events"];
         put?: never;
@@ -464,7 +464,9 @@ export interface paths {
         };
         /**
          * List Narration
-         * @description List the sentences of the narrator after a sentence; all sentences if the bench has jumped since.
+         * @description List the sentences of the narrator; `after` is the number of a sentence, whose followers are listed.
+         *
+         *     All sentences are listed if the bench has jumped since.
          */
         get: operations["list_narration"];
         put?: never;
@@ -688,7 +690,7 @@ export interface paths {
         };
         /**
          * List Snapshots
-         * @description List the moments kept.
+         * @description List the moments kept, oldest first.
          */
         get: operations["list_snapshots"];
         put?: never;
@@ -792,7 +794,7 @@ export interface paths {
         };
         /**
          * List Parameter Sets
-         * @description List the sets.
+         * @description List the sets by name.
          */
         get: operations["list_parameter_sets"];
         put?: never;
@@ -860,7 +862,7 @@ export interface paths {
         };
         /**
          * List Bench Recordings
-         * @description List the recordings of a bench.
+         * @description List the recordings of a bench, newest first.
          */
         get: operations["list_bench_recordings"];
         put?: never;
@@ -904,7 +906,7 @@ export interface paths {
         };
         /**
          * List Recordings
-         * @description List all recordings, also of deleted benches; a student sees the recordings of the own benches.
+         * @description List all recordings, newest first, also of deleted benches; a student sees the recordings of the own benches.
          */
         get: operations["list_recordings"];
         put?: never;
@@ -1313,6 +1315,8 @@ export interface paths {
         /**
          * Get Sweep Points
          * @description Return figures, confusion, delays and receiver operating characteristics of the runs done so far.
+         *
+         *     Points without runs are listed only where neither a page nor an order is asked for.
          */
         get: operations["get_sweep_points"];
         put?: never;
@@ -1464,6 +1468,86 @@ export interface paths {
          * @description Cancel a search that waits or is under way; the runs that are done stay.
          */
         delete: operations["cancel_threshold"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run_id}/progress": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Follow Run
+         * @description Follow a run to its end.
+         */
+        get: operations["follow_run"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/{sweep_id}/progress": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Follow Sweep
+         * @description Follow a campaign to its end.
+         */
+        get: operations["follow_sweep"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/thresholds/{threshold_id}/progress": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Follow Threshold
+         * @description Follow a search for a threshold to its end.
+         */
+        get: operations["follow_threshold"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/recordings/{recording_id}/progress": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Follow Recording
+         * @description Follow a recording until its file is whole.
+         */
+        get: operations["follow_recording"];
+        put?: never;
+        post?: never;
+        delete?: never;
         options?: never;
         head?: never;
         patch?: never;
@@ -1678,7 +1762,7 @@ export interface paths {
         };
         /**
          * List Links
-         * @description List the links.
+         * @description List the links, newest first.
          */
         get: operations["list_links"];
         put?: never;
@@ -1852,7 +1936,7 @@ export interface paths {
         };
         /**
          * List Classes
-         * @description List the classes.
+         * @description List the classes, oldest first.
          */
         get: operations["list_classes"];
         put?: never;
@@ -2515,7 +2599,7 @@ export interface paths {
         };
         /**
          * List Watchers
-         * @description List the links to watch the bench.
+         * @description List the links to watch the bench, oldest first.
          */
         get: operations["list_watchers"];
         put?: never;
@@ -2827,7 +2911,7 @@ export interface paths {
         };
         /**
          * Get Class Audit
-         * @description List the actions of users in a class.
+         * @description List the actions of users in a class, newest first.
          */
         get: operations["get_class_audit"];
         put?: never;
@@ -2847,7 +2931,7 @@ export interface paths {
         };
         /**
          * Get Bench Audit
-         * @description List the actions of users on a bench, also on a deleted bench.
+         * @description List the actions of users on a bench, newest first, also on a deleted bench.
          */
         get: operations["get_bench_audit"];
         put?: never;
@@ -2969,7 +3053,6 @@ export interface components {
             name: string;
             /** Severity */
             severity: number;
-            /** Profile */
             profile: components["schemas"]["Profile"];
             /**
              * Parameters
@@ -4296,10 +4379,10 @@ export interface components {
             plants: string[];
         };
         /**
-         * Devices
+         * DeviceList
          * @description Every device of the catalogue, and the choices of a drawing.
          */
-        Devices: {
+        DeviceList: {
             /** Devices */
             devices: components["schemas"]["DeviceCard"][];
             /** Geometry */
@@ -4461,6 +4544,26 @@ export interface components {
             why: string | null;
         };
         /**
+         * ErrorBody
+         * @description An error: one line, the field at fault, a hint.
+         */
+        ErrorBody: {
+            /** Code */
+            code: string;
+            /** Message */
+            message: string;
+            /**
+             * Field
+             * @default
+             */
+            field?: string;
+            /**
+             * Hint
+             * @default
+             */
+            hint?: string;
+        };
+        /**
          * Estimate
          * @description A mean over cases and its standard error; cases do not depend on one another, samples of one case do.
          */
@@ -4538,7 +4641,7 @@ export interface components {
              * Command
              * @description The command, as an event of a scenario if it is to the board
              */
-            command?: components["schemas"]["ResetTrip"] | components["schemas"]["Heal"] | components["schemas"]["Inject"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | null;
+            command?: components["schemas"]["ResetTrip"] | components["schemas"]["HealFaults"] | components["schemas"]["Inject"] | components["schemas"]["SetValues"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | null;
             /** Old */
             old?: unknown;
             /** New */
@@ -4858,7 +4961,7 @@ export interface components {
          */
         ForAll: {
             /** Command */
-            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
+            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["HealFaults"] | components["schemas"]["SetValues"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
             /**
              * Members
              * @description Ids of students; null: the whole class
@@ -5081,10 +5184,10 @@ export interface components {
             steps: components["schemas"]["StepGrade"][];
         };
         /**
-         * Grades
+         * GradeList
          * @description The work of the students of a class at sheets.
          */
-        Grades: {
+        GradeList: {
             /** Grades */
             grades: components["schemas"]["Grade"][];
         };
@@ -5100,21 +5203,6 @@ export interface components {
             raised: boolean;
         };
         /**
-         * HandIn
-         * @description Values of an answer.
-         */
-        HandIn: {
-            /** Seed */
-            seed: number;
-            /**
-             * Hand In
-             * @description Fields of the answer; left out: the defaults
-             */
-            hand_in: {
-                [key: string]: number | string;
-            };
-        };
-        /**
          * Hands
          * @description Hands raised in the room, for each answer.
          */
@@ -5123,10 +5211,10 @@ export interface components {
             counts: number[];
         };
         /**
-         * Heal
+         * HealFaults
          * @description Take faults away.
          */
-        Heal: {
+        HealFaults: {
             /**
              * At Sample
              * @description the sample at which the command takes effect
@@ -5950,10 +6038,10 @@ export interface components {
             phase_deg: number;
         };
         /**
-         * Members
+         * MemberList
          * @description The students of a class in the order in which they joined, each with a small picture of the bench.
          */
-        Members: {
+        MemberList: {
             /** Members */
             members: components["schemas"]["Tile"][];
         };
@@ -6037,6 +6125,21 @@ export interface components {
              * @description Number of resets and returns to the past, which make earlier sentences void
              */
             jumps: number;
+        };
+        /**
+         * NewAttempt
+         * @description Values of an answer.
+         */
+        NewAttempt: {
+            /** Seed */
+            seed: number;
+            /**
+             * Hand In
+             * @description Fields of the answer; left out: the defaults
+             */
+            hand_in: {
+                [key: string]: number | string;
+            };
         };
         /**
          * NewBallot
@@ -6661,7 +6764,7 @@ export interface components {
              * Command
              * @description As an event of a scenario
              */
-            command: components["schemas"]["ResetTrip"] | components["schemas"]["Heal"] | components["schemas"]["Inject"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"];
+            command: components["schemas"]["ResetTrip"] | components["schemas"]["HealFaults"] | components["schemas"]["Inject"] | components["schemas"]["SetValues"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"];
         };
         /**
          * Play
@@ -7268,8 +7371,11 @@ export interface components {
             id: string;
             /** Key */
             key: string;
-            /** State */
-            state: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "queued" | "running" | "done" | "failed" | "cancelled" | "aborted";
             /** Scenario Id */
             scenario_id: string;
             /** Title */
@@ -7296,11 +7402,7 @@ export interface components {
             finished: string | null;
             /** Progress */
             progress: number;
-            /** Summary */
-            summary: {
-                [key: string]: unknown;
-            } | null;
-            /** Error */
+            summary: components["schemas"]["RunSummary"] | null;
             error: components["schemas"]["ErrorBody"] | null;
         };
         /**
@@ -7314,6 +7416,53 @@ export interface components {
             figures: components["schemas"]["FigureRow"][];
             /** Signals */
             signals: components["schemas"]["RunSignal"][];
+        };
+        /**
+         * RunExpectation
+         * @description An expectation of the scenario, and the measured value.
+         */
+        RunExpectation: {
+            /** Metric */
+            metric: string;
+            /** Published */
+            published: string;
+            /** Expected */
+            expected: string;
+            /** Measured */
+            measured: number | null;
+            /** Ok */
+            ok: boolean;
+            /** Note */
+            note: string;
+            /**
+             * Expected Words
+             * @description The expected value in words, with its unit
+             */
+            expected_words?: string;
+            /** Published Value */
+            published_value?: number | null;
+            /** Verdict */
+            verdict?: string | null;
+            /**
+             * Open Loop
+             * @description Figure with the open loop in place of the controller
+             */
+            open_loop?: number | null;
+            /**
+             * Pid
+             * @description Figure with a PID in its place
+             */
+            pid?: number | null;
+            /**
+             * Comparator
+             * @description Name of this PID
+             */
+            comparator?: string;
+            /**
+             * Pid Too
+             * @description Whether this PID meets the claim too
+             */
+            pid_too?: boolean;
         };
         /**
          * RunList
@@ -7332,6 +7481,71 @@ export interface components {
             name: string;
             /** Unit */
             unit: string;
+        };
+        /**
+         * RunSummary
+         * @description Figures of a run and verdicts on them; with several seeds, figures are means.
+         */
+        RunSummary: {
+            /** Scenario */
+            scenario: string;
+            /** Title */
+            title: string;
+            /** Source */
+            source: string;
+            /** Claim */
+            claim: string;
+            /** Verdict */
+            verdict: string | null;
+            /**
+             * Seed
+             * @description The first seed
+             */
+            seed: number;
+            /** Ticks */
+            ticks: number;
+            /** Dt S */
+            dt_s: number;
+            /** Elapsed S */
+            elapsed_s: number;
+            /** Digest */
+            digest: string;
+            trip: components["schemas"]["Trip"] | null;
+            /** Warnings */
+            warnings: string[];
+            /**
+             * Metrics
+             * @description Figures by name
+             */
+            metrics: {
+                [key: string]: number;
+            };
+            /** Expectations */
+            expectations: components["schemas"]["RunExpectation"][];
+            /**
+             * Ok
+             * @description Whether all expectations hold
+             */
+            ok: boolean;
+            /**
+             * Seeds
+             * @description The first and the last of several seeds
+             */
+            seeds?: number[];
+            /**
+             * Digests
+             * @description The digest of each seed
+             */
+            digests?: string[];
+            /** Tripped Runs */
+            tripped_runs?: number;
+            /**
+             * Metrics Std
+             * @description Standard deviations by name of figure
+             */
+            metrics_std?: {
+                [key: string]: number;
+            };
         };
         /**
          * RunTrace
@@ -7595,10 +7809,21 @@ export interface components {
             };
         };
         /**
-         * Set
+         * SetName
+         * @description The name of a set.
+         */
+        SetName: {
+            /**
+             * Name
+             * @description Name, which no other set may have
+             */
+            name: string;
+        };
+        /**
+         * SetValues
          * @description Set parameters by their paths, all in one tick.
          */
-        Set: {
+        SetValues: {
             /**
              * At Sample
              * @description the sample at which the command takes effect
@@ -7621,17 +7846,6 @@ export interface components {
             set: {
                 [key: string]: unknown;
             };
-        };
-        /**
-         * SetName
-         * @description The name of a set.
-         */
-        SetName: {
-            /**
-             * Name
-             * @description Name, which no other set may have
-             */
-            name: string;
         };
         /**
          * SheetBrief
@@ -8232,8 +8446,11 @@ export interface components {
         SweepRun: {
             /** Id */
             id: string;
-            /** State */
-            state: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "queued" | "running" | "done" | "failed" | "cancelled" | "aborted";
             /** Name */
             name: string;
             /** Title */
@@ -8263,7 +8480,6 @@ export interface components {
             created: string;
             /** Finished */
             finished: string | null;
-            /** Error */
             error: components["schemas"]["ErrorBody"] | null;
         };
         /**
@@ -8373,8 +8589,11 @@ export interface components {
         ThresholdRun: {
             /** Id */
             id: string;
-            /** State */
-            state: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "queued" | "running" | "done" | "failed" | "cancelled" | "aborted";
             /** Scenario Id */
             scenario_id: string;
             /**
@@ -8384,7 +8603,6 @@ export interface components {
             progress?: number;
             /** @description Null until it is done */
             found?: components["schemas"]["Threshold"] | null;
-            /** Error */
             error: components["schemas"]["ErrorBody"] | null;
         };
         /**
@@ -8969,7 +9187,7 @@ export interface components {
             /** Id */
             id: string;
             /** Command */
-            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
+            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["HealFaults"] | components["schemas"]["SetValues"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
         };
         /**
          * Pong
@@ -9159,26 +9377,6 @@ export interface components {
             is_short: boolean;
         };
         /**
-         * ErrorBody
-         * @description An error: one line, the field at fault, a hint.
-         */
-        ErrorBody: {
-            /** Code */
-            code: string;
-            /** Message */
-            message: string;
-            /**
-             * Field
-             * @default
-             */
-            field?: string;
-            /**
-             * Hint
-             * @default
-             */
-            hint?: string;
-        };
-        /**
          * ErrorMessage
          * @description A message of the client was refused; the connection stays.
          */
@@ -9192,10 +9390,10 @@ export interface components {
             error: components["schemas"]["ErrorBody"];
         };
         /**
-         * Events
+         * EventsMessage
          * @description Events since the last such message, numbered without gaps.
          */
-        Events: {
+        EventsMessage: {
             /**
              * Type
              * @default events
@@ -9465,13 +9663,42 @@ export interface components {
             dropped_frames: number;
         };
         /** ServerMessage */
-        ServerMessage: components["schemas"]["Hello"] | components["schemas"]["Status"] | components["schemas"]["Events"] | components["schemas"]["Narrated"] | components["schemas"]["CaptureList"] | components["schemas"]["Reply"] | components["schemas"]["ErrorMessage"] | components["schemas"]["Notice"] | components["schemas"]["Ping"];
+        ServerMessage: components["schemas"]["Hello"] | components["schemas"]["Status"] | components["schemas"]["EventsMessage"] | components["schemas"]["Narrated"] | components["schemas"]["CaptureList"] | components["schemas"]["Reply"] | components["schemas"]["ErrorMessage"] | components["schemas"]["Notice"] | components["schemas"]["Ping"];
         /**
          * ErrorReply
          * @description The one error shape of every answer.
          */
         ErrorReply: {
             error: components["schemas"]["ErrorBody"];
+        };
+        /**
+         * Progress
+         * @description How far a run, a campaign, a search or a recording is.
+         */
+        Progress: {
+            /** State */
+            state: string;
+            /**
+             * Fraction
+             * @description Share that is done, from 0 to 1
+             */
+            fraction: number;
+            /**
+             * Done
+             * @description Finished runs, or ticks of a recording
+             */
+            done: number;
+            /**
+             * Total
+             * @description Runs as far as known, or ticks at which a recording ends by itself
+             */
+            total: number;
+            /**
+             * Seconds Left
+             * @description Estimate from the time so far; null: not known yet
+             * @default null
+             */
+            seconds_left?: number | null;
         };
         /**
          * AdaptiveForgettingIdentifier
@@ -9585,6 +9812,38 @@ export interface components {
              * @default 30
              */
             bandwidth_hz?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * AdrcController
+         * @description Active disturbance rejection (ADRC): Linear active disturbance rejection (Han 2009; Gao 2003), with an extended state observer.
+         */
+        AdrcController: {
+            /**
+             * @description Active disturbance rejection (ADRC): Linear active disturbance rejection (Han 2009; Gao 2003), with an extended state observer. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "adrc";
+            /**
+             * @description omega_c over w0
+             * @default 1
+             */
+            controller_bandwidth?: number;
+            /**
+             * @description omega_o over w0
+             * @default 5
+             */
+            observer_bandwidth?: number;
+            /**
+             * @description model of the observer: the nominal device, or a mass without damping and spring
+             * @default nominal
+             * @enum {string}
+             */
+            plant?: "nominal" | "integrators";
             /**
              * @description ticks of the board between two samples of the block
              * @default 1
@@ -10305,7 +10564,7 @@ export interface components {
             every?: number;
         };
         /** Controller */
-        Controller: components["schemas"]["AdaptiveRateController"] | components["schemas"]["ForceToRebalanceController"] | components["schemas"]["GainAdaptationController"] | components["schemas"]["IndirectMracController"] | components["schemas"]["MimoAdaptiveController"] | components["schemas"]["MracController"] | components["schemas"]["MracVelocityController"] | components["schemas"]["OpenLoopController"] | components["schemas"]["OpenLoopRateController"] | components["schemas"]["PidController"] | components["schemas"]["SelfSlidingController"] | components["schemas"]["SenseAxisSyncController"] | components["schemas"]["StvscController"] | components["schemas"]["VscController"] | components["schemas"]["VsmrcController"] | components["schemas"]["WholeAngleController"];
+        Controller: components["schemas"]["AdaptiveRateController"] | components["schemas"]["AdrcController"] | components["schemas"]["ForceToRebalanceController"] | components["schemas"]["GainAdaptationController"] | components["schemas"]["IndirectMracController"] | components["schemas"]["LqgController"] | components["schemas"]["MimoAdaptiveController"] | components["schemas"]["MracController"] | components["schemas"]["MracVelocityController"] | components["schemas"]["OpenLoopController"] | components["schemas"]["OpenLoopRateController"] | components["schemas"]["PidController"] | components["schemas"]["ResonantController"] | components["schemas"]["SelfSlidingController"] | components["schemas"]["SenseAxisSyncController"] | components["schemas"]["StvscController"] | components["schemas"]["VscController"] | components["schemas"]["VsmrcController"] | components["schemas"]["WholeAngleController"];
         /**
          * CusumDiagnoser
          * @description Cumulative sums (CUSUM): Page's test of each fault against the healthy device, the first hypothesis.
@@ -11886,6 +12145,34 @@ export interface components {
              * @default 23
              */
             threshold?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * LqgController
+         * @description LQG: Linear-quadratic-Gaussian tracking of the reference model (Kalman 1960; Åström 1970, chapter 8).
+         */
+        LqgController: {
+            /**
+             * @description LQG: Linear-quadratic-Gaussian tracking of the reference model (Kalman 1960; Åström 1970, chapter 8). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "lqg";
+            /**
+             * @description root of the cost of a volt, µm/V
+             * @default 0.03
+             */
+            voltage_cost_um_v?: number;
+            /**
+             * @description assumed noise on the voltage, rms per sample, V
+             * @default 1
+             */
+            process_noise_v?: number;
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
             /**
              * @description ticks of the board between two samples of the block
              * @default 1
@@ -13530,6 +13817,32 @@ export interface components {
             every?: number;
         };
         /**
+         * ResonantController
+         * @description Resonant: A resonator for each harmonic of the reference's tone (Francis and Wonham 1976; repetitive with all of them).
+         */
+        ResonantController: {
+            /**
+             * @description Resonant: A resonator for each harmonic of the reference's tone (Francis and Wonham 1976; repetitive with all of them). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "resonant";
+            /**
+             * @description harmonics of the tone
+             * @default 1
+             */
+            harmonics?: number;
+            /**
+             * @description rate of decay of the error, over the decay of the device itself
+             * @default 0.2
+             */
+            rate?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
          * Scenario
          * @description A bench, its events and its expectations.
          */
@@ -14796,7 +15109,26 @@ export interface components {
             every?: number;
         };
     };
-    responses: never;
+    responses: {
+        /** @description The request is refused */
+        Refused: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/json": components["schemas"]["ErrorReply"];
+            };
+        };
+        /** @description The server cannot answer */
+        Failed: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/json": components["schemas"]["ErrorReply"];
+            };
+        };
+    };
     parameters: never;
     requestBodies: never;
     headers: never;
@@ -14853,7 +15185,7 @@ export type Curve = components['schemas']['Curve'];
 export type DefinitenessReport = components['schemas']['DefinitenessReport'];
 export type Design = components['schemas']['Design'];
 export type DeviceCard = components['schemas']['DeviceCard'];
-export type Devices = components['schemas']['Devices'];
+export type DeviceList = components['schemas']['DeviceList'];
 export type DiagnoserInfo = components['schemas']['DiagnoserInfo'];
 export type DiagnosisTally = components['schemas']['DiagnosisTally'];
 export type Difference = components['schemas']['Difference'];
@@ -14865,6 +15197,7 @@ export type Drives = components['schemas']['Drives'];
 export type DrivingTurn = components['schemas']['DrivingTurn'];
 export type Ended = components['schemas']['Ended'];
 export type EquationCard = components['schemas']['EquationCard'];
+export type ErrorBody = components['schemas']['ErrorBody'];
 export type Estimate = components['schemas']['Estimate'];
 export type Evaluation = components['schemas']['Evaluation'];
 export type Event = components['schemas']['Event'];
@@ -14892,11 +15225,10 @@ export type GameList = components['schemas']['GameList'];
 export type GivenLayout = components['schemas']['GivenLayout'];
 export type GivenView = components['schemas']['GivenView'];
 export type Grade = components['schemas']['Grade'];
-export type Grades = components['schemas']['Grades'];
+export type GradeList = components['schemas']['GradeList'];
 export type Hand = components['schemas']['Hand'];
-export type HandIn = components['schemas']['HandIn'];
 export type Hands = components['schemas']['Hands'];
-export type Heal = components['schemas']['Heal'];
+export type HealFaults = components['schemas']['HealFaults'];
 export type Health = components['schemas']['Health'];
 export type HiddenQuestion = components['schemas']['HiddenQuestion'];
 export type Hide = components['schemas']['Hide'];
@@ -14931,11 +15263,12 @@ export type Me = components['schemas']['Me'];
 export type MeasuredPlant = components['schemas']['MeasuredPlant'];
 export type MeasuredPlants = components['schemas']['MeasuredPlants'];
 export type MeasuredTone = components['schemas']['MeasuredTone'];
-export type Members = components['schemas']['Members'];
+export type MemberList = components['schemas']['MemberList'];
 export type Minutes = components['schemas']['Minutes'];
 export type ModelAccount = components['schemas']['ModelAccount'];
 export type NamedPair = components['schemas']['NamedPair'];
 export type NarrationList = components['schemas']['NarrationList'];
+export type NewAttempt = components['schemas']['NewAttempt'];
 export type NewBallot = components['schemas']['NewBallot'];
 export type NewBench = components['schemas']['NewBench'];
 export type NewClass = components['schemas']['NewClass'];
@@ -14992,8 +15325,10 @@ export type Roc = components['schemas']['Roc'];
 export type Row = components['schemas']['Row'];
 export type Run = components['schemas']['Run'];
 export type RunComparison = components['schemas']['RunComparison'];
+export type RunExpectation = components['schemas']['RunExpectation'];
 export type RunList = components['schemas']['RunList'];
 export type RunSignal = components['schemas']['RunSignal'];
+export type RunSummary = components['schemas']['RunSummary'];
 export type RunTrace = components['schemas']['RunTrace'];
 export type RunTraces = components['schemas']['RunTraces'];
 export type SafeBoundary = components['schemas']['SafeBoundary'];
@@ -15008,8 +15343,8 @@ export type Scores = components['schemas']['Scores'];
 export type SectionView = components['schemas']['SectionView'];
 export type Seek = components['schemas']['Seek'];
 export type Sentence = components['schemas']['Sentence'];
-export type Set = components['schemas']['Set'];
 export type SetName = components['schemas']['SetName'];
+export type SetValues = components['schemas']['SetValues'];
 export type SheetBrief = components['schemas']['SheetBrief'];
 export type SheetCard = components['schemas']['SheetCard'];
 export type SheetForAll = components['schemas']['SheetForAll'];
@@ -15083,9 +15418,8 @@ export type TriggerSpec = components['schemas']['TriggerSpec'];
 export type Unsubscribe = components['schemas']['Unsubscribe'];
 export type ClientMessage = components['schemas']['ClientMessage'];
 export type CaptureList = components['schemas']['CaptureList'];
-export type ErrorBody = components['schemas']['ErrorBody'];
 export type ErrorMessage = components['schemas']['ErrorMessage'];
-export type Events = components['schemas']['Events'];
+export type EventsMessage = components['schemas']['EventsMessage'];
 export type Hello = components['schemas']['Hello'];
 export type Narrated = components['schemas']['Narrated'];
 export type Notice = components['schemas']['Notice'];
@@ -15094,8 +15428,10 @@ export type Reply = components['schemas']['Reply'];
 export type Status = components['schemas']['Status'];
 export type ServerMessage = components['schemas']['ServerMessage'];
 export type ErrorReply = components['schemas']['ErrorReply'];
+export type Progress = components['schemas']['Progress'];
 export type AdaptiveForgettingIdentifier = components['schemas']['AdaptiveForgettingIdentifier'];
 export type AdaptiveRateController = components['schemas']['AdaptiveRateController'];
+export type AdrcController = components['schemas']['AdrcController'];
 export type AllanReadOut = components['schemas']['AllanReadOut'];
 export type AnchoredDiagnoser = components['schemas']['AnchoredDiagnoser'];
 export type ArxBankDiagnoser = components['schemas']['ArxBankDiagnoser'];
@@ -15146,6 +15482,7 @@ export type LeastSquaresIdentifier = components['schemas']['LeastSquaresIdentifi
 export type LinearPlant = components['schemas']['LinearPlant'];
 export type LockInDiagnoser = components['schemas']['LockInDiagnoser'];
 export type LockInGlrDiagnoser = components['schemas']['LockInGlrDiagnoser'];
+export type LqgController = components['schemas']['LqgController'];
 export type MimoAdaptiveController = components['schemas']['MimoAdaptiveController'];
 export type MmaeDiagnoser = components['schemas']['MmaeDiagnoser'];
 export type Model = components['schemas']['Model'];
@@ -15187,6 +15524,7 @@ export type Reference = components['schemas']['Reference'];
 export type ReferenceBanksDiagnoser = components['schemas']['ReferenceBanksDiagnoser'];
 export type RegionsDiagnoser = components['schemas']['RegionsDiagnoser'];
 export type ReseedDiagnoser = components['schemas']['ReseedDiagnoser'];
+export type ResonantController = components['schemas']['ResonantController'];
 export type Scenario = components['schemas']['Scenario'];
 export type ScenarioEvent = components['schemas']['ScenarioEvent'];
 export type ScenarioId = components['schemas']['ScenarioId'];
@@ -15215,6 +15553,8 @@ export type TwoOutputDiagnoser = components['schemas']['TwoOutputDiagnoser'];
 export type VscController = components['schemas']['VscController'];
 export type VsmrcController = components['schemas']['VsmrcController'];
 export type WholeAngleController = components['schemas']['WholeAngleController'];
+export type ResponseRefused = components['responses']['Refused'];
+export type ResponseFailed = components['responses']['Failed'];
 export type $defs = Record<string, never>;
 export interface operations {
     get_catalog: {
@@ -15238,15 +15578,8 @@ export interface operations {
                     "application/json": components["schemas"]["Catalogue"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_devices: {
@@ -15264,18 +15597,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Devices"];
+                    "application/json": components["schemas"]["DeviceList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     evaluate: {
@@ -15300,15 +15626,8 @@ export interface operations {
                     "application/json": components["schemas"]["Evaluation"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     bode: {
@@ -15333,15 +15652,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bode"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     spread: {
@@ -15366,15 +15678,8 @@ export interface operations {
                     "application/json": components["schemas"]["ProcessSpread"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_scenarios: {
@@ -15395,15 +15700,8 @@ export interface operations {
                     "application/json": components["schemas"]["ScenarioList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_scenario: {
@@ -15427,15 +15725,8 @@ export interface operations {
                     "application/json": components["schemas"]["ScenarioText"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     check_scenario: {
@@ -15460,15 +15751,8 @@ export interface operations {
                     "application/json": components["schemas"]["ScenarioText"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_schemas: {
@@ -15489,15 +15773,8 @@ export interface operations {
                     "application/json": components["schemas"]["SchemaList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_schema: {
@@ -15521,20 +15798,18 @@ export interface operations {
                     "application/schema+json": Record<string, never>;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_units: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -15544,21 +15819,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["UnitList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     check_unit: {
@@ -15583,15 +15853,8 @@ export interface operations {
                     "application/json": components["schemas"]["UnitCheck"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_unit: {
@@ -15615,15 +15878,8 @@ export interface operations {
                     "application/json": components["schemas"]["UnitText"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     keep_unit: {
@@ -15651,15 +15907,8 @@ export interface operations {
                     "application/json": components["schemas"]["UnitEntry"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_unit: {
@@ -15681,20 +15930,18 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_benches: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -15704,21 +15951,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["BenchList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     create_bench: {
@@ -15743,15 +15985,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_bench: {
@@ -15775,15 +16010,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_bench: {
@@ -15805,15 +16033,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     name_bench: {
@@ -15841,15 +16062,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     reopen_bench: {
@@ -15873,15 +16087,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     command: {
@@ -15896,7 +16103,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
+                "application/json": components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["HealFaults"] | components["schemas"]["SetValues"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
             };
         };
         responses: {
@@ -15909,24 +16116,17 @@ export interface operations {
                     "application/json": components["schemas"]["CommandResult"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_events: {
         parameters: {
             query?: {
-                /** @description Number of the last known entry */
-                after?: number;
-                /** @description Largest number of entries */
-                limit?: number | null;
+                /** @description Most rows of this page: 4000 unless given, at most 100000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
             };
             header?: never;
             path: {
@@ -15940,21 +16140,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["EventList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     save_scenario: {
@@ -15975,18 +16170,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/plain": unknown;
+                    "text/plain": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_digest: {
@@ -16010,15 +16198,8 @@ export interface operations {
                     "application/json": components["schemas"]["Digest"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     fork_bench: {
@@ -16046,15 +16227,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     vary_bench: {
@@ -16082,24 +16256,19 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_narration: {
         parameters: {
             query?: {
-                /** @description Number of the last known entry */
-                after?: number;
                 /** @description Number of jumps in the last answer */
                 jumps?: number | null;
+                /** @description Most rows of this page: 2000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
             };
             header?: never;
             path: {
@@ -16113,21 +16282,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["NarrationList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     identification: {
@@ -16155,15 +16319,8 @@ export interface operations {
                     "application/json": components["schemas"]["Identification"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     region: {
@@ -16190,15 +16347,8 @@ export interface operations {
                     "application/json": components["schemas"]["UnstableRegionMap"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     plants: {
@@ -16222,15 +16372,8 @@ export interface operations {
                     "application/json": components["schemas"]["MeasuredPlants"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     flops: {
@@ -16259,15 +16402,8 @@ export interface operations {
                     "application/json": components["schemas"]["Budget"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     explain_sample: {
@@ -16296,15 +16432,8 @@ export interface operations {
                     "application/json": components["schemas"]["Account"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     find_turn: {
@@ -16333,15 +16462,8 @@ export interface operations {
                     "application/json": components["schemas"]["Turn"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     map_bench_aliases: {
@@ -16370,15 +16492,8 @@ export interface operations {
                     "application/json": components["schemas"]["AliasMap"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_aliases: {
@@ -16408,15 +16523,8 @@ export interface operations {
                     "application/json": components["schemas"]["AliasReport"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_readout: {
@@ -16442,15 +16550,8 @@ export interface operations {
                     "application/json": components["schemas"]["RateReadout"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_printed: {
@@ -16474,15 +16575,8 @@ export interface operations {
                     "application/json": components["schemas"]["MarkList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_claims: {
@@ -16506,20 +16600,18 @@ export interface operations {
                     "application/json": components["schemas"]["ClaimList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_snapshots: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path: {
                 /** @description Id of a bench */
@@ -16532,21 +16624,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["SnapshotList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     take_snapshot: {
@@ -16574,15 +16661,8 @@ export interface operations {
                     "application/json": components["schemas"]["Snapshot"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_snapshot: {
@@ -16606,15 +16686,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     restore_snapshot: {
@@ -16640,15 +16713,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     save_parameter_set: {
@@ -16676,15 +16742,8 @@ export interface operations {
                     "application/json": components["schemas"]["ParameterSetDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     apply_parameter_set: {
@@ -16710,20 +16769,18 @@ export interface operations {
                     "application/json": components["schemas"]["Applied"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_parameter_sets: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -16733,21 +16790,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["ParameterSetList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_parameter_set: {
@@ -16771,15 +16823,8 @@ export interface operations {
                     "application/json": components["schemas"]["ParameterSetDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_parameter_set: {
@@ -16801,15 +16846,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     rename_parameter_set: {
@@ -16837,15 +16875,8 @@ export interface operations {
                     "application/json": components["schemas"]["ParameterSetDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     compare_parameter_sets: {
@@ -16874,20 +16905,18 @@ export interface operations {
                     "application/json": components["schemas"]["Difference"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_bench_recordings: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path: {
                 /** @description Id of a bench */
@@ -16900,21 +16929,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["RecordingList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     start_recording: {
@@ -16942,15 +16966,8 @@ export interface operations {
                     "application/json": components["schemas"]["Recording"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     stop_recording: {
@@ -16976,20 +16993,18 @@ export interface operations {
                     "application/json": components["schemas"]["Recording"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_recordings: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -16999,21 +17014,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["RecordingList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_recording: {
@@ -17037,15 +17047,8 @@ export interface operations {
                     "application/json": components["schemas"]["RecordingDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_recording: {
@@ -17067,15 +17070,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     replay_recording: {
@@ -17103,15 +17099,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     compare_recordings: {
@@ -17139,15 +17128,8 @@ export interface operations {
                     "application/json": components["schemas"]["Comparison"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_recording_trace: {
@@ -17179,20 +17161,13 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/csv; charset=utf-8": unknown;
-                    "application/vnd.apache.parquet": unknown;
-                    "application/octet-stream": unknown;
+                    "application/octet-stream": string;
+                    "application/vnd.apache.parquet": string;
+                    "text/csv": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_trace: {
@@ -17225,20 +17200,13 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Trace"];
-                    "text/csv; charset=utf-8": unknown;
-                    "application/vnd.apache.parquet": unknown;
-                    "application/octet-stream": unknown;
+                    "application/octet-stream": string;
+                    "application/vnd.apache.parquet": string;
+                    "text/csv": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_runs: {
@@ -17250,6 +17218,10 @@ export interface operations {
                 state?: ("queued" | "running" | "done" | "failed" | "cancelled" | "aborted") | null;
                 /** @description Only rows of this scenario */
                 scenario?: string;
+                /** @description Most rows of this page: 200 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
             };
             header?: never;
             path?: never;
@@ -17260,21 +17232,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["RunList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     start_run: {
@@ -17308,15 +17275,8 @@ export interface operations {
                     "application/json": components["schemas"]["Run"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     remove_runs: {
@@ -17341,15 +17301,8 @@ export interface operations {
                     "application/json": components["schemas"]["Removed"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     compare_finished_runs: {
@@ -17373,15 +17326,8 @@ export interface operations {
                     "application/json": components["schemas"]["RunComparison"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     compare_traces: {
@@ -17409,15 +17355,8 @@ export interface operations {
                     "application/json": components["schemas"]["RunTraces"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run: {
@@ -17441,15 +17380,8 @@ export interface operations {
                     "application/json": components["schemas"]["Run"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     cancel_run: {
@@ -17473,15 +17405,8 @@ export interface operations {
                     "application/json": components["schemas"]["Run"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     rename_run: {
@@ -17509,15 +17434,8 @@ export interface operations {
                     "application/json": components["schemas"]["Run"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run_trace: {
@@ -17549,20 +17467,13 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/csv; charset=utf-8": unknown;
-                    "application/vnd.apache.parquet": unknown;
-                    "application/octet-stream": unknown;
+                    "application/octet-stream": string;
+                    "application/vnd.apache.parquet": string;
+                    "text/csv": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run_report: {
@@ -17583,18 +17494,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/html": unknown;
+                    "text/html": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run_thumbnail: {
@@ -17615,18 +17519,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "image/svg+xml": unknown;
+                    "image/svg+xml": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run_scenario: {
@@ -17647,18 +17544,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/plain": unknown;
+                    "text/plain": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run_script: {
@@ -17679,18 +17569,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/x-python": unknown;
+                    "text/x-python": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_sweeps: {
@@ -17702,6 +17585,10 @@ export interface operations {
                 state?: ("queued" | "running" | "done" | "failed" | "cancelled" | "aborted") | null;
                 /** @description Only rows of this scenario */
                 scenario?: string;
+                /** @description Most rows of this page: 200 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
             };
             header?: never;
             path?: never;
@@ -17712,21 +17599,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["SweepList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     start_sweep: {
@@ -17760,15 +17642,8 @@ export interface operations {
                     "application/json": components["schemas"]["SweepRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     remove_sweeps: {
@@ -17793,15 +17668,8 @@ export interface operations {
                     "application/json": components["schemas"]["Removed"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep: {
@@ -17825,15 +17693,8 @@ export interface operations {
                     "application/json": components["schemas"]["SweepRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     cancel_sweep: {
@@ -17857,15 +17718,8 @@ export interface operations {
                     "application/json": components["schemas"]["SweepRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     rename_sweep: {
@@ -17893,15 +17747,8 @@ export interface operations {
                     "application/json": components["schemas"]["SweepRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_points: {
@@ -17909,12 +17756,14 @@ export interface operations {
             query?: {
                 /** @description Number of points to skip */
                 offset?: number;
-                /** @description Largest number of points; left out: all */
-                limit?: number | null;
                 /** @description Order: an axis, a figure, runs, ok or tripped */
                 sort?: string;
                 /** @description Whether the largest values come first */
                 descending?: boolean;
+                /** @description Most rows of this page: 20000 unless given, at most 20000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
             };
             header?: never;
             path: {
@@ -17928,21 +17777,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["SweepPoints"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_distribution: {
@@ -17971,15 +17815,8 @@ export interface operations {
                     "application/json": components["schemas"]["Distribution"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_picture: {
@@ -18008,15 +17845,8 @@ export interface operations {
                     "application/json": components["schemas"]["CampaignPicture"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_runs: {
@@ -18044,19 +17874,12 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/csv; charset=utf-8": unknown;
-                    "application/vnd.apache.parquet": unknown;
+                    "text/csv": string;
+                    "application/vnd.apache.parquet": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_report: {
@@ -18077,18 +17900,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/html": unknown;
+                    "text/html": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_script: {
@@ -18109,18 +17925,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/x-python": unknown;
+                    "text/x-python": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     find_threshold: {
@@ -18154,15 +17963,8 @@ export interface operations {
                     "application/json": components["schemas"]["ThresholdRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_threshold: {
@@ -18186,15 +17988,8 @@ export interface operations {
                     "application/json": components["schemas"]["ThresholdRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     cancel_threshold: {
@@ -18218,15 +18013,148 @@ export interface operations {
                     "application/json": components["schemas"]["ThresholdRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    follow_run: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Id of the last event that was received */
+                "Last-Event-ID"?: string;
+            };
+            path: {
+                /** @description Id of a run */
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Events `progress` with a Progress, then one of `done`, `failed` and `cancelled` with the Run */
+            200: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["ErrorReply"];
+                    "text/event-stream": string;
                 };
             };
+            /** @description The last event is known already: there is nothing left to wait for */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    follow_sweep: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Id of the last event that was received */
+                "Last-Event-ID"?: string;
+            };
+            path: {
+                /** @description Id of a campaign */
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Events `progress` with a Progress, then one of `done`, `failed` and `cancelled` with the SweepRun */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/event-stream": string;
+                };
+            };
+            /** @description The last event is known already: there is nothing left to wait for */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    follow_threshold: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Id of the last event that was received */
+                "Last-Event-ID"?: string;
+            };
+            path: {
+                /** @description Id of a search for a threshold */
+                threshold_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Events `progress` with a Progress, then one of `done`, `failed` and `cancelled` with the ThresholdRun */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/event-stream": string;
+                };
+            };
+            /** @description The last event is known already: there is nothing left to wait for */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    follow_recording: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Id of the last event that was received */
+                "Last-Event-ID"?: string;
+            };
+            path: {
+                /** @description Id of a recording */
+                recording_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Events `progress` with a Progress, then one of `done`, `failed` and `cancelled` with the Recording */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/event-stream": string;
+                };
+            };
+            /** @description The last event is known already: there is nothing left to wait for */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_gallery: {
@@ -18250,15 +18178,8 @@ export interface operations {
                     "application/json": components["schemas"]["Gallery"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_figure: {
@@ -18279,18 +18200,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "image/svg+xml": unknown;
+                    "image/svg+xml": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     run_gallery: {
@@ -18315,15 +18229,8 @@ export interface operations {
                     "application/json": components["schemas"]["Gallery"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_benchmarks: {
@@ -18344,15 +18251,8 @@ export interface operations {
                     "application/json": components["schemas"]["BenchmarkList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_benchmark: {
@@ -18376,15 +18276,8 @@ export interface operations {
                     "application/json": components["schemas"]["BenchmarkDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     judge_positive_real: {
@@ -18409,15 +18302,8 @@ export interface operations {
                     "application/json": components["schemas"]["PositiveRealReport"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     judge_positive_definite: {
@@ -18442,15 +18328,8 @@ export interface operations {
                     "application/json": components["schemas"]["DefinitenessReport"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     judge_persistency: {
@@ -18475,15 +18354,8 @@ export interface operations {
                     "application/json": components["schemas"]["ExcitationReport"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     map_aliases: {
@@ -18508,15 +18380,8 @@ export interface operations {
                     "application/json": components["schemas"]["AliasMap"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     map_instability: {
@@ -18541,15 +18406,8 @@ export interface operations {
                     "application/json": components["schemas"]["InstabilityMap"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_links: {
@@ -18557,6 +18415,10 @@ export interface operations {
             query?: {
                 /** @description Kind of the listed links; left out: all kinds */
                 kind?: ("experiment" | "layout") | null;
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
             };
             header?: never;
             path?: never;
@@ -18567,21 +18429,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["LinkList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     make_link: {
@@ -18606,15 +18463,8 @@ export interface operations {
                     "application/json": components["schemas"]["LinkDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_link: {
@@ -18638,15 +18488,8 @@ export interface operations {
                     "application/json": components["schemas"]["LinkDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_link: {
@@ -18668,15 +18511,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     change_link: {
@@ -18704,15 +18540,8 @@ export interface operations {
                     "application/json": components["schemas"]["LinkDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     open_link: {
@@ -18736,15 +18565,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_lectures: {
@@ -18765,15 +18587,8 @@ export interface operations {
                     "application/json": components["schemas"]["LectureList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_lecture: {
@@ -18797,15 +18612,8 @@ export interface operations {
                     "application/json": components["schemas"]["LectureDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     put_cue: {
@@ -18835,15 +18643,8 @@ export interface operations {
                     "application/json": components["schemas"]["Staged"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_me: {
@@ -18864,15 +18665,8 @@ export interface operations {
                     "application/json": components["schemas"]["Me"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     raise_hand: {
@@ -18897,20 +18691,18 @@ export interface operations {
                     "application/json": components["schemas"]["Me"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_classes: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -18920,21 +18712,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["ClassList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     open_class: {
@@ -18959,15 +18746,8 @@ export interface operations {
                     "application/json": components["schemas"]["Class"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_class: {
@@ -18991,15 +18771,8 @@ export interface operations {
                     "application/json": components["schemas"]["Class"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     end_class: {
@@ -19021,15 +18794,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     make_code: {
@@ -19057,15 +18823,8 @@ export interface operations {
                     "application/json": components["schemas"]["Class"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     end_code: {
@@ -19089,15 +18848,8 @@ export interface operations {
                     "application/json": components["schemas"]["Class"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     join_class: {
@@ -19125,20 +18877,18 @@ export interface operations {
                     "application/json": components["schemas"]["Joined"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_members: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path: {
                 /** @description Id of a class */
@@ -19151,21 +18901,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Members"];
+                    "application/json": components["schemas"]["MemberList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     remove_member: {
@@ -19189,15 +18934,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     command_all: {
@@ -19225,15 +18963,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     begin_scenario: {
@@ -19261,15 +18992,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     show_bench: {
@@ -19295,15 +19019,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     end_showing: {
@@ -19325,15 +19042,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     give_layout: {
@@ -19359,15 +19069,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_layout: {
@@ -19388,15 +19091,8 @@ export interface operations {
                     "application/json": components["schemas"]["GivenLayout"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     lower_hand: {
@@ -19420,15 +19116,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     start_all: {
@@ -19456,15 +19145,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     change_driver: {
@@ -19492,15 +19174,8 @@ export interface operations {
                     "application/json": components["schemas"]["Drives"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     draw_qr_code: {
@@ -19525,15 +19200,8 @@ export interface operations {
                     "application/json": components["schemas"]["QrCode"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_blind: {
@@ -19557,15 +19225,8 @@ export interface operations {
                     "application/json": components["schemas"]["Blindness"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     hide_fault: {
@@ -19593,15 +19254,8 @@ export interface operations {
                     "application/json": components["schemas"]["Blindness"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     give_up: {
@@ -19625,15 +19279,8 @@ export interface operations {
                     "application/json": components["schemas"]["Answer"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     answer: {
@@ -19661,15 +19308,8 @@ export interface operations {
                     "application/json": components["schemas"]["Answer"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_class_blind: {
@@ -19693,15 +19333,8 @@ export interface operations {
                     "application/json": components["schemas"]["BlindClass"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     hide_for_class: {
@@ -19729,15 +19362,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     reveal_class: {
@@ -19761,15 +19387,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_captures: {
@@ -19793,15 +19412,8 @@ export interface operations {
                     "application/json": components["schemas"]["BenchCaptures"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_games: {
@@ -19822,15 +19434,8 @@ export interface operations {
                     "application/json": components["schemas"]["GameList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_game: {
@@ -19857,15 +19462,8 @@ export interface operations {
                     "application/json": components["schemas"]["Play"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     begin_game: {
@@ -19893,15 +19491,8 @@ export interface operations {
                     "application/json": components["schemas"]["Play"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     hand_in: {
@@ -19916,7 +19507,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["HandIn"];
+                "application/json": components["schemas"]["NewAttempt"];
             };
         };
         responses: {
@@ -19929,15 +19520,8 @@ export interface operations {
                     "application/json": components["schemas"]["Play"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     reveal_game: {
@@ -19965,15 +19549,8 @@ export interface operations {
                     "application/json": components["schemas"]["Play"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_class_game: {
@@ -20002,20 +19579,18 @@ export interface operations {
                     "application/json": components["schemas"]["ClassGame"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_votes: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -20025,21 +19600,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["VoteList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     open_vote: {
@@ -20064,15 +19634,8 @@ export interface operations {
                     "application/json": components["schemas"]["Vote"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_vote: {
@@ -20096,15 +19659,8 @@ export interface operations {
                     "application/json": components["schemas"]["Vote"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     remove_vote: {
@@ -20126,15 +19682,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     close_vote: {
@@ -20158,15 +19707,8 @@ export interface operations {
                     "application/json": components["schemas"]["Vote"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     reveal_vote: {
@@ -20190,15 +19732,8 @@ export interface operations {
                     "application/json": components["schemas"]["Vote"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     count_hands: {
@@ -20226,15 +19761,8 @@ export interface operations {
                     "application/json": components["schemas"]["Vote"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     cast: {
@@ -20259,20 +19787,18 @@ export interface operations {
                     "application/json": components["schemas"]["OpenVote"] | null;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_watchers: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path: {
                 /** @description Id of a bench */
@@ -20285,21 +19811,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["WatcherList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     make_watcher: {
@@ -20327,15 +19848,8 @@ export interface operations {
                     "application/json": components["schemas"]["Watcher"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     end_watcher: {
@@ -20359,20 +19873,18 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_sheets: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -20382,21 +19894,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["SheetList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     open_sheet: {
@@ -20421,15 +19928,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sheet: {
@@ -20453,15 +19953,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_sheet: {
@@ -20483,15 +19976,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     begin_sheet: {
@@ -20515,15 +20001,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     start_over: {
@@ -20545,15 +20024,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     answer_step: {
@@ -20583,15 +20055,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     hide_in_step: {
@@ -20617,15 +20082,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     take_hint: {
@@ -20651,15 +20109,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     close_step: {
@@ -20685,15 +20136,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     add_recording: {
@@ -20719,15 +20163,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_report: {
@@ -20748,18 +20185,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/html": unknown;
+                    "text/html": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     begin_for_all: {
@@ -20787,15 +20217,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_grades: {
@@ -20819,19 +20242,12 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Grades"];
-                    "text/csv": unknown;
+                    "application/json": components["schemas"]["GradeList"];
+                    "text/csv": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_report_of: {
@@ -20856,25 +20272,20 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/html": unknown;
+                    "text/html": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_class_audit: {
         parameters: {
             query?: {
-                /** @description Largest number of entries */
+                /** @description Most rows of this page: 1000 unless given, at most 10000 */
                 limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
             };
             header?: never;
             path: {
@@ -20888,28 +20299,25 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["AuditList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_bench_audit: {
         parameters: {
             query?: {
-                /** @description Largest number of entries */
+                /** @description Most rows of this page: 1000 unless given, at most 10000 */
                 limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
             };
             header?: never;
             path: {
@@ -20923,21 +20331,16 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["AuditList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     live: {
@@ -20967,15 +20370,8 @@ export interface operations {
                     "application/json": components["schemas"]["Health"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     ready: {
@@ -21005,15 +20401,8 @@ export interface operations {
                     "application/json": components["schemas"]["Health"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     metrics: {
@@ -21034,15 +20423,8 @@ export interface operations {
                     "text/plain": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
 }
