@@ -16,6 +16,7 @@ from server.bench.bench import LiveBench
 from server.bench.benches import Benches
 from server.bench.checkpoints import Checkpoints
 from server.bench.engine import Engine
+from server.bench.fusing import Fusing
 from server.bench.idling import Idling
 from server.bench.recording import RecordingControl
 from server.bench.watchdog import Safety, Watchdog
@@ -162,6 +163,7 @@ class Service:
         )
         self.views = Views(self.benches, self.people, self.hub, self.idling, self.viewers is not None, self.close_bench)
         self.kernels = Kernels()
+        self.fusing = Fusing(self.benches, self.engine, self.computing)
         self.is_ready = False
         self._loop: asyncio.AbstractEventLoop | None = None
 
@@ -191,6 +193,7 @@ class Service:
         tasks.append(asyncio.create_task(asyncio.to_thread(lambda: pa.array([0.0]))))
         self.figures.start(self.kernels.compiled)
         tasks.append(asyncio.create_task(self._use_own_code()))
+        tasks.append(asyncio.create_task(self.fusing.run(self.clock, self._calm)))
         self.is_ready = True
         try:
             yield

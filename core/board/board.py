@@ -22,6 +22,7 @@ from core.board.observer import Observer
 from core.board.parse import parse
 from core.board.pending import PendingCommand, PendingQueue
 from core.board.rows import Rows
+from core.board.segments import Part, SharedSegment, joined, parts
 from core.board.spec import Section, Spec
 from core.board.wiring import Wiring, wire
 from core.diagnose.hypothesis import names_of
@@ -36,7 +37,7 @@ CHUNK = 512
 COPIED = ("pending", "trip", "wiring", "folds", "used", "observer")
 LISTS = 150
 """Bytes that a checkpoint takes for each block beside its numbers."""
-SHARED = ("spec", "base", "compiled", "tick", "lost")
+SHARED = ("spec", "base", "compiled", "fuses", "tick", "lost")
 """Parts that every copy of a board has for itself (``COPIED``), and parts that never change in place (``SHARED``)."""
 
 
@@ -66,7 +67,7 @@ class Board:
     def __init__(self, bench: Document | Spec, *, compiled: bool = True) -> None:
         self.spec: Spec = bench if isinstance(bench, Spec) else parse(bench)
         self.base: Document = copy.deepcopy(self.spec.document)
-        self.compiled = compiled
+        self.compiled, self.fuses = compiled, False
         self.wiring: Wiring = wire(self.spec)
         self.tick = 0
         self.log = Log()  # a live bench replaces it with its own log
@@ -79,7 +80,9 @@ class Board:
         self.observer = Observer(self.spec, self.wiring)
         self._linked: Wiring | None = None
         self._running: list[int] = []
-        self._table = self.wiring.table
+        self._rows = self._table = self.wiring.table
+        self._parts: list[Part] = []
+        self._awaited: list[SharedSegment] = []
         self._allocate()
         self.link()
 
@@ -111,6 +114,11 @@ class Board:
         wiring = self.wiring
         numbers = sum(part.nbytes for part in (wiring.p, wiring.s, wiring.w, wiring.io, wiring.table, self.folds))
         return numbers + LISTS * len(wiring.instances)
+
+    @property
+    def unfused(self) -> list[SharedSegment]:
+        """The segments of a board that fuses whose code is not loaded."""
+        return [segment for segment in self._awaited if not segment.address]
 
     def value(self, signal: str) -> float:
         """Return the value of a signal after the last tick."""
@@ -145,6 +153,8 @@ class Board:
         its state trips the board at the next whole multiple of `EVERY` ticks.
         """
         n = min(n, CHUNK)
+        if any(segment.address for segment in self._awaited):
+            self._join()
         first, done = self.tick, 0
         idle = self._idle
         while done < n:
@@ -218,15 +228,33 @@ class Board:
             return
         running = wiring.rest(self.spec)
         if wiring is self._linked and running == self._running:
-            self._table[:, program.EVERY] = wiring.table[running, program.EVERY]
-            return
-        self._linked, self._running = wiring, running
-        self._table = wiring.table[running]
-        self._idle = wiring.idle(running)
-        if self.compiled:
-            self._table[:, program.ADDRESS] = [steps.address(wiring, row) for row in running]
+            self._rows[:, program.EVERY] = wiring.table[running, program.EVERY]
         else:
-            self._steps = [wiring.bound(row) for row in running]
+            self._linked, self._running = wiring, running
+            self._rows = wiring.table[running]
+            self._idle = wiring.idle(running)
+            if self.compiled:
+                self._rows[:, program.ADDRESS] = [steps.address(wiring, row) for row in running]
+            else:
+                self._steps = [wiring.bound(row) for row in running]
+        self._find_parts()
+
+    def fuse(self) -> None:
+        """From now on run each segment of a tick as one function if its code is loaded; no bit depends on it.
+
+        ``unfused`` has the segments whose code is not loaded: until it is, their rows run one by one.
+        """
+        self.fuses = self.compiled
+        self._find_parts()
+
+    def _find_parts(self) -> None:
+        self._parts = parts(self.wiring, self._running) if self.fuses else []
+        self._join()
+
+    def _join(self) -> None:
+        """Put the loaded code of segments into the table that the loop walks."""
+        self._table = joined(self._rows, self._parts) if self._parts else self._rows
+        self._awaited = [part.segment for part in self._parts if part.segment and not part.segment.address]
 
     def renew(self) -> None:
         """Take the code of all steps that `core.kernel.renew` has loaded; at a tick edge, and no bit changes."""

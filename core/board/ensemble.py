@@ -21,6 +21,7 @@ from core.board.library import IDENTIFIER
 from core.board.log import LogEntry
 from core.board.parse import parse
 from core.board.rows import Rows
+from core.board.segments import SharedSegment
 from core.board.spec import Section, Spec
 from core.errors import InputError, short, unknown
 from core.loop.score import Scores
@@ -232,6 +233,17 @@ class Ensemble(Board):
         twins = {name: twin.checkpoint() for name, twin in self.twins.items()}
         whole.parts.update(twins=twins, _own=self._own, mirrored=self.mirrored, warned=set(self.warned))
         return whole
+
+    @property
+    def unfused(self) -> list[SharedSegment]:
+        """The segments of the board and of its twins whose code is not loaded."""
+        return [*super().unfused, *(segment for twin in self.twins.values() for segment in twin.unfused)]
+
+    def fuse(self) -> None:
+        """Run the segments of the board and of its twins as one function each."""
+        super().fuse()
+        for twin in self.twins.values():
+            twin.fuse()
 
     def renew(self) -> None:
         """Take the code of all steps that has been loaded, also for the twins."""

@@ -88,6 +88,9 @@ class Hosted(Board):
         self._asked.sort(key=lambda one: one.cut)
         self._cut = self._asked[-1].cut
 
+    def fuse(self) -> None:
+        """Run all rows one by one as before: a tick is cut before each block from outside."""
+
     def sample(self) -> Sample | None:
         """Begin the next tick and return the sample for the controller; None once the board has tripped.
 

@@ -21,7 +21,7 @@ from core.compile.translate import Translation
 from core.kernel_cache import compiled_here, get, key, put
 
 MOST_PASSES = 30
-OTHERS = {"core.compile.folding"}
+OTHERS = {"core.compile.folding", "core.compile.segment"}
 """Modules beside the translator, which some processes load and some do not."""
 POINTER, PLACES = DOUBLE.as_pointer(), I64.as_pointer()
 
@@ -44,14 +44,15 @@ class Piece:
         Of all that the code depends on but the processor.
     write : callable
         Returns its instructions.
-    loops : bool
-        Whether its loops become vector code where they can.
+    loops, joins : bool
+        Whether its loops, and instructions that follow one another, become vector code where they can.
     """
 
     name: str
     hash: str
     write: Callable[[], str]
     loops: bool
+    joins: bool = False
 
     def name_for(self, target: Target) -> str:
         """Return its name on the shelf for a processor."""
@@ -68,7 +69,7 @@ class Piece:
                 if target != native():
                     borrowed.add(self.name)
                 return code
-        name, code = self.name_for(native()), compiled(self.write(), loops=self.loops)
+        name, code = self.name_for(native()), compiled(self.write(), loops=self.loops, joins=self.joins)
         compiled_here.append(name)
         put(name, code)
         return code
@@ -136,7 +137,7 @@ def _written(block: Block, kinds: Kinds, width: int, *, lanes: bool) -> tuple[ir
     module, builder, (p, s, w, io) = begun([POINTER, POINTER, POINTER, PLACES])
     start = builder.append_basic_block("start")
     translation = Translation(builder, kinds, width, lanes=lanes)
-    ports = {port.name: (i, _seen(port)) for i, port in enumerate(block.Ports.declared)}
+    ports = {port.name: (i, seen(port)) for i, port in enumerate(block.Ports.declared)}
 
     def board(p: Any, s: Any, w: Any) -> None:
         records = RecordView(p, None, block.Packed.layout), RecordView(s, None, block.State.layout)
@@ -153,7 +154,7 @@ def _written(block: Block, kinds: Kinds, width: int, *, lanes: bool) -> tuple[ir
     return module, translation.is_complete
 
 
-def _seen(port: Any) -> Any:
+def seen(port: Any) -> Any:
     """Return how a step sees the signal behind a port: as a number, a vector, or records of a layout."""
     return port.record.layout if port.record else port.vector
 
@@ -169,7 +170,7 @@ def begun(kinds: list[Any]) -> tuple[ir.Module, ir.IRBuilder, tuple[Any, ...]]:
 
 def hash_of(block: Block, *others: Any) -> str:
     """Return a hash of a step, its records and ports, this compiler, and the other arguments."""
-    ports = [(port.name, _seen(port)) for port in block.Ports.declared]
+    ports = [(port.name, seen(port)) for port in block.Ports.declared]
     return digest(key(block.step), block.Packed.layout, block.State.layout, ports, compiler(), others)
 
 

@@ -59,42 +59,71 @@ def _system(triple: str) -> tuple[str, str]:
     return architecture, "-".join(rest)
 
 
-def compiled(text: str, target: Target | None = None, *, loops: bool = False) -> bytes:
-    """Return the machine code of instructions; where asked for, loops become vector code where they can."""
+def compiled(text: str, target: Target | None = None, *, loops: bool = False, joins: bool = False) -> bytes:
+    """Return the machine code of instructions; where asked for, it is vector code where that is possible.
+
+    Parameters
+    ----------
+    text : str
+        The instructions.
+    target : Target, optional
+        The processor; by default the one of this machine.
+    loops, joins : bool
+        Whether rounds of a loop become vector code, and whether instructions that follow one another do.
+    """
     target = target or native()
-    return bytes(machine(target).emit_object(improved(text, target, loops=loops)))
+    return bytes(machine(target).emit_object(improved(text, target, loops=loops, joins=joins)))
 
 
-def improved(text: str, target: Target, *, loops: bool) -> Any:
+def improved(text: str, target: Target, *, loops: bool, joins: bool = False) -> Any:
     """Return the module of instructions as machine code is made of it."""
     module, writer = llvm.parse_assembly(text), machine(target)
     module.verify()
     module.triple, module.data_layout = writer.triple, str(writer.target_data)
     tuning = llvm.create_pipeline_tuning_options(speed_level=3)
-    tuning.loop_vectorization, tuning.slp_vectorization = loops, False
+    tuning.loop_vectorization, tuning.slp_vectorization = loops, joins
     passes = llvm.create_pass_builder(writer, tuning)
     passes.getModulePassManager().run(module, passes)
     return module
 
 
-_loaded: list[tuple[Any, ...]] = []
-"""Engines, files and code of loaded functions: they are needed as long as the process lives."""
+class LoadedCode:
+    """Machine code in this process, as long as this object lives.
+
+    Parameters
+    ----------
+    code : bytes
+        The machine code of a function.
+    """
+
+    def __init__(self, code: bytes) -> None:
+        # an engine of its own for each: the constants of a second file in one engine would be read from the wrong
+        # place; and for each engine a compiler of its own, which ends with it
+        self._engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine(native()))
+        self._file, self._code = llvm.ObjectFileRef.from_data(code), code
+        self._engine.add_object_file(self._file)
+        self._engine.finalize_object()
+        self.address = int(self._engine.get_function_address(NAME))
+        """Where the function is."""
+
+
+_loaded: list[LoadedCode] = []
+"""Code that is needed as long as the process lives."""
 
 
 def loaded(code: bytes) -> int:
-    """Return the address of the function in machine code."""
-    # an engine of its own for each: the constants of a second file in one engine would be read from the wrong place
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine(native()))
-    file = llvm.ObjectFileRef.from_data(code)
-    engine.add_object_file(file)
-    engine.finalize_object()
-    _loaded.append((engine, file, code))
-    return int(engine.get_function_address(NAME))
+    """Return the address of the function in machine code; it stays there."""
+    _loaded.append(LoadedCode(code))
+    return _loaded[-1].address
 
 
 @cache
 def machine(target: Target) -> Any:
     """Return the compiler for a processor."""
+    return _machine(target)
+
+
+def _machine(target: Target) -> Any:
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     if target != native():

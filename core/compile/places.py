@@ -6,7 +6,8 @@ in lane ``k`` is at ``base[offset * width + k]``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from llvmlite import ir
@@ -45,11 +46,12 @@ class RecordsView(Place):
 
 @dataclass(frozen=True)
 class PortsView:
-    """Ports: all signals, the places of the signals of the block, the kind of each port."""
+    """Ports: all signals, the places of the signals of the block, the kind of each port, the places known before."""
 
     signals: Any
     places: Any
     ports: dict[str, tuple[int, bool | RecordLayout]]
+    known: Mapping[int, int] = field(default_factory=dict)
 
 
 class Memory:
@@ -144,7 +146,10 @@ class Memory:
         if name not in ports.ports:
             raise Unsupported(f"no port {name}")
         number, seen = ports.ports[name]
-        at = self._build.load(self._build.gep(ports.places, [ir.Constant(I64, number)]))
+        if number in ports.known:
+            at = ir.Constant(I64, ports.known[number])
+        else:
+            at = self._build.load(self._build.gep(ports.places, [ir.Constant(I64, number)]))
         offset = self._build.mul(at, ir.Constant(I64, self._width))
         return Place(self._build.gep(ports.signals, [offset])), seen
 
