@@ -16,7 +16,7 @@ from scenarios.speed.anchor.pair import OURS, C, Costs
 from scenarios.speed.anchor.text import BoardMoment
 from scenarios.speed.anchor.twin import Array, Twin
 from scenarios.speed.side_by_side import SAMPLES, side_by_side, wired_seven_steps
-from scenarios.speed.timing import cpu_ns
+from scenarios.speed.timing import cpu_ns, must_run
 
 PARTS = "p", "s", "w", "io"
 
@@ -62,6 +62,7 @@ class ReplayInC:
         end = SAMPLES if upcoming is None else min(upcoming, SAMPLES)
         while board.tick < end:
             board.advance(end - board.tick)
+            must_run(board)
         return ReplayPart(end - moment.tick, moment.on, written)
 
     def costs(self) -> Costs:

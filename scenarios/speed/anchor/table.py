@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from core.board.board import Board
+from core.compile.segment import code_of
 from scenarios.library import get
 from scenarios.run import build
 from scenarios.speed import boards
@@ -64,6 +65,15 @@ def _lower(values: list[float]) -> float:
     return float(np.quantile(values, 0.25))
 
 
+def fused(board: Board) -> Board:
+    """Return a copy of a board that runs each segment of a tick as one function."""
+    copy = Board.restore(board.checkpoint())
+    copy.fuse()
+    for segment in copy.unfused:
+        segment.load(code_of(segment.steps))
+    return copy
+
+
 class Anchor:
     """The boards, their C where the machine has a compiler, and the lines of the table."""
 
@@ -76,15 +86,15 @@ class Anchor:
         texts = {name: lambda board=board: board_text([BoardMoment.of(board)]) for name, board in made.items()}
         made_in_c = self._in_c({**texts, "run": lambda: board_text(replay.moments)})
         for name, board in made.items():
-            for kind in PAIRS:
-                pair = kind(board, made_in_c.get(name))
-                yield self._row(name, pair)
+            for form, one in {"": board, ", fused": fused(board)}.items():
+                for kind in PAIRS:
+                    yield self._row(name, kind(one, made_in_c.get(name)), form)
         replay.library = made_in_c.get("run")
         yield self._row(RUN, replay)
 
-    def _row(self, bench: str, pair: TwinPair | ReplayInC) -> AnchorRow:
+    def _row(self, bench: str, pair: TwinPair | ReplayInC, form: str = "") -> AnchorRow:
         costs = interleaved(pair.costs(), self._rounds)
-        return AnchorRow(bench, pair.part, pair.goal, costs, [*pair.differences()])
+        return AnchorRow(bench, pair.part + form, pair.goal, costs, [*pair.differences()])
 
     def _in_c(self, texts: dict[str, Callable[[], str]]) -> dict[str, Any]:
         path = compiler()

@@ -14,10 +14,11 @@ from scenarios.speed.anchor.compiler import compiler, libraries, library, versio
 from scenarios.speed.anchor.difference import same
 from scenarios.speed.anchor.pair import OURS, AdvancePair, C, LivePair, StepsPair, TwinPair
 from scenarios.speed.anchor.replay import ReplayInC
-from scenarios.speed.anchor.table import BENCHES, PAIRS, Anchor, AnchorRow
+from scenarios.speed.anchor.table import BENCHES, PAIRS, Anchor, AnchorRow, fused
 from scenarios.speed.anchor.text import BoardMoment, board_text
 
 needs_gcc = pytest.mark.skipif(compiler() is None, reason="there is no gcc on this machine")
+PARTS = [kind.part for kind in PAIRS]
 QUICKLY = "-O0 -ffp-contract=off -shared -fPIC -w".split()
 
 
@@ -39,10 +40,11 @@ def run(pair: TwinPair) -> list[str]:
 
 
 @needs_gcc
-def test_the_c_of_a_board_gives_its_bits(board, text, tmp_path):
-    made = library(str(compiler()), text, tmp_path)
+@pytest.mark.parametrize("form", [lambda one: one, fused], ids=["table", "fused"])
+def test_the_c_of_a_board_gives_its_bits(form, board, text, tmp_path):
+    one, made = form(board), library(str(compiler()), text, tmp_path)
     for kind in PAIRS:
-        assert run(kind(board, made)) == [], kind.part
+        assert run(kind(one, made)) == [], kind.part
 
 
 FAULTS = [
@@ -91,7 +93,7 @@ def test_without_a_compiler_the_boards_are_measured_alone_and_one_line_says_so(m
     monkeypatch.setattr(table, "BENCHES", {"small": lambda: boards.begun(boards.GAIN)})
     anchor = Anchor(rounds=1)
     found = [row.document() for row in anchor.rows()]
-    assert [row["part"] for row in found] == ["steps", "advance", "live tick", "whole run"]
+    assert [row["part"] for row in found] == [*PARTS, *(f"{part}, fused" for part in PARTS), "whole run"]
     assert all(row["ok"] and row["ours_ns"] > 0.0 and "ratio" not in row for row in found)
     assert anchor.missing == "nothing is measured against C: there is no gcc on this machine"
 
@@ -115,7 +117,7 @@ def test_a_row_whose_c_differs_is_not_ok_however_quick_the_board_is():
 def test_the_c_of_each_measured_bench_gives_its_bits(name, tmp_path):
     board = BENCHES[name]()
     made = library(str(compiler()), board_text([BoardMoment.of(board)]), tmp_path)
-    assert [run(kind(board, made)) for kind in PAIRS] == [[]] * len(PAIRS)
+    assert [run(kind(one, made)) for one in (board, fused(board)) for kind in PAIRS] == [[]] * 2 * len(PAIRS)
 
 
 @needs_gcc
