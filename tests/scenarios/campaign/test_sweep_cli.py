@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import sqlite3
+import tomllib
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import Any
@@ -12,12 +13,14 @@ from typing import Any
 import pyarrow.csv
 import pyarrow.parquet as pq
 import pytest
+from jsonschema import Draft202012Validator
 from typer.testing import CliRunner
 
 from scenarios.campaign.campaign import Stopped
 from scenarios.campaign.executor import Processes
 from scenarios.campaign.survey import listed
 from scenarios.edit import with_values
+from scenarios.json_schema.documents import json_schema
 from scenarios.library import get
 from scenarios.run import run
 from server.cli import sweep as sweeping
@@ -78,6 +81,9 @@ def test_a_campaign_leaves_report_and_tables(sweep: Any, tmp_path: Path) -> None
     )  # fmt: skip
     values = {"samples": 3000, "controller.kind": "mrac", "diagnosers.kalman.probability_floor": 0.0}
     assert row["digest"] == run(with_values(get("ch5-seven-step"), values), 6).digest
+    kept = (folder / "campaign.toml").read_text("utf-8")
+    assert kept.startswith("#:schema ./campaign.schema.json\n")
+    Draft202012Validator(json_schema("campaign")).validate(tomllib.loads(kept))
     report = (folder / "report.html").read_text()
     assert "12 of 12 runs" in report and "Receiver operating characteristic" in report and "Detection delay" in report
     assert "as printed, kind mrac" in report and not re.search(r"(src|href)=|url\(|@import|<script|<link", report)
