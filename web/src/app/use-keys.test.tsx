@@ -1,4 +1,5 @@
 import { MultiSelect, NativeSelect, Select, TextInput } from "@mantine/core";
+import { notifications } from "@mantine/notifications";
 import { screen } from "@testing-library/react";
 import { expect, it, vi } from "vitest";
 import { useAnnouncements } from "../bench/announce";
@@ -137,7 +138,9 @@ it("no key of a watcher changes the bench", async () => {
 });
 
 it("X saves the run as a scenario, and S makes a slide only after a change", async () => {
-  server.on("GET", "/benches/:id/scenario", "# a scenario");
+  const text = "#:schema ./scenario.schema.json\n# 2000 ticks, digest 0123456789abcdef\nschema = 1\n";
+  server.on("GET", "/benches/:id/scenario", text);
+  const told = vi.spyOn(notifications, "show");
   const saved = vi.spyOn(files, "saveFile").mockReturnValue();
   const { user } = mountKeys();
   await user.keyboard("s");
@@ -145,6 +148,7 @@ it("X saves the run as a scenario, and S makes a slide only after a change", asy
   expect(useAnnouncements.getState().polite).toBe("There is nothing to compare: nothing has changed.");
   await user.keyboard("x");
   await vi.waitFor(() => expect(saved).toHaveBeenCalledWith("first-look-2000.toml", expect.any(Blob)));
+  expect(told.mock.lastCall?.[0].message).toContain("digest 0123456789ab…");
 });
 
 it("a student has no key to share, fork or keep", async () => {

@@ -98,7 +98,7 @@ const saveScenario = onBench(async (from) => {
   const toml = await api.scenarioToml(from.id);
   const name = `${from.scenario_id || "bench"}-${from.tick}.toml`;
   saveFile(name, new Blob([toml], { type: "application/toml" }));
-  const digest = /^# .*digest ([0-9a-f]+)/.exec(toml)?.[1];
+  const digest = /^# .*digest ([0-9a-f]+)/m.exec(toml)?.[1];
   notifications.show({
     title: "Saved as a scenario",
     message: `Run it again with: combbench run ${name}. It gives the same bits${digest ? `, digest ${digest.slice(0, 12)}…` : ""}.`,

@@ -216,7 +216,7 @@ it("says that nothing is done yet, and why a campaign failed", async () => {
     ...sweep,
     done: 0,
     state: "failed" as const,
-    error: { code: "invalid", message: "the disk is full" },
+    error: { code: "failed", message: "the disk is full" },
   };
   mount(<CampaignDetail sweep={failed} onChanged={() => undefined} />);
   expect(await screen.findByText("No result")).toBeVisible();
