@@ -2969,7 +2969,6 @@ export interface components {
             name: string;
             /** Severity */
             severity: number;
-            /** Profile */
             profile: components["schemas"]["Profile"];
             /**
              * Parameters
@@ -4296,10 +4295,10 @@ export interface components {
             plants: string[];
         };
         /**
-         * Devices
+         * DeviceList
          * @description Every device of the catalogue, and the choices of a drawing.
          */
-        Devices: {
+        DeviceList: {
             /** Devices */
             devices: components["schemas"]["DeviceCard"][];
             /** Geometry */
@@ -4461,6 +4460,26 @@ export interface components {
             why: string | null;
         };
         /**
+         * ErrorBody
+         * @description An error: one line, the field at fault, a hint.
+         */
+        ErrorBody: {
+            /** Code */
+            code: string;
+            /** Message */
+            message: string;
+            /**
+             * Field
+             * @default
+             */
+            field?: string;
+            /**
+             * Hint
+             * @default
+             */
+            hint?: string;
+        };
+        /**
          * Estimate
          * @description A mean over cases and its standard error; cases do not depend on one another, samples of one case do.
          */
@@ -4538,7 +4557,7 @@ export interface components {
              * Command
              * @description The command, as an event of a scenario if it is to the board
              */
-            command?: components["schemas"]["ResetTrip"] | components["schemas"]["Heal"] | components["schemas"]["Inject"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | null;
+            command?: components["schemas"]["ResetTrip"] | components["schemas"]["HealFaults"] | components["schemas"]["Inject"] | components["schemas"]["SetValues"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | null;
             /** Old */
             old?: unknown;
             /** New */
@@ -4858,7 +4877,7 @@ export interface components {
          */
         ForAll: {
             /** Command */
-            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
+            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["HealFaults"] | components["schemas"]["SetValues"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
             /**
              * Members
              * @description Ids of students; null: the whole class
@@ -5081,10 +5100,10 @@ export interface components {
             steps: components["schemas"]["StepGrade"][];
         };
         /**
-         * Grades
+         * GradeList
          * @description The work of the students of a class at sheets.
          */
-        Grades: {
+        GradeList: {
             /** Grades */
             grades: components["schemas"]["Grade"][];
         };
@@ -5100,21 +5119,6 @@ export interface components {
             raised: boolean;
         };
         /**
-         * HandIn
-         * @description Values of an answer.
-         */
-        HandIn: {
-            /** Seed */
-            seed: number;
-            /**
-             * Hand In
-             * @description Fields of the answer; left out: the defaults
-             */
-            hand_in: {
-                [key: string]: number | string;
-            };
-        };
-        /**
          * Hands
          * @description Hands raised in the room, for each answer.
          */
@@ -5123,10 +5127,10 @@ export interface components {
             counts: number[];
         };
         /**
-         * Heal
+         * HealFaults
          * @description Take faults away.
          */
-        Heal: {
+        HealFaults: {
             /**
              * At Sample
              * @description the sample at which the command takes effect
@@ -5950,10 +5954,10 @@ export interface components {
             phase_deg: number;
         };
         /**
-         * Members
+         * MemberList
          * @description The students of a class in the order in which they joined, each with a small picture of the bench.
          */
-        Members: {
+        MemberList: {
             /** Members */
             members: components["schemas"]["Tile"][];
         };
@@ -6037,6 +6041,21 @@ export interface components {
              * @description Number of resets and returns to the past, which make earlier sentences void
              */
             jumps: number;
+        };
+        /**
+         * NewAttempt
+         * @description Values of an answer.
+         */
+        NewAttempt: {
+            /** Seed */
+            seed: number;
+            /**
+             * Hand In
+             * @description Fields of the answer; left out: the defaults
+             */
+            hand_in: {
+                [key: string]: number | string;
+            };
         };
         /**
          * NewBallot
@@ -6661,7 +6680,7 @@ export interface components {
              * Command
              * @description As an event of a scenario
              */
-            command: components["schemas"]["ResetTrip"] | components["schemas"]["Heal"] | components["schemas"]["Inject"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"];
+            command: components["schemas"]["ResetTrip"] | components["schemas"]["HealFaults"] | components["schemas"]["Inject"] | components["schemas"]["SetValues"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"];
         };
         /**
          * Play
@@ -7268,8 +7287,11 @@ export interface components {
             id: string;
             /** Key */
             key: string;
-            /** State */
-            state: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "queued" | "running" | "done" | "failed" | "cancelled" | "aborted";
             /** Scenario Id */
             scenario_id: string;
             /** Title */
@@ -7296,11 +7318,7 @@ export interface components {
             finished: string | null;
             /** Progress */
             progress: number;
-            /** Summary */
-            summary: {
-                [key: string]: unknown;
-            } | null;
-            /** Error */
+            summary: components["schemas"]["RunSummary"] | null;
             error: components["schemas"]["ErrorBody"] | null;
         };
         /**
@@ -7314,6 +7332,53 @@ export interface components {
             figures: components["schemas"]["FigureRow"][];
             /** Signals */
             signals: components["schemas"]["RunSignal"][];
+        };
+        /**
+         * RunExpectation
+         * @description An expectation of the scenario, and the measured value.
+         */
+        RunExpectation: {
+            /** Metric */
+            metric: string;
+            /** Published */
+            published: string;
+            /** Expected */
+            expected: string;
+            /** Measured */
+            measured: number | null;
+            /** Ok */
+            ok: boolean;
+            /** Note */
+            note: string;
+            /**
+             * Expected Words
+             * @description The expected value in words, with its unit
+             */
+            expected_words?: string;
+            /** Published Value */
+            published_value?: number | null;
+            /** Verdict */
+            verdict?: string | null;
+            /**
+             * Open Loop
+             * @description Figure with the open loop in place of the controller
+             */
+            open_loop?: number | null;
+            /**
+             * Pid
+             * @description Figure with a PID in its place
+             */
+            pid?: number | null;
+            /**
+             * Comparator
+             * @description Name of this PID
+             */
+            comparator?: string;
+            /**
+             * Pid Too
+             * @description Whether this PID meets the claim too
+             */
+            pid_too?: boolean;
         };
         /**
          * RunList
@@ -7332,6 +7397,71 @@ export interface components {
             name: string;
             /** Unit */
             unit: string;
+        };
+        /**
+         * RunSummary
+         * @description Figures of a run and verdicts on them; with several seeds, figures are means.
+         */
+        RunSummary: {
+            /** Scenario */
+            scenario: string;
+            /** Title */
+            title: string;
+            /** Source */
+            source: string;
+            /** Claim */
+            claim: string;
+            /** Verdict */
+            verdict: string | null;
+            /**
+             * Seed
+             * @description The first seed
+             */
+            seed: number;
+            /** Ticks */
+            ticks: number;
+            /** Dt S */
+            dt_s: number;
+            /** Elapsed S */
+            elapsed_s: number;
+            /** Digest */
+            digest: string;
+            trip: components["schemas"]["Trip"] | null;
+            /** Warnings */
+            warnings: string[];
+            /**
+             * Metrics
+             * @description Figures by name
+             */
+            metrics: {
+                [key: string]: number;
+            };
+            /** Expectations */
+            expectations: components["schemas"]["RunExpectation"][];
+            /**
+             * Ok
+             * @description Whether all expectations hold
+             */
+            ok: boolean;
+            /**
+             * Seeds
+             * @description The first and the last of several seeds
+             */
+            seeds?: number[];
+            /**
+             * Digests
+             * @description The digest of each seed
+             */
+            digests?: string[];
+            /** Tripped Runs */
+            tripped_runs?: number;
+            /**
+             * Metrics Std
+             * @description Standard deviations by name of figure
+             */
+            metrics_std?: {
+                [key: string]: number;
+            };
         };
         /**
          * RunTrace
@@ -7595,10 +7725,21 @@ export interface components {
             };
         };
         /**
-         * Set
+         * SetName
+         * @description The name of a set.
+         */
+        SetName: {
+            /**
+             * Name
+             * @description Name, which no other set may have
+             */
+            name: string;
+        };
+        /**
+         * SetValues
          * @description Set parameters by their paths, all in one tick.
          */
-        Set: {
+        SetValues: {
             /**
              * At Sample
              * @description the sample at which the command takes effect
@@ -7621,17 +7762,6 @@ export interface components {
             set: {
                 [key: string]: unknown;
             };
-        };
-        /**
-         * SetName
-         * @description The name of a set.
-         */
-        SetName: {
-            /**
-             * Name
-             * @description Name, which no other set may have
-             */
-            name: string;
         };
         /**
          * SheetBrief
@@ -8232,8 +8362,11 @@ export interface components {
         SweepRun: {
             /** Id */
             id: string;
-            /** State */
-            state: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "queued" | "running" | "done" | "failed" | "cancelled" | "aborted";
             /** Name */
             name: string;
             /** Title */
@@ -8263,7 +8396,6 @@ export interface components {
             created: string;
             /** Finished */
             finished: string | null;
-            /** Error */
             error: components["schemas"]["ErrorBody"] | null;
         };
         /**
@@ -8373,8 +8505,11 @@ export interface components {
         ThresholdRun: {
             /** Id */
             id: string;
-            /** State */
-            state: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "queued" | "running" | "done" | "failed" | "cancelled" | "aborted";
             /** Scenario Id */
             scenario_id: string;
             /**
@@ -8384,7 +8519,6 @@ export interface components {
             progress?: number;
             /** @description Null until it is done */
             found?: components["schemas"]["Threshold"] | null;
-            /** Error */
             error: components["schemas"]["ErrorBody"] | null;
         };
         /**
@@ -8969,7 +9103,7 @@ export interface components {
             /** Id */
             id: string;
             /** Command */
-            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
+            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["HealFaults"] | components["schemas"]["SetValues"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
         };
         /**
          * Pong
@@ -9159,26 +9293,6 @@ export interface components {
             is_short: boolean;
         };
         /**
-         * ErrorBody
-         * @description An error: one line, the field at fault, a hint.
-         */
-        ErrorBody: {
-            /** Code */
-            code: string;
-            /** Message */
-            message: string;
-            /**
-             * Field
-             * @default
-             */
-            field?: string;
-            /**
-             * Hint
-             * @default
-             */
-            hint?: string;
-        };
-        /**
          * ErrorMessage
          * @description A message of the client was refused; the connection stays.
          */
@@ -9192,10 +9306,10 @@ export interface components {
             error: components["schemas"]["ErrorBody"];
         };
         /**
-         * Events
+         * EventsMessage
          * @description Events since the last such message, numbered without gaps.
          */
-        Events: {
+        EventsMessage: {
             /**
              * Type
              * @default events
@@ -9465,7 +9579,7 @@ export interface components {
             dropped_frames: number;
         };
         /** ServerMessage */
-        ServerMessage: components["schemas"]["Hello"] | components["schemas"]["Status"] | components["schemas"]["Events"] | components["schemas"]["Narrated"] | components["schemas"]["CaptureList"] | components["schemas"]["Reply"] | components["schemas"]["ErrorMessage"] | components["schemas"]["Notice"] | components["schemas"]["Ping"];
+        ServerMessage: components["schemas"]["Hello"] | components["schemas"]["Status"] | components["schemas"]["EventsMessage"] | components["schemas"]["Narrated"] | components["schemas"]["CaptureList"] | components["schemas"]["Reply"] | components["schemas"]["ErrorMessage"] | components["schemas"]["Notice"] | components["schemas"]["Ping"];
         /**
          * ErrorReply
          * @description The one error shape of every answer.
@@ -14796,7 +14910,26 @@ export interface components {
             every?: number;
         };
     };
-    responses: never;
+    responses: {
+        /** @description The request is refused */
+        Refused: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/json": components["schemas"]["ErrorReply"];
+            };
+        };
+        /** @description The server cannot answer */
+        Failed: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/json": components["schemas"]["ErrorReply"];
+            };
+        };
+    };
     parameters: never;
     requestBodies: never;
     headers: never;
@@ -14853,7 +14986,7 @@ export type Curve = components['schemas']['Curve'];
 export type DefinitenessReport = components['schemas']['DefinitenessReport'];
 export type Design = components['schemas']['Design'];
 export type DeviceCard = components['schemas']['DeviceCard'];
-export type Devices = components['schemas']['Devices'];
+export type DeviceList = components['schemas']['DeviceList'];
 export type DiagnoserInfo = components['schemas']['DiagnoserInfo'];
 export type DiagnosisTally = components['schemas']['DiagnosisTally'];
 export type Difference = components['schemas']['Difference'];
@@ -14865,6 +14998,7 @@ export type Drives = components['schemas']['Drives'];
 export type DrivingTurn = components['schemas']['DrivingTurn'];
 export type Ended = components['schemas']['Ended'];
 export type EquationCard = components['schemas']['EquationCard'];
+export type ErrorBody = components['schemas']['ErrorBody'];
 export type Estimate = components['schemas']['Estimate'];
 export type Evaluation = components['schemas']['Evaluation'];
 export type Event = components['schemas']['Event'];
@@ -14892,11 +15026,10 @@ export type GameList = components['schemas']['GameList'];
 export type GivenLayout = components['schemas']['GivenLayout'];
 export type GivenView = components['schemas']['GivenView'];
 export type Grade = components['schemas']['Grade'];
-export type Grades = components['schemas']['Grades'];
+export type GradeList = components['schemas']['GradeList'];
 export type Hand = components['schemas']['Hand'];
-export type HandIn = components['schemas']['HandIn'];
 export type Hands = components['schemas']['Hands'];
-export type Heal = components['schemas']['Heal'];
+export type HealFaults = components['schemas']['HealFaults'];
 export type Health = components['schemas']['Health'];
 export type HiddenQuestion = components['schemas']['HiddenQuestion'];
 export type Hide = components['schemas']['Hide'];
@@ -14931,11 +15064,12 @@ export type Me = components['schemas']['Me'];
 export type MeasuredPlant = components['schemas']['MeasuredPlant'];
 export type MeasuredPlants = components['schemas']['MeasuredPlants'];
 export type MeasuredTone = components['schemas']['MeasuredTone'];
-export type Members = components['schemas']['Members'];
+export type MemberList = components['schemas']['MemberList'];
 export type Minutes = components['schemas']['Minutes'];
 export type ModelAccount = components['schemas']['ModelAccount'];
 export type NamedPair = components['schemas']['NamedPair'];
 export type NarrationList = components['schemas']['NarrationList'];
+export type NewAttempt = components['schemas']['NewAttempt'];
 export type NewBallot = components['schemas']['NewBallot'];
 export type NewBench = components['schemas']['NewBench'];
 export type NewClass = components['schemas']['NewClass'];
@@ -14992,8 +15126,10 @@ export type Roc = components['schemas']['Roc'];
 export type Row = components['schemas']['Row'];
 export type Run = components['schemas']['Run'];
 export type RunComparison = components['schemas']['RunComparison'];
+export type RunExpectation = components['schemas']['RunExpectation'];
 export type RunList = components['schemas']['RunList'];
 export type RunSignal = components['schemas']['RunSignal'];
+export type RunSummary = components['schemas']['RunSummary'];
 export type RunTrace = components['schemas']['RunTrace'];
 export type RunTraces = components['schemas']['RunTraces'];
 export type SafeBoundary = components['schemas']['SafeBoundary'];
@@ -15008,8 +15144,8 @@ export type Scores = components['schemas']['Scores'];
 export type SectionView = components['schemas']['SectionView'];
 export type Seek = components['schemas']['Seek'];
 export type Sentence = components['schemas']['Sentence'];
-export type Set = components['schemas']['Set'];
 export type SetName = components['schemas']['SetName'];
+export type SetValues = components['schemas']['SetValues'];
 export type SheetBrief = components['schemas']['SheetBrief'];
 export type SheetCard = components['schemas']['SheetCard'];
 export type SheetForAll = components['schemas']['SheetForAll'];
@@ -15083,9 +15219,8 @@ export type TriggerSpec = components['schemas']['TriggerSpec'];
 export type Unsubscribe = components['schemas']['Unsubscribe'];
 export type ClientMessage = components['schemas']['ClientMessage'];
 export type CaptureList = components['schemas']['CaptureList'];
-export type ErrorBody = components['schemas']['ErrorBody'];
 export type ErrorMessage = components['schemas']['ErrorMessage'];
-export type Events = components['schemas']['Events'];
+export type EventsMessage = components['schemas']['EventsMessage'];
 export type Hello = components['schemas']['Hello'];
 export type Narrated = components['schemas']['Narrated'];
 export type Notice = components['schemas']['Notice'];
@@ -15215,6 +15350,8 @@ export type TwoOutputDiagnoser = components['schemas']['TwoOutputDiagnoser'];
 export type VscController = components['schemas']['VscController'];
 export type VsmrcController = components['schemas']['VsmrcController'];
 export type WholeAngleController = components['schemas']['WholeAngleController'];
+export type ResponseRefused = components['responses']['Refused'];
+export type ResponseFailed = components['responses']['Failed'];
 export type $defs = Record<string, never>;
 export interface operations {
     get_catalog: {
@@ -15238,15 +15375,8 @@ export interface operations {
                     "application/json": components["schemas"]["Catalogue"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_devices: {
@@ -15264,18 +15394,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Devices"];
+                    "application/json": components["schemas"]["DeviceList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     evaluate: {
@@ -15300,15 +15423,8 @@ export interface operations {
                     "application/json": components["schemas"]["Evaluation"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     bode: {
@@ -15333,15 +15449,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bode"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     spread: {
@@ -15366,15 +15475,8 @@ export interface operations {
                     "application/json": components["schemas"]["ProcessSpread"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_scenarios: {
@@ -15395,15 +15497,8 @@ export interface operations {
                     "application/json": components["schemas"]["ScenarioList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_scenario: {
@@ -15427,15 +15522,8 @@ export interface operations {
                     "application/json": components["schemas"]["ScenarioText"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     check_scenario: {
@@ -15460,15 +15548,8 @@ export interface operations {
                     "application/json": components["schemas"]["ScenarioText"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_schemas: {
@@ -15489,15 +15570,8 @@ export interface operations {
                     "application/json": components["schemas"]["SchemaList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_schema: {
@@ -15521,15 +15595,8 @@ export interface operations {
                     "application/schema+json": Record<string, never>;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_units: {
@@ -15550,15 +15617,8 @@ export interface operations {
                     "application/json": components["schemas"]["UnitList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     check_unit: {
@@ -15583,15 +15643,8 @@ export interface operations {
                     "application/json": components["schemas"]["UnitCheck"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_unit: {
@@ -15615,15 +15668,8 @@ export interface operations {
                     "application/json": components["schemas"]["UnitText"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     keep_unit: {
@@ -15651,15 +15697,8 @@ export interface operations {
                     "application/json": components["schemas"]["UnitEntry"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_unit: {
@@ -15681,15 +15720,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_benches: {
@@ -15710,15 +15742,8 @@ export interface operations {
                     "application/json": components["schemas"]["BenchList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     create_bench: {
@@ -15743,15 +15768,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_bench: {
@@ -15775,15 +15793,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_bench: {
@@ -15805,15 +15816,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     name_bench: {
@@ -15841,15 +15845,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     reopen_bench: {
@@ -15873,15 +15870,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     command: {
@@ -15896,7 +15886,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
+                "application/json": components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["HealFaults"] | components["schemas"]["SetValues"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
             };
         };
         responses: {
@@ -15909,15 +15899,8 @@ export interface operations {
                     "application/json": components["schemas"]["CommandResult"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_events: {
@@ -15946,15 +15929,8 @@ export interface operations {
                     "application/json": components["schemas"]["EventList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     save_scenario: {
@@ -15975,18 +15951,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/plain": unknown;
+                    "text/plain": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_digest: {
@@ -16010,15 +15979,8 @@ export interface operations {
                     "application/json": components["schemas"]["Digest"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     fork_bench: {
@@ -16046,15 +16008,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     vary_bench: {
@@ -16082,15 +16037,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_narration: {
@@ -16119,15 +16067,8 @@ export interface operations {
                     "application/json": components["schemas"]["NarrationList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     identification: {
@@ -16155,15 +16096,8 @@ export interface operations {
                     "application/json": components["schemas"]["Identification"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     region: {
@@ -16190,15 +16124,8 @@ export interface operations {
                     "application/json": components["schemas"]["UnstableRegionMap"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     plants: {
@@ -16222,15 +16149,8 @@ export interface operations {
                     "application/json": components["schemas"]["MeasuredPlants"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     flops: {
@@ -16259,15 +16179,8 @@ export interface operations {
                     "application/json": components["schemas"]["Budget"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     explain_sample: {
@@ -16296,15 +16209,8 @@ export interface operations {
                     "application/json": components["schemas"]["Account"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     find_turn: {
@@ -16333,15 +16239,8 @@ export interface operations {
                     "application/json": components["schemas"]["Turn"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     map_bench_aliases: {
@@ -16370,15 +16269,8 @@ export interface operations {
                     "application/json": components["schemas"]["AliasMap"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_aliases: {
@@ -16408,15 +16300,8 @@ export interface operations {
                     "application/json": components["schemas"]["AliasReport"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_readout: {
@@ -16442,15 +16327,8 @@ export interface operations {
                     "application/json": components["schemas"]["RateReadout"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_printed: {
@@ -16474,15 +16352,8 @@ export interface operations {
                     "application/json": components["schemas"]["MarkList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_claims: {
@@ -16506,15 +16377,8 @@ export interface operations {
                     "application/json": components["schemas"]["ClaimList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_snapshots: {
@@ -16538,15 +16402,8 @@ export interface operations {
                     "application/json": components["schemas"]["SnapshotList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     take_snapshot: {
@@ -16574,15 +16431,8 @@ export interface operations {
                     "application/json": components["schemas"]["Snapshot"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_snapshot: {
@@ -16606,15 +16456,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     restore_snapshot: {
@@ -16640,15 +16483,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     save_parameter_set: {
@@ -16676,15 +16512,8 @@ export interface operations {
                     "application/json": components["schemas"]["ParameterSetDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     apply_parameter_set: {
@@ -16710,15 +16539,8 @@ export interface operations {
                     "application/json": components["schemas"]["Applied"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_parameter_sets: {
@@ -16739,15 +16561,8 @@ export interface operations {
                     "application/json": components["schemas"]["ParameterSetList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_parameter_set: {
@@ -16771,15 +16586,8 @@ export interface operations {
                     "application/json": components["schemas"]["ParameterSetDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_parameter_set: {
@@ -16801,15 +16609,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     rename_parameter_set: {
@@ -16837,15 +16638,8 @@ export interface operations {
                     "application/json": components["schemas"]["ParameterSetDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     compare_parameter_sets: {
@@ -16874,15 +16668,8 @@ export interface operations {
                     "application/json": components["schemas"]["Difference"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_bench_recordings: {
@@ -16906,15 +16693,8 @@ export interface operations {
                     "application/json": components["schemas"]["RecordingList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     start_recording: {
@@ -16942,15 +16722,8 @@ export interface operations {
                     "application/json": components["schemas"]["Recording"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     stop_recording: {
@@ -16976,15 +16749,8 @@ export interface operations {
                     "application/json": components["schemas"]["Recording"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_recordings: {
@@ -17005,15 +16771,8 @@ export interface operations {
                     "application/json": components["schemas"]["RecordingList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_recording: {
@@ -17037,15 +16796,8 @@ export interface operations {
                     "application/json": components["schemas"]["RecordingDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_recording: {
@@ -17067,15 +16819,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     replay_recording: {
@@ -17103,15 +16848,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     compare_recordings: {
@@ -17139,15 +16877,8 @@ export interface operations {
                     "application/json": components["schemas"]["Comparison"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_recording_trace: {
@@ -17179,20 +16910,13 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/csv; charset=utf-8": unknown;
-                    "application/vnd.apache.parquet": unknown;
-                    "application/octet-stream": unknown;
+                    "application/octet-stream": string;
+                    "application/vnd.apache.parquet": string;
+                    "text/csv": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_trace: {
@@ -17225,20 +16949,13 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Trace"];
-                    "text/csv; charset=utf-8": unknown;
-                    "application/vnd.apache.parquet": unknown;
-                    "application/octet-stream": unknown;
+                    "application/octet-stream": string;
+                    "application/vnd.apache.parquet": string;
+                    "text/csv": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_runs: {
@@ -17266,15 +16983,8 @@ export interface operations {
                     "application/json": components["schemas"]["RunList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     start_run: {
@@ -17308,15 +17018,8 @@ export interface operations {
                     "application/json": components["schemas"]["Run"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     remove_runs: {
@@ -17341,15 +17044,8 @@ export interface operations {
                     "application/json": components["schemas"]["Removed"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     compare_finished_runs: {
@@ -17373,15 +17069,8 @@ export interface operations {
                     "application/json": components["schemas"]["RunComparison"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     compare_traces: {
@@ -17409,15 +17098,8 @@ export interface operations {
                     "application/json": components["schemas"]["RunTraces"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run: {
@@ -17441,15 +17123,8 @@ export interface operations {
                     "application/json": components["schemas"]["Run"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     cancel_run: {
@@ -17473,15 +17148,8 @@ export interface operations {
                     "application/json": components["schemas"]["Run"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     rename_run: {
@@ -17509,15 +17177,8 @@ export interface operations {
                     "application/json": components["schemas"]["Run"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run_trace: {
@@ -17549,20 +17210,13 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/csv; charset=utf-8": unknown;
-                    "application/vnd.apache.parquet": unknown;
-                    "application/octet-stream": unknown;
+                    "application/octet-stream": string;
+                    "application/vnd.apache.parquet": string;
+                    "text/csv": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run_report: {
@@ -17583,18 +17237,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/html": unknown;
+                    "text/html": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run_thumbnail: {
@@ -17615,18 +17262,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "image/svg+xml": unknown;
+                    "image/svg+xml": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run_scenario: {
@@ -17647,18 +17287,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/plain": unknown;
+                    "text/plain": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run_script: {
@@ -17679,18 +17312,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/x-python": unknown;
+                    "text/x-python": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_sweeps: {
@@ -17718,15 +17344,8 @@ export interface operations {
                     "application/json": components["schemas"]["SweepList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     start_sweep: {
@@ -17760,15 +17379,8 @@ export interface operations {
                     "application/json": components["schemas"]["SweepRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     remove_sweeps: {
@@ -17793,15 +17405,8 @@ export interface operations {
                     "application/json": components["schemas"]["Removed"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep: {
@@ -17825,15 +17430,8 @@ export interface operations {
                     "application/json": components["schemas"]["SweepRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     cancel_sweep: {
@@ -17857,15 +17455,8 @@ export interface operations {
                     "application/json": components["schemas"]["SweepRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     rename_sweep: {
@@ -17893,15 +17484,8 @@ export interface operations {
                     "application/json": components["schemas"]["SweepRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_points: {
@@ -17934,15 +17518,8 @@ export interface operations {
                     "application/json": components["schemas"]["SweepPoints"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_distribution: {
@@ -17971,15 +17548,8 @@ export interface operations {
                     "application/json": components["schemas"]["Distribution"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_picture: {
@@ -18008,15 +17578,8 @@ export interface operations {
                     "application/json": components["schemas"]["CampaignPicture"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_runs: {
@@ -18044,19 +17607,12 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/csv; charset=utf-8": unknown;
-                    "application/vnd.apache.parquet": unknown;
+                    "text/csv": string;
+                    "application/vnd.apache.parquet": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_report: {
@@ -18077,18 +17633,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/html": unknown;
+                    "text/html": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_script: {
@@ -18109,18 +17658,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/x-python": unknown;
+                    "text/x-python": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     find_threshold: {
@@ -18154,15 +17696,8 @@ export interface operations {
                     "application/json": components["schemas"]["ThresholdRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_threshold: {
@@ -18186,15 +17721,8 @@ export interface operations {
                     "application/json": components["schemas"]["ThresholdRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     cancel_threshold: {
@@ -18218,15 +17746,8 @@ export interface operations {
                     "application/json": components["schemas"]["ThresholdRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_gallery: {
@@ -18250,15 +17771,8 @@ export interface operations {
                     "application/json": components["schemas"]["Gallery"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_figure: {
@@ -18279,18 +17793,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "image/svg+xml": unknown;
+                    "image/svg+xml": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     run_gallery: {
@@ -18315,15 +17822,8 @@ export interface operations {
                     "application/json": components["schemas"]["Gallery"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_benchmarks: {
@@ -18344,15 +17844,8 @@ export interface operations {
                     "application/json": components["schemas"]["BenchmarkList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_benchmark: {
@@ -18376,15 +17869,8 @@ export interface operations {
                     "application/json": components["schemas"]["BenchmarkDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     judge_positive_real: {
@@ -18409,15 +17895,8 @@ export interface operations {
                     "application/json": components["schemas"]["PositiveRealReport"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     judge_positive_definite: {
@@ -18442,15 +17921,8 @@ export interface operations {
                     "application/json": components["schemas"]["DefinitenessReport"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     judge_persistency: {
@@ -18475,15 +17947,8 @@ export interface operations {
                     "application/json": components["schemas"]["ExcitationReport"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     map_aliases: {
@@ -18508,15 +17973,8 @@ export interface operations {
                     "application/json": components["schemas"]["AliasMap"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     map_instability: {
@@ -18541,15 +17999,8 @@ export interface operations {
                     "application/json": components["schemas"]["InstabilityMap"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_links: {
@@ -18573,15 +18024,8 @@ export interface operations {
                     "application/json": components["schemas"]["LinkList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     make_link: {
@@ -18606,15 +18050,8 @@ export interface operations {
                     "application/json": components["schemas"]["LinkDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_link: {
@@ -18638,15 +18075,8 @@ export interface operations {
                     "application/json": components["schemas"]["LinkDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_link: {
@@ -18668,15 +18098,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     change_link: {
@@ -18704,15 +18127,8 @@ export interface operations {
                     "application/json": components["schemas"]["LinkDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     open_link: {
@@ -18736,15 +18152,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_lectures: {
@@ -18765,15 +18174,8 @@ export interface operations {
                     "application/json": components["schemas"]["LectureList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_lecture: {
@@ -18797,15 +18199,8 @@ export interface operations {
                     "application/json": components["schemas"]["LectureDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     put_cue: {
@@ -18835,15 +18230,8 @@ export interface operations {
                     "application/json": components["schemas"]["Staged"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_me: {
@@ -18864,15 +18252,8 @@ export interface operations {
                     "application/json": components["schemas"]["Me"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     raise_hand: {
@@ -18897,15 +18278,8 @@ export interface operations {
                     "application/json": components["schemas"]["Me"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_classes: {
@@ -18926,15 +18300,8 @@ export interface operations {
                     "application/json": components["schemas"]["ClassList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     open_class: {
@@ -18959,15 +18326,8 @@ export interface operations {
                     "application/json": components["schemas"]["Class"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_class: {
@@ -18991,15 +18351,8 @@ export interface operations {
                     "application/json": components["schemas"]["Class"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     end_class: {
@@ -19021,15 +18374,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     make_code: {
@@ -19057,15 +18403,8 @@ export interface operations {
                     "application/json": components["schemas"]["Class"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     end_code: {
@@ -19089,15 +18428,8 @@ export interface operations {
                     "application/json": components["schemas"]["Class"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     join_class: {
@@ -19125,15 +18457,8 @@ export interface operations {
                     "application/json": components["schemas"]["Joined"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_members: {
@@ -19154,18 +18479,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Members"];
+                    "application/json": components["schemas"]["MemberList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     remove_member: {
@@ -19189,15 +18507,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     command_all: {
@@ -19225,15 +18536,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     begin_scenario: {
@@ -19261,15 +18565,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     show_bench: {
@@ -19295,15 +18592,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     end_showing: {
@@ -19325,15 +18615,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     give_layout: {
@@ -19359,15 +18642,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_layout: {
@@ -19388,15 +18664,8 @@ export interface operations {
                     "application/json": components["schemas"]["GivenLayout"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     lower_hand: {
@@ -19420,15 +18689,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     start_all: {
@@ -19456,15 +18718,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     change_driver: {
@@ -19492,15 +18747,8 @@ export interface operations {
                     "application/json": components["schemas"]["Drives"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     draw_qr_code: {
@@ -19525,15 +18773,8 @@ export interface operations {
                     "application/json": components["schemas"]["QrCode"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_blind: {
@@ -19557,15 +18798,8 @@ export interface operations {
                     "application/json": components["schemas"]["Blindness"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     hide_fault: {
@@ -19593,15 +18827,8 @@ export interface operations {
                     "application/json": components["schemas"]["Blindness"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     give_up: {
@@ -19625,15 +18852,8 @@ export interface operations {
                     "application/json": components["schemas"]["Answer"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     answer: {
@@ -19661,15 +18881,8 @@ export interface operations {
                     "application/json": components["schemas"]["Answer"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_class_blind: {
@@ -19693,15 +18906,8 @@ export interface operations {
                     "application/json": components["schemas"]["BlindClass"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     hide_for_class: {
@@ -19729,15 +18935,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     reveal_class: {
@@ -19761,15 +18960,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_captures: {
@@ -19793,15 +18985,8 @@ export interface operations {
                     "application/json": components["schemas"]["BenchCaptures"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_games: {
@@ -19822,15 +19007,8 @@ export interface operations {
                     "application/json": components["schemas"]["GameList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_game: {
@@ -19857,15 +19035,8 @@ export interface operations {
                     "application/json": components["schemas"]["Play"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     begin_game: {
@@ -19893,15 +19064,8 @@ export interface operations {
                     "application/json": components["schemas"]["Play"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     hand_in: {
@@ -19916,7 +19080,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["HandIn"];
+                "application/json": components["schemas"]["NewAttempt"];
             };
         };
         responses: {
@@ -19929,15 +19093,8 @@ export interface operations {
                     "application/json": components["schemas"]["Play"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     reveal_game: {
@@ -19965,15 +19122,8 @@ export interface operations {
                     "application/json": components["schemas"]["Play"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_class_game: {
@@ -20002,15 +19152,8 @@ export interface operations {
                     "application/json": components["schemas"]["ClassGame"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_votes: {
@@ -20031,15 +19174,8 @@ export interface operations {
                     "application/json": components["schemas"]["VoteList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     open_vote: {
@@ -20064,15 +19200,8 @@ export interface operations {
                     "application/json": components["schemas"]["Vote"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_vote: {
@@ -20096,15 +19225,8 @@ export interface operations {
                     "application/json": components["schemas"]["Vote"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     remove_vote: {
@@ -20126,15 +19248,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     close_vote: {
@@ -20158,15 +19273,8 @@ export interface operations {
                     "application/json": components["schemas"]["Vote"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     reveal_vote: {
@@ -20190,15 +19298,8 @@ export interface operations {
                     "application/json": components["schemas"]["Vote"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     count_hands: {
@@ -20226,15 +19327,8 @@ export interface operations {
                     "application/json": components["schemas"]["Vote"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     cast: {
@@ -20259,15 +19353,8 @@ export interface operations {
                     "application/json": components["schemas"]["OpenVote"] | null;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_watchers: {
@@ -20291,15 +19378,8 @@ export interface operations {
                     "application/json": components["schemas"]["WatcherList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     make_watcher: {
@@ -20327,15 +19407,8 @@ export interface operations {
                     "application/json": components["schemas"]["Watcher"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     end_watcher: {
@@ -20359,15 +19432,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_sheets: {
@@ -20388,15 +19454,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     open_sheet: {
@@ -20421,15 +19480,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sheet: {
@@ -20453,15 +19505,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_sheet: {
@@ -20483,15 +19528,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     begin_sheet: {
@@ -20515,15 +19553,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     start_over: {
@@ -20545,15 +19576,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     answer_step: {
@@ -20583,15 +19607,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     hide_in_step: {
@@ -20617,15 +19634,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     take_hint: {
@@ -20651,15 +19661,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     close_step: {
@@ -20685,15 +19688,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     add_recording: {
@@ -20719,15 +19715,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_report: {
@@ -20748,18 +19737,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/html": unknown;
+                    "text/html": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     begin_for_all: {
@@ -20787,15 +19769,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_grades: {
@@ -20819,19 +19794,12 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Grades"];
-                    "text/csv": unknown;
+                    "application/json": components["schemas"]["GradeList"];
+                    "text/csv": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_report_of: {
@@ -20856,18 +19824,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/html": unknown;
+                    "text/html": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_class_audit: {
@@ -20894,15 +19855,8 @@ export interface operations {
                     "application/json": components["schemas"]["AuditList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_bench_audit: {
@@ -20929,15 +19883,8 @@ export interface operations {
                     "application/json": components["schemas"]["AuditList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     live: {
@@ -20967,15 +19914,8 @@ export interface operations {
                     "application/json": components["schemas"]["Health"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     ready: {
@@ -21005,15 +19945,8 @@ export interface operations {
                     "application/json": components["schemas"]["Health"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     metrics: {
@@ -21034,15 +19967,8 @@ export interface operations {
                     "text/plain": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
 }
