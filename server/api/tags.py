@@ -6,6 +6,7 @@ TAGS = {
     "catalogue": "Blocks with their equations, parameters and ports",
     "devices": "Devices and their derived figures, frequency response and process spread",
     "scenarios": "Scenarios of the library, and the check of a text",
+    "schemas": "JSON Schemas of the documents that people write",
     "units": "Controllers, diagnosers and other blocks that people write",
     "benches": "Live benches, commands to them, events and forks",
     "experiments": "Measurements on a copy of a bench",

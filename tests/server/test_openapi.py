@@ -13,7 +13,7 @@ from pydantic import TypeAdapter
 from core.nesting import read_toml
 from scenarios.campaign.sweep import Sweep
 from scenarios.sheets.read import read_sheet
-from server.api.document import BINARY, REF
+from server.api.document import BINARY, REF, TEXT
 from server.api.examples import EXAMPLES
 from server.api.tags import TAGS
 from server.app import create_app
@@ -142,8 +142,10 @@ def test_files_are_text_or_bytes_and_everything_else_is_typed(document: dict[str
                 schema = content["schema"]
                 if media == "application/json":
                     assert references(schema), (where, status)
+                elif media == "application/schema+json":
+                    assert schema == {"type": "object"}, where
                 else:
-                    assert schema == ({"type": "string"} if media.startswith("text/") else BINARY), (where, media)
+                    assert schema == (TEXT if media.startswith("text/") else BINARY), (where, media)
 
 
 def test_every_operation_has_a_typed_answer_a_summary_and_the_error_shape(document: dict[str, Any]) -> None:

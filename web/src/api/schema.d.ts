@@ -360,7 +360,7 @@ export interface paths {
         };
         /**
          * List Events
-         * @description List the events of a bench, oldest first; `after` is the number of an event, whose followers are listed.
+         * @description List the events after an event.
          */
         get: operations["list_events"];
         put?: never;
@@ -464,9 +464,7 @@ export interface paths {
         };
         /**
          * List Narration
-         * @description List the sentences of the narrator; `after` is the number of a sentence, whose followers are listed.
-         *
-         *     All sentences are listed if the bench has jumped since.
+         * @description List the sentences of the narrator after a sentence; all sentences if the bench has jumped since.
          */
         get: operations["list_narration"];
         put?: never;
@@ -690,7 +688,7 @@ export interface paths {
         };
         /**
          * List Snapshots
-         * @description List the moments kept, oldest first.
+         * @description List the moments kept.
          */
         get: operations["list_snapshots"];
         put?: never;
@@ -794,7 +792,7 @@ export interface paths {
         };
         /**
          * List Parameter Sets
-         * @description List the sets by name.
+         * @description List the sets.
          */
         get: operations["list_parameter_sets"];
         put?: never;
@@ -862,7 +860,7 @@ export interface paths {
         };
         /**
          * List Bench Recordings
-         * @description List the recordings of a bench, newest first.
+         * @description List the recordings of a bench.
          */
         get: operations["list_bench_recordings"];
         put?: never;
@@ -906,7 +904,7 @@ export interface paths {
         };
         /**
          * List Recordings
-         * @description List all recordings, newest first, also of deleted benches; a student sees the recordings of the own benches.
+         * @description List all recordings, also of deleted benches; a student sees the recordings of the own benches.
          */
         get: operations["list_recordings"];
         put?: never;
@@ -1315,8 +1313,6 @@ export interface paths {
         /**
          * Get Sweep Points
          * @description Return figures, confusion, delays and receiver operating characteristics of the runs done so far.
-         *
-         *     Points without runs are listed only where neither a page nor an order is asked for.
          */
         get: operations["get_sweep_points"];
         put?: never;
@@ -1468,86 +1464,6 @@ export interface paths {
          * @description Cancel a search that waits or is under way; the runs that are done stay.
          */
         delete: operations["cancel_threshold"];
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/runs/{run_id}/progress": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Follow Run
-         * @description Follow a run to its end.
-         */
-        get: operations["follow_run"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/sweeps/{sweep_id}/progress": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Follow Sweep
-         * @description Follow a campaign to its end.
-         */
-        get: operations["follow_sweep"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/thresholds/{threshold_id}/progress": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Follow Threshold
-         * @description Follow a search for a threshold to its end.
-         */
-        get: operations["follow_threshold"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/recordings/{recording_id}/progress": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Follow Recording
-         * @description Follow a recording until its file is whole.
-         */
-        get: operations["follow_recording"];
-        put?: never;
-        post?: never;
-        delete?: never;
         options?: never;
         head?: never;
         patch?: never;
@@ -1762,7 +1678,7 @@ export interface paths {
         };
         /**
          * List Links
-         * @description List the links, newest first.
+         * @description List the links.
          */
         get: operations["list_links"];
         put?: never;
@@ -1936,7 +1852,7 @@ export interface paths {
         };
         /**
          * List Classes
-         * @description List the classes, oldest first.
+         * @description List the classes.
          */
         get: operations["list_classes"];
         put?: never;
@@ -2599,7 +2515,7 @@ export interface paths {
         };
         /**
          * List Watchers
-         * @description List the links to watch the bench, oldest first.
+         * @description List the links to watch the bench.
          */
         get: operations["list_watchers"];
         put?: never;
@@ -2911,7 +2827,7 @@ export interface paths {
         };
         /**
          * Get Class Audit
-         * @description List the actions of users in a class, newest first.
+         * @description List the actions of users in a class.
          */
         get: operations["get_class_audit"];
         put?: never;
@@ -2931,7 +2847,7 @@ export interface paths {
         };
         /**
          * Get Bench Audit
-         * @description List the actions of users on a bench, newest first, also on a deleted bench.
+         * @description List the actions of users on a bench, also on a deleted bench.
          */
         get: operations["get_bench_audit"];
         put?: never;
@@ -9672,35 +9588,6 @@ export interface components {
             error: components["schemas"]["ErrorBody"];
         };
         /**
-         * Progress
-         * @description How far a run, a campaign, a search or a recording is.
-         */
-        Progress: {
-            /** State */
-            state: string;
-            /**
-             * Fraction
-             * @description Share that is done, from 0 to 1
-             */
-            fraction: number;
-            /**
-             * Done
-             * @description Finished runs, or ticks of a recording
-             */
-            done: number;
-            /**
-             * Total
-             * @description Runs as far as known, or ticks at which a recording ends by itself
-             */
-            total: number;
-            /**
-             * Seconds Left
-             * @description Estimate from the time so far; null: not known yet
-             * @default null
-             */
-            seconds_left?: number | null;
-        };
-        /**
          * AdaptiveForgettingIdentifier
          * @description Least squares, adaptive forgetting: Recursive least squares that forgets when its innovations say so (5.4.1).
          */
@@ -9812,38 +9699,6 @@ export interface components {
              * @default 30
              */
             bandwidth_hz?: number;
-            /**
-             * @description ticks of the board between two samples of the block
-             * @default 1
-             */
-            every?: number;
-        };
-        /**
-         * AdrcController
-         * @description Active disturbance rejection (ADRC): Linear active disturbance rejection (Han 2009; Gao 2003), with an extended state observer.
-         */
-        AdrcController: {
-            /**
-             * @description Active disturbance rejection (ADRC): Linear active disturbance rejection (Han 2009; Gao 2003), with an extended state observer. (enum property replaced by openapi-typescript)
-             * @enum {string}
-             */
-            kind: "adrc";
-            /**
-             * @description omega_c over w0
-             * @default 1
-             */
-            controller_bandwidth?: number;
-            /**
-             * @description omega_o over w0
-             * @default 5
-             */
-            observer_bandwidth?: number;
-            /**
-             * @description model of the observer: the nominal device, or a mass without damping and spring
-             * @default nominal
-             * @enum {string}
-             */
-            plant?: "nominal" | "integrators";
             /**
              * @description ticks of the board between two samples of the block
              * @default 1
@@ -10564,7 +10419,7 @@ export interface components {
             every?: number;
         };
         /** Controller */
-        Controller: components["schemas"]["AdaptiveRateController"] | components["schemas"]["AdrcController"] | components["schemas"]["ForceToRebalanceController"] | components["schemas"]["GainAdaptationController"] | components["schemas"]["IndirectMracController"] | components["schemas"]["LqgController"] | components["schemas"]["MimoAdaptiveController"] | components["schemas"]["MracController"] | components["schemas"]["MracVelocityController"] | components["schemas"]["OpenLoopController"] | components["schemas"]["OpenLoopRateController"] | components["schemas"]["PidController"] | components["schemas"]["ResonantController"] | components["schemas"]["SelfSlidingController"] | components["schemas"]["SenseAxisSyncController"] | components["schemas"]["StvscController"] | components["schemas"]["VscController"] | components["schemas"]["VsmrcController"] | components["schemas"]["WholeAngleController"];
+        Controller: components["schemas"]["AdaptiveRateController"] | components["schemas"]["ForceToRebalanceController"] | components["schemas"]["GainAdaptationController"] | components["schemas"]["IndirectMracController"] | components["schemas"]["MimoAdaptiveController"] | components["schemas"]["MracController"] | components["schemas"]["MracVelocityController"] | components["schemas"]["OpenLoopController"] | components["schemas"]["OpenLoopRateController"] | components["schemas"]["PidController"] | components["schemas"]["SelfSlidingController"] | components["schemas"]["SenseAxisSyncController"] | components["schemas"]["StvscController"] | components["schemas"]["VscController"] | components["schemas"]["VsmrcController"] | components["schemas"]["WholeAngleController"];
         /**
          * CusumDiagnoser
          * @description Cumulative sums (CUSUM): Page's test of each fault against the healthy device, the first hypothesis.
@@ -12145,34 +12000,6 @@ export interface components {
              * @default 23
              */
             threshold?: number;
-            /**
-             * @description ticks of the board between two samples of the block
-             * @default 1
-             */
-            every?: number;
-        };
-        /**
-         * LqgController
-         * @description LQG: Linear-quadratic-Gaussian tracking of the reference model (Kalman 1960; Åström 1970, chapter 8).
-         */
-        LqgController: {
-            /**
-             * @description LQG: Linear-quadratic-Gaussian tracking of the reference model (Kalman 1960; Åström 1970, chapter 8). (enum property replaced by openapi-typescript)
-             * @enum {string}
-             */
-            kind: "lqg";
-            /**
-             * @description root of the cost of a volt, µm/V
-             * @default 0.03
-             */
-            voltage_cost_um_v?: number;
-            /**
-             * @description assumed noise on the voltage, rms per sample, V
-             * @default 1
-             */
-            process_noise_v?: number;
-            /** @description assumed sensor noise; the sensor's own unless given, µm */
-            sensor_noise_um?: number | null;
             /**
              * @description ticks of the board between two samples of the block
              * @default 1
@@ -13817,32 +13644,6 @@ export interface components {
             every?: number;
         };
         /**
-         * ResonantController
-         * @description Resonant: A resonator for each harmonic of the reference's tone (Francis and Wonham 1976; repetitive with all of them).
-         */
-        ResonantController: {
-            /**
-             * @description Resonant: A resonator for each harmonic of the reference's tone (Francis and Wonham 1976; repetitive with all of them). (enum property replaced by openapi-typescript)
-             * @enum {string}
-             */
-            kind: "resonant";
-            /**
-             * @description harmonics of the tone
-             * @default 1
-             */
-            harmonics?: number;
-            /**
-             * @description rate of decay of the error, over the decay of the device itself
-             * @default 0.2
-             */
-            rate?: number;
-            /**
-             * @description ticks of the board between two samples of the block
-             * @default 1
-             */
-            every?: number;
-        };
-        /**
          * Scenario
          * @description A bench, its events and its expectations.
          */
@@ -15428,10 +15229,8 @@ export type Reply = components['schemas']['Reply'];
 export type Status = components['schemas']['Status'];
 export type ServerMessage = components['schemas']['ServerMessage'];
 export type ErrorReply = components['schemas']['ErrorReply'];
-export type Progress = components['schemas']['Progress'];
 export type AdaptiveForgettingIdentifier = components['schemas']['AdaptiveForgettingIdentifier'];
 export type AdaptiveRateController = components['schemas']['AdaptiveRateController'];
-export type AdrcController = components['schemas']['AdrcController'];
 export type AllanReadOut = components['schemas']['AllanReadOut'];
 export type AnchoredDiagnoser = components['schemas']['AnchoredDiagnoser'];
 export type ArxBankDiagnoser = components['schemas']['ArxBankDiagnoser'];
@@ -15482,7 +15281,6 @@ export type LeastSquaresIdentifier = components['schemas']['LeastSquaresIdentifi
 export type LinearPlant = components['schemas']['LinearPlant'];
 export type LockInDiagnoser = components['schemas']['LockInDiagnoser'];
 export type LockInGlrDiagnoser = components['schemas']['LockInGlrDiagnoser'];
-export type LqgController = components['schemas']['LqgController'];
 export type MimoAdaptiveController = components['schemas']['MimoAdaptiveController'];
 export type MmaeDiagnoser = components['schemas']['MmaeDiagnoser'];
 export type Model = components['schemas']['Model'];
@@ -15524,7 +15322,6 @@ export type Reference = components['schemas']['Reference'];
 export type ReferenceBanksDiagnoser = components['schemas']['ReferenceBanksDiagnoser'];
 export type RegionsDiagnoser = components['schemas']['RegionsDiagnoser'];
 export type ReseedDiagnoser = components['schemas']['ReseedDiagnoser'];
-export type ResonantController = components['schemas']['ResonantController'];
 export type Scenario = components['schemas']['Scenario'];
 export type ScenarioEvent = components['schemas']['ScenarioEvent'];
 export type ScenarioId = components['schemas']['ScenarioId'];
@@ -15804,12 +15601,7 @@ export interface operations {
     };
     list_units: {
         parameters: {
-            query?: {
-                /** @description Most rows of this page: 10000 unless given, at most 10000 */
-                limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
-            };
+            query?: never;
             header?: never;
             path?: never;
             cookie?: never;
@@ -15819,8 +15611,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -15936,12 +15726,7 @@ export interface operations {
     };
     list_benches: {
         parameters: {
-            query?: {
-                /** @description Most rows of this page: 10000 unless given, at most 10000 */
-                limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
-            };
+            query?: never;
             header?: never;
             path?: never;
             cookie?: never;
@@ -15951,8 +15736,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -16123,10 +15906,10 @@ export interface operations {
     list_events: {
         parameters: {
             query?: {
-                /** @description Most rows of this page: 4000 unless given, at most 100000 */
-                limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
+                /** @description Number of the last known entry */
+                after?: number;
+                /** @description Largest number of entries */
+                limit?: number | null;
             };
             header?: never;
             path: {
@@ -16140,8 +15923,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -16263,12 +16044,10 @@ export interface operations {
     list_narration: {
         parameters: {
             query?: {
+                /** @description Number of the last known entry */
+                after?: number;
                 /** @description Number of jumps in the last answer */
                 jumps?: number | null;
-                /** @description Most rows of this page: 2000 unless given, at most 10000 */
-                limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
             };
             header?: never;
             path: {
@@ -16282,8 +16061,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -16606,12 +16383,7 @@ export interface operations {
     };
     list_snapshots: {
         parameters: {
-            query?: {
-                /** @description Most rows of this page: 10000 unless given, at most 10000 */
-                limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
-            };
+            query?: never;
             header?: never;
             path: {
                 /** @description Id of a bench */
@@ -16624,8 +16396,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -16775,12 +16545,7 @@ export interface operations {
     };
     list_parameter_sets: {
         parameters: {
-            query?: {
-                /** @description Most rows of this page: 10000 unless given, at most 10000 */
-                limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
-            };
+            query?: never;
             header?: never;
             path?: never;
             cookie?: never;
@@ -16790,8 +16555,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -16911,12 +16674,7 @@ export interface operations {
     };
     list_bench_recordings: {
         parameters: {
-            query?: {
-                /** @description Most rows of this page: 10000 unless given, at most 10000 */
-                limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
-            };
+            query?: never;
             header?: never;
             path: {
                 /** @description Id of a bench */
@@ -16929,8 +16687,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -16999,12 +16755,7 @@ export interface operations {
     };
     list_recordings: {
         parameters: {
-            query?: {
-                /** @description Most rows of this page: 10000 unless given, at most 10000 */
-                limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
-            };
+            query?: never;
             header?: never;
             path?: never;
             cookie?: never;
@@ -17014,8 +16765,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -17218,10 +16967,6 @@ export interface operations {
                 state?: ("queued" | "running" | "done" | "failed" | "cancelled" | "aborted") | null;
                 /** @description Only rows of this scenario */
                 scenario?: string;
-                /** @description Most rows of this page: 200 unless given, at most 10000 */
-                limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
             };
             header?: never;
             path?: never;
@@ -17232,8 +16977,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -17585,10 +17328,6 @@ export interface operations {
                 state?: ("queued" | "running" | "done" | "failed" | "cancelled" | "aborted") | null;
                 /** @description Only rows of this scenario */
                 scenario?: string;
-                /** @description Most rows of this page: 200 unless given, at most 10000 */
-                limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
             };
             header?: never;
             path?: never;
@@ -17599,8 +17338,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -17756,14 +17493,12 @@ export interface operations {
             query?: {
                 /** @description Number of points to skip */
                 offset?: number;
+                /** @description Largest number of points; left out: all */
+                limit?: number | null;
                 /** @description Order: an axis, a figure, runs, ok or tripped */
                 sort?: string;
                 /** @description Whether the largest values come first */
                 descending?: boolean;
-                /** @description Most rows of this page: 20000 unless given, at most 20000 */
-                limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
             };
             header?: never;
             path: {
@@ -17777,8 +17512,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -18012,146 +17745,6 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["ThresholdRun"];
                 };
-            };
-            "4XX": components["responses"]["Refused"];
-            "5XX": components["responses"]["Failed"];
-        };
-    };
-    follow_run: {
-        parameters: {
-            query?: never;
-            header?: {
-                /** @description Id of the last event that was received */
-                "Last-Event-ID"?: string;
-            };
-            path: {
-                /** @description Id of a run */
-                run_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Events `progress` with a Progress, then one of `done`, `failed` and `cancelled` with the Run */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "text/event-stream": string;
-                };
-            };
-            /** @description The last event is known already: there is nothing left to wait for */
-            204: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            "4XX": components["responses"]["Refused"];
-            "5XX": components["responses"]["Failed"];
-        };
-    };
-    follow_sweep: {
-        parameters: {
-            query?: never;
-            header?: {
-                /** @description Id of the last event that was received */
-                "Last-Event-ID"?: string;
-            };
-            path: {
-                /** @description Id of a campaign */
-                sweep_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Events `progress` with a Progress, then one of `done`, `failed` and `cancelled` with the SweepRun */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "text/event-stream": string;
-                };
-            };
-            /** @description The last event is known already: there is nothing left to wait for */
-            204: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            "4XX": components["responses"]["Refused"];
-            "5XX": components["responses"]["Failed"];
-        };
-    };
-    follow_threshold: {
-        parameters: {
-            query?: never;
-            header?: {
-                /** @description Id of the last event that was received */
-                "Last-Event-ID"?: string;
-            };
-            path: {
-                /** @description Id of a search for a threshold */
-                threshold_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Events `progress` with a Progress, then one of `done`, `failed` and `cancelled` with the ThresholdRun */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "text/event-stream": string;
-                };
-            };
-            /** @description The last event is known already: there is nothing left to wait for */
-            204: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            "4XX": components["responses"]["Refused"];
-            "5XX": components["responses"]["Failed"];
-        };
-    };
-    follow_recording: {
-        parameters: {
-            query?: never;
-            header?: {
-                /** @description Id of the last event that was received */
-                "Last-Event-ID"?: string;
-            };
-            path: {
-                /** @description Id of a recording */
-                recording_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Events `progress` with a Progress, then one of `done`, `failed` and `cancelled` with the Recording */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "text/event-stream": string;
-                };
-            };
-            /** @description The last event is known already: there is nothing left to wait for */
-            204: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
             };
             "4XX": components["responses"]["Refused"];
             "5XX": components["responses"]["Failed"];
@@ -18415,10 +18008,6 @@ export interface operations {
             query?: {
                 /** @description Kind of the listed links; left out: all kinds */
                 kind?: ("experiment" | "layout") | null;
-                /** @description Most rows of this page: 10000 unless given, at most 10000 */
-                limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
             };
             header?: never;
             path?: never;
@@ -18429,8 +18018,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -18697,12 +18284,7 @@ export interface operations {
     };
     list_classes: {
         parameters: {
-            query?: {
-                /** @description Most rows of this page: 10000 unless given, at most 10000 */
-                limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
-            };
+            query?: never;
             header?: never;
             path?: never;
             cookie?: never;
@@ -18712,8 +18294,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -18883,12 +18463,7 @@ export interface operations {
     };
     list_members: {
         parameters: {
-            query?: {
-                /** @description Most rows of this page: 10000 unless given, at most 10000 */
-                limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
-            };
+            query?: never;
             header?: never;
             path: {
                 /** @description Id of a class */
@@ -18901,8 +18476,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -19585,12 +19158,7 @@ export interface operations {
     };
     list_votes: {
         parameters: {
-            query?: {
-                /** @description Most rows of this page: 10000 unless given, at most 10000 */
-                limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
-            };
+            query?: never;
             header?: never;
             path?: never;
             cookie?: never;
@@ -19600,8 +19168,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -19793,12 +19359,7 @@ export interface operations {
     };
     list_watchers: {
         parameters: {
-            query?: {
-                /** @description Most rows of this page: 10000 unless given, at most 10000 */
-                limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
-            };
+            query?: never;
             header?: never;
             path: {
                 /** @description Id of a bench */
@@ -19811,8 +19372,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -19879,12 +19438,7 @@ export interface operations {
     };
     list_sheets: {
         parameters: {
-            query?: {
-                /** @description Most rows of this page: 10000 unless given, at most 10000 */
-                limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
-            };
+            query?: never;
             header?: never;
             path?: never;
             cookie?: never;
@@ -19894,8 +19448,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -20282,10 +19834,8 @@ export interface operations {
     get_class_audit: {
         parameters: {
             query?: {
-                /** @description Most rows of this page: 1000 unless given, at most 10000 */
+                /** @description Largest number of entries */
                 limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
             };
             header?: never;
             path: {
@@ -20299,8 +19849,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -20314,10 +19862,8 @@ export interface operations {
     get_bench_audit: {
         parameters: {
             query?: {
-                /** @description Most rows of this page: 1000 unless given, at most 10000 */
+                /** @description Largest number of entries */
                 limit?: number;
-                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
-                after?: string | null;
             };
             header?: never;
             path: {
@@ -20331,8 +19877,6 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
-                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
-                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
