@@ -16,7 +16,6 @@ beforeEach(() => {
   vi.spyOn(window, "confirm").mockReturnValue(true);
   server.on("GET", "/scenarios", { scenarios: [{ id: "first-look", title: "First look" }] });
   server.on("GET", "/scenarios/:id", { document: {}, toml: "" });
-  server.on("GET", "/runs/:id/scenario", "");
   server.on("GET", "/runs", { runs: [run, second] });
   server.on("GET", "/sweeps", { sweeps: [campaign] });
   server.on("GET", "/runs/compare", comparison);
@@ -44,10 +43,13 @@ it("lists runs and campaigns, the newest first and the last included", async () 
 });
 
 it("tells runs of a scenario apart by the values that each changes", async () => {
-  const text = "[[events]]\nseverity = 0.5\n";
-  server.on("GET", "/scenarios/first-look", { document: {}, toml: text });
-  server.on("GET", "/runs/run-1/scenario", text);
-  server.on("GET", "/runs/run-2/scenario", text.replace("0.5", "0.8"));
+  const changed = [{ path: "events.0.severity", before: 0.5, value: 0.8 }];
+  server.on("GET", "/runs", {
+    runs: [
+      { ...run, changed: [] },
+      { ...second, changed },
+    ],
+  });
   const { jobs } = await mountPage();
   expect(await jobs.findByRole("button", { name: /^quiet .* severity 0\.5 → 0\.8/ })).toBeVisible();
   expect(jobs.getByRole("button", { name: /^First look/ })).not.toHaveTextContent("severity");
