@@ -320,7 +320,7 @@ export interface paths {
         };
         /**
          * List Events
-         * @description List the events after an event.
+         * @description List the events of a bench, oldest first; `after` is the number of an event, whose followers are listed.
          */
         get: operations["list_events"];
         put?: never;
@@ -424,7 +424,9 @@ export interface paths {
         };
         /**
          * List Narration
-         * @description List the sentences of the narrator after a sentence; all sentences if the bench has jumped since.
+         * @description List the sentences of the narrator; `after` is the number of a sentence, whose followers are listed.
+         *
+         *     All sentences are listed if the bench has jumped since.
          */
         get: operations["list_narration"];
         put?: never;
@@ -648,7 +650,7 @@ export interface paths {
         };
         /**
          * List Snapshots
-         * @description List the moments kept.
+         * @description List the moments kept, oldest first.
          */
         get: operations["list_snapshots"];
         put?: never;
@@ -752,7 +754,7 @@ export interface paths {
         };
         /**
          * List Parameter Sets
-         * @description List the sets.
+         * @description List the sets by name.
          */
         get: operations["list_parameter_sets"];
         put?: never;
@@ -820,7 +822,7 @@ export interface paths {
         };
         /**
          * List Bench Recordings
-         * @description List the recordings of a bench.
+         * @description List the recordings of a bench, newest first.
          */
         get: operations["list_bench_recordings"];
         put?: never;
@@ -864,7 +866,7 @@ export interface paths {
         };
         /**
          * List Recordings
-         * @description List all recordings, also of deleted benches; a student sees the recordings of the own benches.
+         * @description List all recordings, newest first, also of deleted benches; a student sees the recordings of the own benches.
          */
         get: operations["list_recordings"];
         put?: never;
@@ -1273,6 +1275,8 @@ export interface paths {
         /**
          * Get Sweep Points
          * @description Return figures, confusion, delays and receiver operating characteristics of the runs done so far.
+         *
+         *     Points without runs are listed only where neither a page nor an order is asked for.
          */
         get: operations["get_sweep_points"];
         put?: never;
@@ -1424,6 +1428,86 @@ export interface paths {
          * @description Cancel a search that waits or is under way; the runs that are done stay.
          */
         delete: operations["cancel_threshold"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run_id}/progress": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Follow Run
+         * @description Follow a run to its end.
+         */
+        get: operations["follow_run"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/{sweep_id}/progress": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Follow Sweep
+         * @description Follow a campaign to its end.
+         */
+        get: operations["follow_sweep"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/thresholds/{threshold_id}/progress": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Follow Threshold
+         * @description Follow a search for a threshold to its end.
+         */
+        get: operations["follow_threshold"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/recordings/{recording_id}/progress": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Follow Recording
+         * @description Follow a recording until its file is whole.
+         */
+        get: operations["follow_recording"];
+        put?: never;
+        post?: never;
+        delete?: never;
         options?: never;
         head?: never;
         patch?: never;
@@ -1638,7 +1722,7 @@ export interface paths {
         };
         /**
          * List Links
-         * @description List the links.
+         * @description List the links, newest first.
          */
         get: operations["list_links"];
         put?: never;
@@ -1812,7 +1896,7 @@ export interface paths {
         };
         /**
          * List Classes
-         * @description List the classes.
+         * @description List the classes, oldest first.
          */
         get: operations["list_classes"];
         put?: never;
@@ -2475,7 +2559,7 @@ export interface paths {
         };
         /**
          * List Watchers
-         * @description List the links to watch the bench.
+         * @description List the links to watch the bench, oldest first.
          */
         get: operations["list_watchers"];
         put?: never;
@@ -2787,7 +2871,7 @@ export interface paths {
         };
         /**
          * Get Class Audit
-         * @description List the actions of users in a class.
+         * @description List the actions of users in a class, newest first.
          */
         get: operations["get_class_audit"];
         put?: never;
@@ -2807,7 +2891,7 @@ export interface paths {
         };
         /**
          * Get Bench Audit
-         * @description List the actions of users on a bench, also on a deleted bench.
+         * @description List the actions of users on a bench, newest first, also on a deleted bench.
          */
         get: operations["get_bench_audit"];
         put?: never;
@@ -3853,6 +3937,27 @@ export interface components {
             version: string;
             /** Blocks */
             blocks: components["schemas"]["BlockCard"][];
+        };
+        /**
+         * ChangedValue
+         * @description A value of a run that differs from its scenario in the library.
+         */
+        ChangedValue: {
+            /**
+             * Path
+             * @description Dotted path; an entry of a list by its position, from 0
+             */
+            path: string;
+            /**
+             * Before
+             * @description Value in the library; null: it has none
+             */
+            before: string | boolean | number | null;
+            /**
+             * Value
+             * @description Value of the run; a list as JSON
+             */
+            value: string | boolean | number | null;
         };
         /**
          * CheckedUnit
@@ -7251,6 +7356,12 @@ export interface components {
             finished: string | null;
             /** Progress */
             progress: number;
+            /**
+             * Changed
+             * @description Values that differ from its scenario in the library
+             * @default []
+             */
+            changed?: components["schemas"]["ChangedValue"][];
             /** Summary */
             summary: {
                 [key: string]: unknown;
@@ -9368,6 +9479,35 @@ export interface components {
         ErrorReply: {
             error: components["schemas"]["ErrorBody"];
         };
+        /**
+         * Progress
+         * @description How far a run, a campaign, a search or a recording is.
+         */
+        Progress: {
+            /** State */
+            state: string;
+            /**
+             * Fraction
+             * @description Share that is done, from 0 to 1
+             */
+            fraction: number;
+            /**
+             * Done
+             * @description Finished runs, or ticks of a recording
+             */
+            done: number;
+            /**
+             * Total
+             * @description Runs as far as known, or ticks at which a recording ends by itself
+             */
+            total: number;
+            /**
+             * Seconds Left
+             * @description Estimate from the time so far; null: not known yet
+             * @default null
+             */
+            seconds_left?: number | null;
+        };
     };
     responses: never;
     parameters: never;
@@ -9408,6 +9548,7 @@ export type CampaignPicture = components['schemas']['CampaignPicture'];
 export type CaptureMark = components['schemas']['CaptureMark'];
 export type CaseDigest = components['schemas']['CaseDigest'];
 export type Catalogue = components['schemas']['Catalogue'];
+export type ChangedValue = components['schemas']['ChangedValue'];
 export type CheckedUnit = components['schemas']['CheckedUnit'];
 export type Chosen = components['schemas']['Chosen'];
 export type ClaimList = components['schemas']['ClaimList'];
@@ -9662,6 +9803,7 @@ export type Reply = components['schemas']['Reply'];
 export type Status = components['schemas']['Status'];
 export type ServerMessage = components['schemas']['ServerMessage'];
 export type ErrorReply = components['schemas']['ErrorReply'];
+export type Progress = components['schemas']['Progress'];
 export type $defs = Record<string, never>;
 export interface operations {
     get_catalog: {
@@ -9920,7 +10062,12 @@ export interface operations {
     };
     list_units: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -9930,6 +10077,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -10080,7 +10229,12 @@ export interface operations {
     };
     list_benches: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -10090,6 +10244,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -10309,10 +10465,10 @@ export interface operations {
     list_events: {
         parameters: {
             query?: {
-                /** @description Number of the last known entry */
-                after?: number;
-                /** @description Largest number of entries */
-                limit?: number | null;
+                /** @description Most rows of this page: 4000 unless given, at most 100000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
             };
             header?: never;
             path: {
@@ -10326,6 +10482,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -10482,10 +10640,12 @@ export interface operations {
     list_narration: {
         parameters: {
             query?: {
-                /** @description Number of the last known entry */
-                after?: number;
                 /** @description Number of jumps in the last answer */
                 jumps?: number | null;
+                /** @description Most rows of this page: 2000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
             };
             header?: never;
             path: {
@@ -10499,6 +10659,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -10905,7 +11067,12 @@ export interface operations {
     };
     list_snapshots: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path: {
                 /** @description Id of a bench */
@@ -10918,6 +11085,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -11109,7 +11278,12 @@ export interface operations {
     };
     list_parameter_sets: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -11119,6 +11293,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -11273,7 +11449,12 @@ export interface operations {
     };
     list_bench_recordings: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path: {
                 /** @description Id of a bench */
@@ -11286,6 +11467,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -11375,7 +11558,12 @@ export interface operations {
     };
     list_recordings: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -11385,6 +11573,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -11636,6 +11826,10 @@ export interface operations {
                 state?: ("queued" | "running" | "done" | "failed" | "cancelled" | "aborted") | null;
                 /** @description Only rows of this scenario */
                 scenario?: string;
+                /** @description Most rows of this page: 200 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
             };
             header?: never;
             path?: never;
@@ -11646,6 +11840,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -12088,6 +12284,10 @@ export interface operations {
                 state?: ("queued" | "running" | "done" | "failed" | "cancelled" | "aborted") | null;
                 /** @description Only rows of this scenario */
                 scenario?: string;
+                /** @description Most rows of this page: 200 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
             };
             header?: never;
             path?: never;
@@ -12098,6 +12298,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -12295,12 +12497,14 @@ export interface operations {
             query?: {
                 /** @description Number of points to skip */
                 offset?: number;
-                /** @description Largest number of points; left out: all */
-                limit?: number | null;
                 /** @description Order: an axis, a figure, runs, ok or tripped */
                 sort?: string;
                 /** @description Whether the largest values come first */
                 descending?: boolean;
+                /** @description Most rows of this page: 20000 unless given, at most 20000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
             };
             header?: never;
             path: {
@@ -12314,6 +12518,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -12603,6 +12809,174 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["ThresholdRun"];
                 };
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    follow_run: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Id of the last event that was received */
+                "Last-Event-ID"?: string;
+            };
+            path: {
+                /** @description Id of a run */
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Events `progress` with a Progress, then one of `done`, `failed` and `cancelled` with the Run */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/event-stream": string;
+                };
+            };
+            /** @description The last event is known already: there is nothing left to wait for */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    follow_sweep: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Id of the last event that was received */
+                "Last-Event-ID"?: string;
+            };
+            path: {
+                /** @description Id of a campaign */
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Events `progress` with a Progress, then one of `done`, `failed` and `cancelled` with the SweepRun */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/event-stream": string;
+                };
+            };
+            /** @description The last event is known already: there is nothing left to wait for */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    follow_threshold: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Id of the last event that was received */
+                "Last-Event-ID"?: string;
+            };
+            path: {
+                /** @description Id of a search for a threshold */
+                threshold_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Events `progress` with a Progress, then one of `done`, `failed` and `cancelled` with the ThresholdRun */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/event-stream": string;
+                };
+            };
+            /** @description The last event is known already: there is nothing left to wait for */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Refused or failed */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorReply"];
+                };
+            };
+        };
+    };
+    follow_recording: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description Id of the last event that was received */
+                "Last-Event-ID"?: string;
+            };
+            path: {
+                /** @description Id of a recording */
+                recording_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Events `progress` with a Progress, then one of `done`, `failed` and `cancelled` with the Recording */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/event-stream": string;
+                };
+            };
+            /** @description The last event is known already: there is nothing left to wait for */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description Refused or failed */
             default: {
@@ -12943,6 +13317,10 @@ export interface operations {
             query?: {
                 /** @description Kind of the listed links; left out: all kinds */
                 kind?: ("experiment" | "layout") | null;
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
             };
             header?: never;
             path?: never;
@@ -12953,6 +13331,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -13296,7 +13676,12 @@ export interface operations {
     };
     list_classes: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -13306,6 +13691,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -13524,7 +13911,12 @@ export interface operations {
     };
     list_members: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path: {
                 /** @description Id of a class */
@@ -13537,6 +13929,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -14401,7 +14795,12 @@ export interface operations {
     };
     list_votes: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -14411,6 +14810,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -14658,7 +15059,12 @@ export interface operations {
     };
     list_watchers: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path: {
                 /** @description Id of a bench */
@@ -14671,6 +15077,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -14758,7 +15166,12 @@ export interface operations {
     };
     list_sheets: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -14768,6 +15181,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -15259,8 +15674,10 @@ export interface operations {
     get_class_audit: {
         parameters: {
             query?: {
-                /** @description Largest number of entries */
+                /** @description Most rows of this page: 1000 unless given, at most 10000 */
                 limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
             };
             header?: never;
             path: {
@@ -15274,6 +15691,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -15294,8 +15713,10 @@ export interface operations {
     get_bench_audit: {
         parameters: {
             query?: {
-                /** @description Largest number of entries */
+                /** @description Most rows of this page: 1000 unless given, at most 10000 */
                 limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
             };
             header?: never;
             path: {
@@ -15309,6 +15730,8 @@ export interface operations {
             /** @description Successful Response */
             200: {
                 headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
                     [name: string]: unknown;
                 };
                 content: {
