@@ -16,7 +16,7 @@ from sqlalchemy import ColumnElement, Select, literal, tuple_
 
 T = TypeVar("T")
 Key = tuple[Any, ...]
-"""The place of a row in its list: unique, and the same as long as the row is there."""
+"""The place of a row in its list: unique, and the same for as long as the row exists."""
 
 
 def _ignore(_query: dict[str, Any]) -> None:

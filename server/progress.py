@@ -1,4 +1,4 @@
-"""Streams of progress: server-sent events of work under way, from what the server has in memory."""
+"""Streams of progress: server-sent events of work under way, from the state in memory."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from server.clock import Clock
 from server.errors import ApiError
 
 BEAT_S = 0.5
-"""Between two looks at work under way; the end of a run is told at once."""
+"""Between two looks at work under way; the end of a run needs no look."""
 HEARTBEAT_S = 15.0
 """Silence after which a comment keeps the connection open."""
 RETRY_MS = 2000

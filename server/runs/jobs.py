@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +15,12 @@ from scenarios.campaign.single import single
 from scenarios.key import content_hash, run_key
 from scenarios.schema import Scenario
 from server.errors import not_found
-from server.runs.listing import Run
-from server.runs.queue import Requested, check_length
+from server.paging import Page
+from server.runs.changed import ChangedValue, changed_values
+from server.runs.listing import Run, RunFilter
+from server.runs.queue import Queue, Requested, check_length
 from server.runs.worker import STEM, Keep
+from server.settings import Settings
 from server.store.models import RequestRow
 
 
@@ -31,6 +34,11 @@ class Jobs(Requested[Run]):
     """The runs of the queue, and their files."""
 
     kind = "run"
+
+    def __init__(self, queue: Queue, settings: Settings) -> None:
+        super().__init__(queue, settings)
+        self._changed: dict[str, list[ChangedValue]] = {}
+        """The values that each run changes, which its id determines: computed when the run is listed first."""
 
     async def start(
         self, scenario: Scenario, seeds: list[int], label: str = "", *, everything: bool = False
@@ -58,6 +66,23 @@ class Jobs(Requested[Run]):
             everything=everything,
             runs=len(seeds),
         )
+
+    async def all(self, wanted: RunFilter, page: Page) -> list[Run]:
+        """List the selected runs, newest first."""
+        rows = await self._requests.all(self.kind, wanted, page)
+        while new := {row.id: row.scenario_id for row in rows if row.id not in self._changed}:
+            documents = await self._requests.documents([*new])
+            found = await asyncio.to_thread(
+                lambda: {one: changed_values(name, documents.get(one, {})) for one, name in new.items()}  # noqa: B023
+            )
+            self._changed |= found
+        return [self.shown(row) for row in rows]
+
+    async def remove(self, ids: Sequence[str] | None) -> int:
+        """Remove some that have ended, all of them if none is named, with their files; results stay."""
+        removed = await super().remove(ids)
+        self._changed.clear()
+        return removed
 
     async def campaign(self, row: RequestRow, on_progress: Callable[[int, int], None]) -> Campaign:
         """Return a run as a campaign; it is carried out on this machine."""
@@ -100,4 +125,7 @@ class Jobs(Requested[Run]):
     def shown(self, row: RequestRow) -> Run:
         """Return a run as the interface shows it, with its progress while it is under way."""
         run, campaign = Run.model_validate(row), self._queue.campaigns.get(row.id)
+        if row.id not in self._changed:
+            self._changed[row.id] = changed_values(row.scenario_id, row.document)
+        run.changed = self._changed[row.id]
         return run if campaign is None else run.model_copy(update={"progress": campaign.progress})

@@ -16,6 +16,7 @@ from core.errors import InputError
 from scenarios.key import code_version
 from server.errors import ApiError, ErrorBody, not_found
 from server.paging import Page, by_age
+from server.runs.changed import ChangedValue
 from server.runs.summary import RunSummary
 from server.store.base import now
 from server.store.database import Database
@@ -47,6 +48,7 @@ class Run(BaseModel):
     created: datetime
     finished: datetime | None
     progress: float
+    changed: list[ChangedValue] = Field([], description="Values that differ from its scenario in the library")
     summary: RunSummary | None
     error: ErrorBody | None
 
@@ -138,6 +140,12 @@ class Requests:
     async def some(self, kind: Kind, ids: Sequence[str]) -> list[RequestRow]:
         """Return the known rows among some ids."""
         return await self._rows(select(RequestRow).where(RequestRow.id.in_(ids), RequestRow.kind == kind))
+
+    async def documents(self, ids: Sequence[str]) -> dict[str, dict[str, Any]]:
+        """Return the documents of some requests by id."""
+        query = select(RequestRow.id, RequestRow.document).where(RequestRow.id.in_(ids))
+        rows = await self._database.run(lambda session: list(session.execute(query)))
+        return {row.id: row.document for row in rows}
 
     async def recover(self) -> list[RequestRow]:
         """Return the waiting and active rows, in the order of their requests."""

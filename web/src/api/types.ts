@@ -27,6 +27,7 @@ export type HandedIn = Record<string, number | string>;
 export type HiddenAnswer = Schemas["Answer"];
 /** A number that may be turned to see where a claim begins to hold. */
 export type ClaimKnob = Schemas["Knob"];
+export type ChangedValue = Schemas["ChangedValue"];
 export type LinkWords = Schemas["Words"];
 export type LogEntry = Omit<Schemas["Event"], "command"> & { command?: Command | null };
 export type NewThreshold = Partial<Schemas["NewThreshold"]> &
