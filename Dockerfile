@@ -41,8 +41,9 @@ RUN .venv/bin/uv pip install --quiet --constraint requirements.lock hatchling \
  && .venv/bin/uv pip install --quiet --no-deps --no-build-isolation --editable . \
  && .venv/bin/python -m compileall -q -j 0 -x '/tests/' combbench core scenarios server .venv/lib \
  && .venv/bin/python -m scenarios.built_kernels \
- && .venv/bin/python -m scenarios.kernels && chmod -R a+rX kernels \
+ && .venv/bin/python -m scenarios.kernels \
  && .venv/bin/python -m server.runs.figures \
+ && chmod -R a+rX kernels server \
  && .venv/bin/python -m pip uninstall --quiet --yes hatchling pathspec pluggy trove-classifiers uv pip setuptools \
  && /audit/bin/python scripts/audit.py python sbom --python .venv/bin/python
 

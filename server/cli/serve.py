@@ -6,11 +6,13 @@ import asyncio
 import errno
 import gc
 import logging
+import os
 import signal
 import socket
 import sys
 import webbrowser
 from contextlib import ExitStack
+from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
@@ -141,6 +143,14 @@ def bind(settings: Settings) -> socket.socket:
     return listener
 
 
+def unusable(data: Path, error: OSError) -> InputError:
+    """Return the error of a start that cannot use the data folder, or another file such as one in shared memory."""
+    file = Path(os.fsdecode(error.filename or data)).absolute()
+    if not file.is_relative_to(data):
+        return InputError(f"{file} cannot be used: {error.strerror}")
+    return InputError(f"the data folder {data} cannot be used: {error.strerror}", "data", "choose another --data")
+
+
 def make_server(settings: Settings, app: FastAPI, address: str = "", notice: str = "") -> Server:
     """Configure uvicorn: one process owns the boards, so there is one worker."""
     config = uvicorn.Config(
@@ -193,8 +203,7 @@ def serve(settings: Settings) -> None:
             app.state.service.database.migrate()
             app.state.service.database.claim()
         except OSError as error:
-            text = f"the data folder {settings.data.absolute()} cannot be used: {error.strerror}"
-            raise InputError(text, "data", "choose another --data") from None
+            raise unusable(settings.data.absolute(), error) from None
         host = f"[{settings.host}]" if ":" in settings.host else settings.host
         shown = LOOPBACK if settings.classroom or is_everywhere else host
         page = settings.public_origin or f"http://{shown}:{port}"

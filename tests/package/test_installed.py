@@ -8,7 +8,6 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 import httpx
 import pytest
@@ -19,6 +18,8 @@ ROOT = Path(__file__).resolve().parents[2]
 UV = Path(sys.executable).with_name("uv")
 VERSIONS = ("3.11", "3.12", "3.13", "3.14")
 SCENARIOS = ("first-look", "gyro-first-look")
+OUTSIDE = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "VIRTUAL_ENV")}
+"""The environment of a program that knows no checkout."""
 PROGRAM = f"""
 import json, combbench
 from core import kernel_cache
@@ -34,10 +35,9 @@ pytestmark = [pytest.mark.long, pytest.mark.timeout(1800)]
 
 
 def told(*command: str | Path, cwd: Path = ROOT, **environment: str) -> str:
-    """Return the output of a command that succeeds; no checkout is in the path of its modules."""
-    inherited = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "VIRTUAL_ENV")}
+    """Return the output of a command that succeeds."""
     ended = subprocess.run(
-        command, cwd=cwd, env={**inherited, **environment}, capture_output=True, text=True, check=False
+        command, cwd=cwd, env={**OUTSIDE, **environment}, capture_output=True, text=True, check=False
     )
     assert ended.returncode == 0, ended.stderr[-3000:]
     return ended.stdout
@@ -59,9 +59,12 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def interpreter(version: str) -> str:
-    """Return a Python of a version, or skip the test."""
+    """Return a Python of a version, of pyenv or another that uv finds, or skip the test."""
+    folder = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
+    for python in folder.glob(f"{version}.*/bin/python"):
+        return str(python)
     command = [UV, "python", "find", "--no-python-downloads", "--no-project", version]
-    found = subprocess.run(command, cwd="/", capture_output=True, text=True, check=False)
+    found = subprocess.run(command, cwd="/", env=OUTSIDE, capture_output=True, text=True, check=False)
     if found.returncode:
         pytest.skip(f"this machine has no Python {version}")
     return found.stdout.strip()
@@ -85,8 +88,8 @@ def test_the_wheel_works_alone(wheel: Path, version: str, tmp_path: Path) -> Non
 
 def serve(program: Path, folder: Path, kept: dict[str, str]) -> None:
     """Serve, open the address that is printed, and stop."""
-    settings: dict[str, Any] = {**os.environ, **kept, "COMBBENCH_FIGURES": "false"}
-    running = subprocess.Popen([program, "serve", "--port", "0"], cwd=folder, env=settings, stdout=-1, text=True)
+    settings, command = {**OUTSIDE, **kept, "COMBBENCH_FIGURES": "false"}, [program, "serve", "--port", "0"]
+    running = subprocess.Popen(command, cwd=folder, env=settings, stdout=subprocess.PIPE, text=True)
     try:
         assert running.stdout is not None
         address = running.stdout.readline().strip().removeprefix("CombBench is at ")

@@ -29,7 +29,7 @@ from websockets.exceptions import ConnectionClosed
 from server.app import create_app
 from server.cli import logs
 from server.cli import main as cli
-from server.cli.serve import make_server
+from server.cli.serve import make_server, unusable
 from server.settings import Settings
 from server.stream.wire import SUBPROTOCOL
 from tests.server.forks import Forks
@@ -234,6 +234,13 @@ def test_it_does_not_start_with_wrong_settings(monkeypatch: pytest.MonkeyPatch, 
         done = CliRunner().invoke(cli.app, ["serve", "--port", "0", *arguments], env=told)
         assert done.exit_code == 2 and done.stdout == "", done.output
         assert all(word in done.stderr for word in words) and len(done.stderr.strip().splitlines()) == 1, done.stderr
+
+
+def test_a_file_elsewhere_that_cannot_be_used_is_not_blamed_on_the_data_folder(tmp_path: Path) -> None:
+    inside, outside = tmp_path / "data" / "token", tmp_path / "shm" / "part"
+    for file, told in ((inside, f"data: the data folder {tmp_path / 'data'} cannot"), (outside, f"{outside} cannot")):
+        assert str(unusable(tmp_path / "data", PermissionError(13, "Permission denied", str(file)))).startswith(told)
+    assert str(unusable(tmp_path / "data", OSError(28, "No space left on device"))).startswith("data: ")
 
 
 def test_a_port_that_is_taken_is_told_in_one_line(tmp_path: Path) -> None:
