@@ -58,7 +58,7 @@ class Fusing:
                     await self._load(segment)
 
     async def _load(self, segment: SharedSegment) -> None:
-        """Load the code of a segment; one whose code cannot be made is not tried again."""
+        """Load the code of a segment; after a failure it is not tried again."""
         if segment.steps in self._failed or segment.address:
             return
         try:
