@@ -22,7 +22,7 @@ from core.board.observer import Observer
 from core.board.parse import parse
 from core.board.pending import PendingCommand, PendingQueue
 from core.board.rows import Rows
-from core.board.segments import Part, SharedSegment, joined, parts
+from core.board.segments import SharedSegment, TablePart, joined, parts
 from core.board.spec import Section, Spec
 from core.board.wiring import Wiring, wire
 from core.diagnose.hypothesis import names_of
@@ -81,7 +81,7 @@ class Board:
         self._linked: Wiring | None = None
         self._running: list[int] = []
         self._rows = self._table = self.wiring.table
-        self._parts: list[Part] = []
+        self._parts: list[TablePart] = []
         self._awaited: list[SharedSegment] = []
         self._allocate()
         self.link()

@@ -42,7 +42,7 @@ class SharedSegment:
         self.address = self._codes[-1].address
 
 
-class Part(NamedTuple):
+class TablePart(NamedTuple):
     """Rows that follow one another in the table of a board, and the segment that they are, if they are one."""
 
     rows: slice
@@ -52,20 +52,20 @@ class Part(NamedTuple):
 _shared: WeakValueDictionary[Segment, SharedSegment] = WeakValueDictionary()
 
 
-def parts(wiring: Wiring, running: Sequence[int]) -> list[Part]:
+def parts(wiring: Wiring, running: Sequence[int]) -> list[TablePart]:
     """Return the parts of the table of a board on which these rows run."""
     alone = [_is_alone(instance.block) for instance in wiring.instances]
     before = [*accumulate(alone)]
-    found, first = list[Part](), 0
+    found, first = list[TablePart](), 0
     for (_, by_themselves), group in groupby(running, lambda row: (before[row], alone[row])):
         rows = [*group]
         is_segment = len(rows) > 1 and not by_themselves
-        found.append(Part(slice(first, first + len(rows)), _segment(wiring, rows) if is_segment else None))
+        found.append(TablePart(slice(first, first + len(rows)), _segment(wiring, rows) if is_segment else None))
         first += len(rows)
     return found
 
 
-def joined(table: IntArray, parts: Sequence[Part]) -> IntArray:
+def joined(table: IntArray, parts: Sequence[TablePart]) -> IntArray:
     """Return a table with one row in place of the rows of each segment whose code is loaded."""
     return np.concatenate([table[:0], *(_joined(table[part.rows], part.segment) for part in parts)])
 

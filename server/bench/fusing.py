@@ -19,8 +19,10 @@ log = logging.getLogger(__name__)
 EVERY_S = 2.0
 """Between two looks at the benches."""
 LONG = 1_000_000
-"""Ticks of a bench that is worth it. To compile a segment takes about 3 s of a processor, and it saves about 0.15 us a
-tick; the code is kept for every other bench with the same blocks, and for the next start.
+"""Ticks of a bench that is worth it.
+
+To compile a segment takes about 3 s of a processor, and its code saves about 0.1 us a tick. The code is kept for every
+other bench with the same blocks, and for the next start.
 """
 
 
@@ -58,7 +60,7 @@ class Fusing:
                     await self._load(segment)
 
     async def _load(self, segment: SharedSegment) -> None:
-        """Load the code of a segment; one whose code cannot be made is not tried again."""
+        """Load the code of a segment; after a failure it is not tried again."""
         if segment.steps in self._failed or segment.address:
             return
         try:

@@ -1,4 +1,4 @@
-"""Long runs use the code of segments: the code that is kept, or what they compile themselves."""
+"""Long runs use the code of segments: code that is kept, or code that they compile."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Benches that run for long take one function for each segment of a tick, and nobody can tell when."""
+"""Benches that run for long take one function for each segment of a tick; nothing shows the moment."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ SWITCH = {"switch": "pid"}
 
 @pytest.fixture(autouse=True)
 def worth_it(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
-    """No code is loaded or has failed, and no bench is long enough until `look` says so."""
+    """Forget loaded code and failures; benches are too short until `look` counts them as long."""
     monkeypatch.setattr(fusing, "LONG", 1 << 60)
     monkeypatch.setattr(segments, "_shared", WeakValueDictionary())
     monkeypatch.setattr(live.service.fusing, "_failed", set())

@@ -1,4 +1,4 @@
-"""Segments of a board as one function: the bits of the walk, whatever is done to the board and whenever they come."""
+"""Segments of a board as one function: the bits of the walk, with any commands and at any moment."""
 
 from __future__ import annotations
 
@@ -13,15 +13,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from core.block import Block
 from core.board.board import Board
 from core.board.ensemble import Ensemble
 from core.board.ensemble import make as make_all
 from core.board.segments import SharedSegment
 from core.board.stored import revived, stored
 from core.board.tuning import tuned
+from core.board.wiring import wire
 from core.compile.segment import SegmentStep, code_of, piece
 from core.errors import InputError
-from scenarios.library import get, library
+from scenarios.library import library
 from scenarios.run import build
 from scenarios.speed.boards import EVERYTHING, seven_step_bench
 from tests.lab import AXES_RICH, AXES_STORY, RICH, STORY, do, document, make
@@ -101,7 +103,7 @@ DEEDS = st.one_of(st.integers(1, 90), st.sampled_from(COMMANDS), st.sampled_from
 @settings(max_examples=60, deadline=None)
 @given(deeds=st.lists(DEEDS, max_size=40), late=st.integers(0, 30))
 def test_a_fused_board_is_the_walk_to_the_bit(deeds: list[Any], late: int) -> None:
-    """Whatever commands come, wherever it goes on from a copy, and at whichever slice it takes the code."""
+    """With any commands, continued from copies of itself, and at any slice in which it takes the code."""
     boards = [make(base=RICH), make(base=RICH)]
     for number, deed in enumerate([*deeds, 64]):
         if number == late:
@@ -118,7 +120,7 @@ def test_a_fused_board_is_the_walk_to_the_bit(deeds: list[Any], late: int) -> No
 
 
 def test_every_parameter_that_may_change_changes_a_fused_board_as_it_changes_the_walk() -> None:
-    """No segment is another one after that, except that a sensor may begin to run."""
+    """The segments stay the same, unless a sensor begins to run."""
     boards, others = [make(base=RICH), load(make(base=RICH))], []
     values = {path: value for path, value in tuned(boards[0].spec).items() if isinstance(value, bool | float)}
     for path, value in values.items():
@@ -223,7 +225,7 @@ def test_twins_fuse_too() -> None:
 def played(boards: list[Board], ticks: int) -> None:
     while boards[0].tick < ticks and boards[0].trip is None:
         step(boards, 97)
-        load(boards[1])  # also what a command has made another segment
+        load(boards[1])  # also the code of segments that a command has changed
 
 
 @pytest.mark.long
@@ -235,13 +237,17 @@ def test_a_gyroscope_with_everything_is_fused_to_the_bit() -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", [one.id for one in library()])
-def test_every_scenario_is_fused_to_the_bit(name: str) -> None:
-    """With all its blocks, as a live bench has them."""
-    boards = [build(get(name)) for _ in range(2)]
-    load(boards[1])
-    played(boards, 3000)
-    same(*boards)
+def test_every_block_of_the_library_is_fused_to_the_bit() -> None:
+    """With all blocks of a scenario, as a live bench has them, and its events."""
+    seen = set[type[Block]]()
+    for scenario in library():
+        blocks = {instance.block for instance in wire(scenario.spec).instances}
+        if not blocks <= seen:
+            seen |= blocks
+            boards = [build(scenario) for _ in range(2)]
+            load(boards[1])
+            played(boards, 3000)
+            same(*boards)
 
 
 @pytest.mark.long
