@@ -21,6 +21,7 @@ from core.board.segments import SharedSegment
 from core.board.stored import revived, stored
 from core.board.tuning import tuned
 from core.board.wiring import wire
+from core.compile.machine import native
 from core.compile.segment import SegmentStep, code_of, piece
 from core.errors import InputError
 from scenarios.library import library
@@ -183,11 +184,11 @@ def test_a_segment_is_named_by_its_steps_and_comes_through_a_pipe() -> None:
     assert first.segment is not None
     steps = first.segment.steps
     assert pickle.loads(pickle.dumps(steps)) == steps
-    name = piece(steps).hash
-    assert piece(tuple(steps)).hash == name
+    name = piece(steps).name_for(native())
+    assert piece(tuple(steps)).name_for(native()) == name
     for field, value in (("every", 2), ("p", 7), ("s", 7), ("io", 7), ("ports", ())):
-        assert piece((SegmentStep(**{**vars(steps[0]), field: value}), *steps[1:])).hash != name
-    assert piece(steps[1:]).hash != name and other.unfused == []
+        assert piece((SegmentStep(**{**vars(steps[0]), field: value}), *steps[1:])).name_for(native()) != name
+    assert piece(steps[1:]).name_for(native()) != name and other.unfused == []
 
 
 def test_a_unit_of_a_document_runs_by_itself() -> None:
