@@ -30,6 +30,13 @@ def test_image_copies_what_is_there_and_runs_without_root(root: Path) -> None:
     assert re.search(r"^HEALTHCHECK ", last_stage, re.M)
 
 
+def test_image_lets_its_user_read_all_kernels_that_its_build_compiles(root: Path) -> None:
+    """Kernels are for their owner alone, and the service has another user."""
+    build = (root / "Dockerfile").read_text()
+    readable = build.index("chmod -R a+rX kernels")
+    assert all(build.rindex(step) < readable for step in ("-m scenarios.kernels", "-m server.runs.figures"))
+
+
 def test_makefile_and_dockerfile_run_scripts_that_exist(root: Path) -> None:
     text = (root / "Makefile").read_text() + (root / "Dockerfile").read_text()
     named = set(re.findall(r"scripts/[\w.]+", text))
