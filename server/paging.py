@@ -24,7 +24,7 @@ def _ignore(_query: dict[str, Any]) -> None:
 
 
 @dataclass(frozen=True)
-class Page:
+class ListPage:
     """A page of a list.
 
     Parameters
@@ -69,7 +69,7 @@ class Page:
         return rows
 
 
-WHOLE = Page()
+WHOLE = ListPage()
 """All rows."""
 
 

@@ -25,7 +25,7 @@ ENDS = {"done": "done", "cut_short": "done", "cancelled": "cancelled"}
 """The last event by the state of the work; `failed` in any other state."""
 
 
-class Progress(BaseModel):
+class WorkProgress(BaseModel):
     """How far a run, a campaign, a search or a recording is."""
 
     state: str
@@ -52,7 +52,7 @@ class Ending(BaseModel):
         return f"end {self.state}"
 
 
-Look = Callable[[], Awaitable[Progress | Ending | None]]
+Look = Callable[[], Awaitable[WorkProgress | Ending | None]]
 """Returns how far some work is, or its end; None while its end is written. It refuses work that is gone."""
 
 

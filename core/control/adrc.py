@@ -8,7 +8,7 @@ from typing import Any, Literal
 from core.block import Block, BlockParams, Context, Equation, Oscillator, Stage, parameter
 from core.control.controller import ControllerPorts, unsuited_second_order
 from core.control.nominal import Following, followed, following
-from core.control.observer import Observed, Observer, observe, observer_of
+from core.control.observer import Observed, StateObserver, observe, observer_of
 from core.ports import reads, tap
 from core.record import Record
 from core.voltage import moves
@@ -53,7 +53,7 @@ class Adrc(Block):
     class Packed(Record):
         """The observer, the voltage of the model's motion, and volts per um, um/ms and um/ms^2 of the estimates."""
 
-        observer: Observer
+        observer: StateObserver
         following: Following
         by_error: float
         by_velocity_error: float

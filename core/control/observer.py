@@ -17,7 +17,7 @@ from core.record import Record, Vector, vector
 from core.voltage import Motion, Tick, add_moves
 
 
-class Observer(Record):
+class StateObserver(Record):
     """A device over a sample, its motion under one unit of unexplained acceleration, and the gains of the observer."""
 
     device: Tick
@@ -33,7 +33,7 @@ class Observed(Record):
     acceleration: float
 
 
-def observer_of(device: Oscillator, context: Context, rate: float) -> Observer:
+def observer_of(device: Oscillator, context: Context, rate: float) -> StateObserver:
     r"""Pack an observer whose error has a triple pole at :math:`p=e^{-rh}` (Ackermann).
 
     .. math:: L=(\Phi-pI)^3\begin{bmatrix}C\Phi\\C\Phi^2\\C\Phi^3\end{bmatrix}^{-1}
@@ -51,7 +51,7 @@ def observer_of(device: Oscillator, context: Context, rate: float) -> Observer:
     rate : float
         r, 1/ms.
     """
-    p = Observer.zeros()
+    p = StateObserver.zeros()
     p.device = over_sample(device, context)
     *_, first, second = held(device.mass, device.damping, device.stiffness, context.dt_ms)
     p.by_acceleration1, p.by_acceleration2 = first * device.mass, second * device.mass
@@ -69,7 +69,7 @@ def observer_of(device: Oscillator, context: Context, rate: float) -> Observer:
 
 
 @kernel
-def observe(p: Observer, s: Observed, y: float, u: float, middle: float, end: float) -> None:
+def observe(p: StateObserver, s: Observed, y: float, u: float, middle: float, end: float) -> None:
     """Predict by the voltage of the sample that ends now, as in `core.voltage.moves`; correct by the measurement."""
     x = s.motion.x
     v = s.motion.v

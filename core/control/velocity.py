@@ -6,7 +6,7 @@ import math
 from typing import Any, Literal
 
 from core.block import Context, parameter
-from core.control.observer import Observed, Observer, observe, observer_of
+from core.control.observer import Observed, StateObserver, observe, observer_of
 from core.kernel import kernel
 from core.record import Record
 
@@ -23,7 +23,7 @@ class PackedVelocity(Record):
     source: float
     dt_ms: float
     rate: float
-    observer: Observer
+    observer: StateObserver
 
 
 class VelocityState(Record):

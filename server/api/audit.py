@@ -10,11 +10,11 @@ from server.api.deps import ServiceDep
 from server.api.paging import Number, pages
 from server.api.router import Router
 from server.classroom.audit import AuditEntry
-from server.paging import Page
+from server.paging import ListPage
 
 router = Router(tags=["classes"])
 
-AuditPage = Annotated[Page, pages(Number, usual=1000)]
+AuditPage = Annotated[ListPage, pages(Number, usual=1000)]
 
 
 class AuditList(BaseModel):

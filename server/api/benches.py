@@ -21,7 +21,7 @@ from server.bench.status import Bench
 from server.bench.view import View
 from server.classroom.hiding import HINT, blind_of
 from server.errors import ApiError
-from server.paging import Page
+from server.paging import ListPage
 
 MAX_NAME = 80
 
@@ -204,7 +204,9 @@ async def command(
 
 
 @router.get("/{bench_id}/events")
-async def list_events(session: SeenDep, page: Annotated[Page, pages(Number, usual=KEPT, most=100_000)]) -> EventList:
+async def list_events(
+    session: SeenDep, page: Annotated[ListPage, pages(Number, usual=KEPT, most=100_000)]
+) -> EventList:
     """List the events of a bench, oldest first; `after` is the number of an event, whose followers are listed."""
     lost, events = session.events.after(page.after[0] if page.after else 0)
     return EventList(events=page.rows(events, lambda one: (one.seq,)), last=session.events.last, lost=lost)

@@ -16,7 +16,7 @@ from server.api.paging import LINK
 from server.api.tags import TAGS
 from server.classroom.access import Need, need_of
 from server.errors import ErrorReply
-from server.progress import Progress
+from server.progress import WorkProgress
 from server.stream.wire import ClientMessage, ServerMessage
 
 REF = "#/components/schemas/{model}"
@@ -96,7 +96,7 @@ def build(app: FastAPI) -> dict[str, Any]:
         ("ClientMessage", ClientMessage, "validation"),
         ("ServerMessage", ServerMessage, "serialization"),
         ("ErrorReply", ErrorReply, "validation"),
-        ("Progress", Progress, "serialization"),
+        ("WorkProgress", WorkProgress, "serialization"),
     ):
         described = TypeAdapter(kind).json_schema(mode=mode, ref_template=REF)  # type: ignore[arg-type]
         for inner, definition in described.pop("$defs", {}).items():

@@ -12,7 +12,7 @@ from server.api.deps import SeenDep
 from server.api.paging import Number, pages
 from server.api.router import Router
 from server.bench.narration import KEPT, NarrationPlace
-from server.paging import Page
+from server.paging import ListPage
 
 router = Router(prefix="/benches", tags=["benches"])
 
@@ -29,7 +29,7 @@ class NarrationList(BaseModel):
 @router.get("/{bench_id}/narration")
 async def list_narration(
     session: SeenDep,
-    page: Annotated[Page, pages(Number, usual=KEPT)],
+    page: Annotated[ListPage, pages(Number, usual=KEPT)],
     jumps: Annotated[int | None, Query(ge=0, le=2**53, description="Number of jumps in the last answer")] = None,
 ) -> NarrationList:
     """List the sentences of the narrator; `after` is the number of a sentence, whose followers are listed.

@@ -11,7 +11,7 @@ from fastapi import Depends, Query, Request, Response
 from pydantic import Field, TypeAdapter, ValidationError
 
 from server.errors import ApiError
-from server.paging import Page
+from server.paging import ListPage
 from server.security.public import PublicOrigin
 
 MOST = 10_000
@@ -40,7 +40,7 @@ def pages(*kinds: Any, usual: int = MOST, most: int = MOST) -> Any:
         description="Cursor of the page, from the header Link of the page before; left out: the first page",
     )
 
-    def page(request: Request, response: Response, limit: int = rows, after: str | None = place) -> Page:
+    def page(request: Request, response: Response, limit: int = rows, after: str | None = place) -> ListPage:
         key = None
         if after is not None:
             try:
@@ -52,15 +52,15 @@ def pages(*kinds: Any, usual: int = MOST, most: int = MOST) -> Any:
         def tell(query: dict[str, Any]) -> None:
             response.headers["Link"] = f'<{_address(request, query)}>; rel="next"'
 
-        return Page(limit, key, tell)
+        return ListPage(limit, key, tell)
 
     return Depends(page)
 
 
 Number = Annotated[int, Field(ge=0, le=2**53)]
-AgePage = Annotated[Page, pages(datetime, str)]
+AgePage = Annotated[ListPage, pages(datetime, str)]
 """A page of rows in the order of their creation."""
-RequestPage = Annotated[Page, pages(datetime, str, usual=200)]
+RequestPage = Annotated[ListPage, pages(datetime, str, usual=200)]
 """A page of runs or campaigns, newest first."""
 
 

@@ -16,7 +16,7 @@ from server.api.paging import pages
 from server.api.router import Router
 from server.classroom.access import Need
 from server.errors import ApiError
-from server.paging import Page
+from server.paging import ListPage
 from server.store.parameter_sets import ParameterSet, ParameterSetDetail
 
 router = Router(tags=["parameter sets"])
@@ -81,7 +81,7 @@ async def apply_parameter_set(set_id: str, session: SessionDep, service: Service
 
 
 @router.get("/parameter-sets")
-async def list_parameter_sets(service: ServiceDep, page: Annotated[Page, pages(str)]) -> ParameterSetList:
+async def list_parameter_sets(service: ServiceDep, page: Annotated[ListPage, pages(str)]) -> ParameterSetList:
     """List the sets by name."""
     return ParameterSetList(sets=await service.parameter_sets.all(page))
 

@@ -12,7 +12,7 @@ from server.api.deps import PersonDep, ServiceDep
 from server.api.recordings import must_see
 from server.api.router import Router
 from server.errors import not_found
-from server.progress import Ending, Look, Progress, ProgressStreams
+from server.progress import Ending, Look, ProgressStreams, WorkProgress
 from server.runs.queue import Requested
 from server.security.person import Person
 from server.service import Service
@@ -47,18 +47,18 @@ class ProgressResponse(StreamingResponse):
 
 def _door(result: str) -> dict[str, Any]:
     """Describe a door of progress, whose last event has the model of this name."""
-    data = [{"$ref": f"#/components/schemas/{name}"} for name in ("Progress", result)]
+    data = [{"$ref": f"#/components/schemas/{name}"} for name in ("WorkProgress", result)]
     event = {
         "type": "object",
         "required": ["event", "data", "id"],
         "properties": {
             "event": {"type": "string", "enum": ["progress", "done", "failed", "cancelled"]},
-            "data": {"anyOf": data, "description": f"JSON: Progress, in the last event {result}"},
+            "data": {"anyOf": data, "description": f"JSON: WorkProgress, in the last event {result}"},
             "id": {"type": "string", "description": "For the header Last-Event-ID"},
         },
     }
     content = {"text/event-stream": {"schema": {"type": "string"}, "itemSchema": event}}
-    about = f"Events `progress` with a Progress, then one of `done`, `failed` and `cancelled` with the {result}"
+    about = f"Events `progress` with a WorkProgress, then one of `done`, `failed` and `cancelled` with the {result}"
     gone = {"description": "The last event is known already: there is nothing left to wait for"}
     return {
         "response_class": Response,
@@ -92,7 +92,7 @@ async def follow_recording(
 ) -> Response:
     """Follow a recording until its file is whole."""
 
-    async def look() -> Progress | Ending | None:
+    async def look() -> WorkProgress | Ending | None:
         if not service.people.lasts(person) or service.views.is_blind(person, ""):
             raise not_found("recording", recording_id)
         if (progress := service.records.progress(recording_id)) is not None:

@@ -18,7 +18,7 @@ from server.classroom.sheet_report import sheet_report
 from server.classroom.sheet_view import SheetView
 from server.classroom.sheet_work import SheetBrief, brief
 from server.errors import ApiError, not_found
-from server.paging import Page
+from server.paging import ListPage
 from server.security.person import Person
 from server.service import Service
 
@@ -83,7 +83,9 @@ class GradeList(BaseModel):
 
 
 @router.get("/sheets")
-async def list_sheets(person: PersonDep, service: ServiceDep, page: Annotated[Page, pages(Number, str)]) -> SheetList:
+async def list_sheets(
+    person: PersonDep, service: ServiceDep, page: Annotated[ListPage, pages(Number, str)]
+) -> SheetList:
     """List the sheets."""
     works = {work.sheet_id: work for work in service.sheets.works(person.id)}
     current = service.sheets.current(person)

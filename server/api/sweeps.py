@@ -22,7 +22,7 @@ from server.api.paging import Number, RequestPage, pages
 from server.api.router import Router
 from server.api.runs import Ended, FilterDep, NewLabel, Removed
 from server.errors import ApiError
-from server.paging import Page
+from server.paging import ListPage
 from server.runs.listing import clean_label
 from server.runs.sweeps import SweepRun
 from server.store.traces import MEDIA_TYPES
@@ -118,7 +118,7 @@ async def cancel_sweep(sweep_id: str, service: ServiceDep) -> SweepRun:
 async def get_sweep_points(
     sweep_id: str,
     service: ServiceDep,
-    page: Annotated[Page, pages(Number, usual=MOST_POINTS, most=MOST_POINTS)],
+    page: Annotated[ListPage, pages(Number, usual=MOST_POINTS, most=MOST_POINTS)],
     offset: Annotated[int, Query(ge=0, description="Number of points to skip")] = 0,
     sort: Annotated[str, Query(max_length=200, description="Order: an axis, a figure, runs, ok or tripped")] = "",
     descending: bool = False,

@@ -25,7 +25,7 @@ from server.api.paging import Number, pages
 from server.api.router import Router
 from server.bench.build import prepare
 from server.errors import not_found
-from server.paging import Page
+from server.paging import ListPage
 from server.service import Service
 
 router = Router(prefix="/units", tags=["units"])
@@ -96,7 +96,7 @@ class UnitCheck(BaseModel):
 
 
 @router.get("")
-def list_units(service: ServiceDep, page: Annotated[Page, pages(Number, str)]) -> UnitList:
+def list_units(service: ServiceDep, page: Annotated[ListPage, pages(Number, str)]) -> UnitList:
     """List the units to begin with, and whether this person may bring any."""
     first_fixed = len(service.units.all())
     rows = [

@@ -13,7 +13,7 @@ from server.api.paging import pages
 from server.api.router import Router
 from server.classroom.votes import Asked, Ballot, OpenVote, Vote
 from server.errors import ApiError
-from server.paging import Page
+from server.paging import ListPage
 
 router = Router(tags=["votes"])
 
@@ -67,7 +67,7 @@ async def open_vote(body: NewVote, service: ServiceDep) -> Vote:
 
 
 @router.get("/votes")
-async def list_votes(service: ServiceDep, page: Annotated[Page, pages(str)]) -> VoteList:
+async def list_votes(service: ServiceDep, page: Annotated[ListPage, pages(str)]) -> VoteList:
     """List the votes: one of each class, and one by hands."""
     return VoteList(votes=await service.votes.all(page))
 

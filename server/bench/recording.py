@@ -20,7 +20,7 @@ from server.bench.engine import Engine
 from server.bench.events import Event
 from server.bench.recorder import CLOSED, STOPPED, WANTED, PastSpan, Recorder
 from server.errors import ApiError, not_found
-from server.progress import Progress
+from server.progress import WorkProgress
 from server.store.recordings import About, Recording, Recordings
 from server.version import VERSION
 
@@ -293,13 +293,13 @@ class RecordingControl:
             return await self._store.get(recording.id)
         return self._store.begin(recording, tick)
 
-    def progress(self, recording_id: str) -> Progress | None:
+    def progress(self, recording_id: str) -> WorkProgress | None:
         """Return how far a recording is; None once its file is whole."""
         recorder = self._open.get(recording_id)
         if recorder is None:
             return None
         state = "recording" if recorder.has_begun else "armed"
-        return Progress(
+        return WorkProgress(
             state=state, fraction=recorder.taken / max(recorder.total, 1), done=recorder.taken, total=recorder.total
         )
 

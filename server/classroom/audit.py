@@ -13,7 +13,7 @@ from sqlalchemy import delete, func, select
 from server.bench.bench import LiveBench
 from server.bench.events import Event
 from server.clock import Clock
-from server.paging import WHOLE, Page
+from server.paging import WHOLE, ListPage
 from server.store.base import now
 from server.store.change import Change
 from server.store.database import Database
@@ -98,7 +98,7 @@ class Audit:
         newest = select(func.max(AuditRow.id)).scalar_subquery()
         await self._database.run(lambda session: session.execute(delete(AuditRow).where(AuditRow.id <= newest - MOST)))
 
-    async def entries(self, *, class_id: str = "", bench_id: str = "", page: Page = WHOLE) -> list[AuditEntry]:
+    async def entries(self, *, class_id: str = "", bench_id: str = "", page: ListPage = WHOLE) -> list[AuditEntry]:
         """Return the actions in a class or on a bench, newest first."""
         await self.write()
         query = page.chosen(select(AuditRow), AuditRow.id, newest_first=True)

@@ -26,7 +26,7 @@ from server.classroom.student_benches import StudentBenches
 from server.classroom.votes import Votes
 from server.clock import Clock
 from server.errors import REFUSED, ApiError, not_found, why
-from server.paging import Page, by_age
+from server.paging import ListPage, by_age
 from server.security.person import Person, hash_of, new_secret
 from server.store.base import now
 from server.store.change import Change
@@ -157,7 +157,7 @@ class Classes:
         self._codes.pop(class_id, None)
         return self._shown(row)
 
-    async def all(self, page: Page) -> list[Class]:
+    async def all(self, page: ListPage) -> list[Class]:
         """List the classes, oldest first."""
         return [self._shown(row) for row in page.cut(await self._rows(), by_age)]
 

@@ -11,7 +11,7 @@ from server.bench.idling import Idling
 from server.bench.status import Bench
 from server.classroom.hiding import refusal
 from server.classroom.people import People
-from server.paging import Page, by_age
+from server.paging import ListPage, by_age
 from server.security.person import Person
 from server.stream.hub import Hub
 
@@ -71,7 +71,7 @@ class Views:
         bench = self.seen(session, person).describe(self._hub.around(session), view3d)
         return bench.model_copy(update={"let_go_in_s": self._idling.left_s(session)})
 
-    def all(self, person: Person, page: Page) -> list[Bench]:
+    def all(self, person: Person, page: ListPage) -> list[Bench]:
         """Describe the benches outside classes, oldest first; a bench that cannot be described hides no others."""
         descriptions = []
         for session in page.cut((one for one in self._benches.all() if not one.class_id), by_age):

@@ -12,7 +12,7 @@ from sqlalchemy.orm import Session
 
 from scenarios.lecture import Span
 from server.errors import ApiError, not_found
-from server.paging import Page
+from server.paging import ListPage
 from server.security.person import Person
 from server.store.change import Change
 from server.store.database import Database
@@ -107,7 +107,7 @@ class Votes:
 
         return await self._shown(opened)
 
-    async def all(self, page: Page) -> list[Vote]:
+    async def all(self, page: ListPage) -> list[Vote]:
         """List the votes."""
         query = page.chosen(select(VoteRow), VoteRow.id)
         found = await self._database.run(lambda session: [_vote(session, row) for row in session.scalars(query)])

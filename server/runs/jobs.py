@@ -15,7 +15,7 @@ from scenarios.campaign.single import single
 from scenarios.key import content_hash, run_key
 from scenarios.schema import Scenario
 from server.errors import not_found
-from server.paging import Page
+from server.paging import ListPage
 from server.runs.changed import ChangedValue, changed_values
 from server.runs.listing import Run, RunFilter
 from server.runs.queue import Queue, Requested, check_length
@@ -67,7 +67,7 @@ class Jobs(Requested[Run]):
             runs=len(seeds),
         )
 
-    async def all(self, wanted: RunFilter, page: Page) -> list[Run]:
+    async def all(self, wanted: RunFilter, page: ListPage) -> list[Run]:
         """List the selected runs, newest first."""
         rows = await self._requests.all(self.kind, wanted, page)
         while new := {row.id: row.scenario_id for row in rows if row.id not in self._changed}:

@@ -15,7 +15,7 @@ from sqlalchemy.orm import Session, defer
 from core.errors import InputError
 from scenarios.key import code_version
 from server.errors import ApiError, ErrorBody, not_found
-from server.paging import Page, by_age
+from server.paging import ListPage, by_age
 from server.runs.changed import ChangedValue
 from server.runs.summary import RunSummary
 from server.store.base import now
@@ -132,7 +132,7 @@ class Requests:
 
         return await self._database.run(work)
 
-    async def all(self, kind: Kind, wanted: RunFilter, page: Page) -> list[RequestRow]:
+    async def all(self, kind: Kind, wanted: RunFilter, page: ListPage) -> list[RequestRow]:
         """List the selected rows, newest first, without their documents."""
         query = page.chosen(wanted.of(kind), RequestRow.created, RequestRow.id, newest_first=True)
         return page.rows(await self._rows(query.options(defer(RequestRow.document))), by_age)

@@ -31,8 +31,8 @@ from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
 from server.errors import ApiError, body_of
 from server.metrics import Metrics
-from server.paging import Page
-from server.progress import Ending, Progress, ProgressStreams
+from server.paging import ListPage
+from server.progress import Ending, ProgressStreams, WorkProgress
 from server.runs.listing import ACTIVE, Kind, Requests, RunFilter, change, fresh
 from server.runs.worker import NICE, NotKept
 from server.settings import Settings
@@ -92,7 +92,7 @@ class Requested(ABC, Generic[Shown]):
     def shown(self, row: RequestRow) -> Shown:
         """Return a request as the interface shows it, with its progress while it is under way."""
 
-    async def all(self, wanted: RunFilter, page: Page) -> list[Shown]:
+    async def all(self, wanted: RunFilter, page: ListPage) -> list[Shown]:
         """List the selected requests, newest first."""
         return [self.shown(row) for row in await self._requests.all(self.kind, wanted, page)]
 
@@ -100,7 +100,7 @@ class Requested(ABC, Generic[Shown]):
         """Return one, or refuse with 404."""
         return self.shown(await self._requests.get(self.kind, row_id))
 
-    async def look(self, row_id: str) -> Progress | Ending | None:
+    async def look(self, row_id: str) -> WorkProgress | Ending | None:
         """Return how far a request is, or its end; None while the end is written."""
         if (progress := self._queue.progress(row_id)) is not None:
             return progress
@@ -189,14 +189,14 @@ class Queue:
         self._cancel(row_id, task)
         await asyncio.wait([task], timeout=CANCEL_S)
 
-    def progress(self, row_id: str) -> Progress | None:
+    def progress(self, row_id: str) -> WorkProgress | None:
         """Return how far a request is that waits or is under way."""
         if row_id not in self._tasks:
             return None
         campaign = self.campaigns.get(row_id)
         if campaign is None:
-            return Progress(state="queued", fraction=0.0, done=0, total=0)
-        return Progress(state="running", fraction=campaign.progress, done=campaign.done, total=campaign.total)
+            return WorkProgress(state="queued", fraction=0.0, done=0, total=0)
+        return WorkProgress(state="running", fraction=campaign.progress, done=campaign.done, total=campaign.total)
 
     async def warm(self, ready: Callable[[], Awaitable[None]]) -> None:
         """Start the worker processes before the first request, once the kernels are compiled."""

@@ -12,7 +12,7 @@ from sqlalchemy import delete, func, select
 from sqlalchemy.orm import Session
 
 from server.errors import ApiError, not_found
-from server.paging import WHOLE, Page, by_age
+from server.paging import WHOLE, ListPage, by_age
 from server.store.database import Database
 from server.store.experiment import THIS_VERSION, Experiment
 from server.store.models import LinkRow
@@ -112,7 +112,7 @@ class Links:
 
         return LinkDetail.model_validate(await self._database.run(keep))
 
-    async def all(self, kind: Kind | None = None, page: Page = WHOLE) -> list[Link]:
+    async def all(self, kind: Kind | None = None, page: ListPage = WHOLE) -> list[Link]:
         """List links, newest first; without closed idle benches."""
         columns = [getattr(LinkRow, name) for name in Link.model_fields]
         query = select(*columns).where(LinkRow.kind != "bench")

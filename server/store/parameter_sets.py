@@ -11,7 +11,7 @@ from sqlalchemy import delete, func, select
 from sqlalchemy.orm import Session
 
 from server.errors import ApiError, not_found
-from server.paging import Page
+from server.paging import ListPage
 from server.store.database import Database
 from server.store.models import ParameterSetRow
 
@@ -62,7 +62,7 @@ class ParameterSets:
 
         return ParameterSetDetail.model_validate(await self._database.run(add))
 
-    async def all(self, page: Page) -> list[ParameterSet]:
+    async def all(self, page: ListPage) -> list[ParameterSet]:
         """List the sets by name."""
         query = page.chosen(select(ParameterSetRow), ParameterSetRow.name)
         found = await self._database.run(lambda session: list(session.scalars(query)))

@@ -18,7 +18,7 @@ from sqlalchemy.exc import DBAPIError
 
 from scenarios.arrow import pa
 from server.errors import ApiError, not_found
-from server.paging import WHOLE, Page, by_age
+from server.paging import WHOLE, ListPage, by_age
 from server.store.database import Database, reason_of
 from server.store.earlier import in_this_notation
 from server.store.experiment import THIS_VERSION
@@ -171,7 +171,7 @@ class Recordings:
                 values["state"] = "cut_short" if values["ticks"] else values["state"]
             await asyncio.to_thread(self._close, recording_id, values)
 
-    async def all(self, benches: list[str] | None = None, page: Page = WHOLE) -> list[Recording]:
+    async def all(self, benches: list[str] | None = None, page: ListPage = WHOLE) -> list[Recording]:
         """List recordings, newest first: all of them, or the recordings of some benches."""
         await self._settle()
         query = page.chosen(select(RecordingRow), RecordingRow.created, RecordingRow.id, newest_first=True)

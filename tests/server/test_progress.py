@@ -13,7 +13,7 @@ import pytest
 
 from server.clock import ManualClock
 from server.errors import not_found
-from server.progress import BEAT_S, HEARTBEAT_S, MOST, MOST_EACH, Ending, Progress, ProgressStreams
+from server.progress import BEAT_S, HEARTBEAT_S, MOST, MOST_EACH, Ending, ProgressStreams, WorkProgress
 from tests.server.classroom.group import join, open_class
 from tests.server.runs.test_runs import long_run, wait
 
@@ -173,13 +173,13 @@ class Work:
     def __init__(self) -> None:
         self.clock = ManualClock()
         self.streams = ProgressStreams(self.clock)
-        self.now: Progress | Ending | None = Progress(state="queued", fraction=0.0, done=0, total=0)
+        self.now: WorkProgress | Ending | None = WorkProgress(state="queued", fraction=0.0, done=0, total=0)
 
-    async def look(self) -> Progress | Ending | None:
+    async def look(self) -> WorkProgress | Ending | None:
         return self.now
 
     def at(self, done: int, seconds: float) -> None:
-        self.now = Progress(state="running", fraction=done / 4, done=done, total=4)
+        self.now = WorkProgress(state="running", fraction=done / 4, done=done, total=4)
         self.pass_time(seconds)
 
     def pass_time(self, seconds: float) -> None:
@@ -198,7 +198,7 @@ def test_events_tell_changes_alone_and_the_time_that_is_left() -> None:
         found.append(await anext(stream))
         work.pass_time(HEARTBEAT_S)
         found.append(await anext(stream))  # nothing has changed: a comment
-        work.now = Ending(state="aborted", result=Progress(state="aborted", fraction=0.25, done=1, total=4))
+        work.now = Ending(state="aborted", result=WorkProgress(state="aborted", fraction=0.25, done=1, total=4))
         work.pass_time(0.0)
         found += [event async for event in stream]
         return found
@@ -216,10 +216,10 @@ def test_a_stream_ends_when_its_work_is_gone_or_the_server_stops(how: str) -> No
     async def told() -> list[bytes]:
         work = Work()
 
-        async def gone() -> Progress:
+        async def gone() -> WorkProgress:
             raise not_found("run", "x")
 
-        assert isinstance(work.now, Progress)
+        assert isinstance(work.now, WorkProgress)
         stream = work.streams.events(work.look if how == "stopped" else gone, work.now.id)
         found = [await anext(stream)]
         if how == "stopped":

@@ -9480,10 +9480,10 @@ export interface components {
             error: components["schemas"]["ErrorBody"];
         };
         /**
-         * Progress
+         * WorkProgress
          * @description How far a run, a campaign, a search or a recording is.
          */
-        Progress: {
+        WorkProgress: {
             /** State */
             state: string;
             /**
@@ -9803,7 +9803,7 @@ export type Reply = components['schemas']['Reply'];
 export type Status = components['schemas']['Status'];
 export type ServerMessage = components['schemas']['ServerMessage'];
 export type ErrorReply = components['schemas']['ErrorReply'];
-export type Progress = components['schemas']['Progress'];
+export type WorkProgress = components['schemas']['WorkProgress'];
 export type $defs = Record<string, never>;
 export interface operations {
     get_catalog: {
@@ -12836,7 +12836,7 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Events `progress` with a Progress, then one of `done`, `failed` and `cancelled` with the Run */
+            /** @description Events `progress` with a WorkProgress, then one of `done`, `failed` and `cancelled` with the Run */
             200: {
                 headers: {
                     [name: string]: unknown;
@@ -12878,7 +12878,7 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Events `progress` with a Progress, then one of `done`, `failed` and `cancelled` with the SweepRun */
+            /** @description Events `progress` with a WorkProgress, then one of `done`, `failed` and `cancelled` with the SweepRun */
             200: {
                 headers: {
                     [name: string]: unknown;
@@ -12920,7 +12920,7 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Events `progress` with a Progress, then one of `done`, `failed` and `cancelled` with the ThresholdRun */
+            /** @description Events `progress` with a WorkProgress, then one of `done`, `failed` and `cancelled` with the ThresholdRun */
             200: {
                 headers: {
                     [name: string]: unknown;
@@ -12962,7 +12962,7 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Events `progress` with a Progress, then one of `done`, `failed` and `cancelled` with the Recording */
+            /** @description Events `progress` with a WorkProgress, then one of `done`, `failed` and `cancelled` with the Recording */
             200: {
                 headers: {
                     [name: string]: unknown;
